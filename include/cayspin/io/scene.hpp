@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <cayspin/io/words.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+/// A scene file as plain data. docs/scene.md describes every key.
+namespace cayspin::io {
+
+/// what() is one line: `FILE:LINE: key: what is wrong; accepted: ...`, or
+/// `--set key=value: key: ...` when an override is to blame.
+class SceneError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+using Triple = std::array<double, 3>;
+using PrincipalMoments = Triple;
+using InertiaTensor = std::array<double, 9>;  ///< symmetric 3x3, row by row
+struct InertiaFile {
+  std::filesystem::path path;  ///< dataset /inertia (count, 3, 3)
+};
+
+struct System {
+  SystemKind kind = SystemKind::llg;
+  double damping = 0;      ///< llg: lambda >= 0
+  bool precession = true;  ///< llg: false is the overdamped A = lambda m x H
+  std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
+};
+
+struct Lattice {
+  std::array<std::int64_t, 3> shape = {1, 1,
+                                       1};  ///< nx, ny, nz; a rigid body ensemble: count, 1, 1
+  Triple spacing = {1, 1, 1};
+  std::array<BoundaryKind, 3> boundary = {};
+};
+
+struct Anisotropy {
+  double constant = 0;  ///< K in H = K (m.e) e
+  Triple axis = {};     ///< unit vector e
+};
+
+struct SlabDemagnetization {
+  Triple normal = {};  ///< unit vector n in H = -strength (m.n) n
+  double strength = 1;
+  bool average_layer =
+      false;             ///< (m.n) averaged over each plane normal to n; n is then along an axis
+  bool on_host = false;  ///< computed on the host through a mirror copy
+};
+
+/// A number, or the text of an expression in t.
+using AppliedComponent = std::variant<double, std::string>;
+
+/// Only terms that stand in the scene have a value.
+struct Field {
+  std::optional<double> exchange;  ///< A in H = A Lap(m)
+  std::vector<Anisotropy> anisotropies;
+  std::optional<std::array<AppliedComponent, 3>> applied;
+  std::optional<SlabDemagnetization> slab_demag;
+  double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
+};
+
+struct UniformStart {
+  Triple direction = {};  ///< unit vector
+};
+struct ExpressionStart {
+  std::array<std::string, 3> components;  ///< in x, y, z, i, j, k
+};
+struct RandomStart {
+  std::int64_t seed = 0;
+};
+struct FileStart {
+  std::filesystem::path path;  ///< dataset /spins
+};
+using Initial = std::variant<UniformStart, ExpressionStart, RandomStart, FileStart>;
+
+struct Integrator {
+  Method method = Method::euler;
+  Generator generator = Generator::standard;
+  Isotropy isotropy = Isotropy::zero;
+  double sigma = 0;  ///< isotropy constant: what is added to A along m
+  Rotation rotation = Rotation::cayley;
+  double dt = 0;
+  std::int64_t steps = 0;  ///< computed from `end` when the scene gives that
+  bool energy_guard = true;
+  std::optional<double> until_torque;
+};
+
+struct Output {
+  std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
+  std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
+  std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
+};
+
+struct Scene {
+  System system;
+  Lattice lattice;
+  Field field;
+  Initial initial;
+  Integrator integrator;
+  Output output;
+  std::string text;            ///< the TOML text; re-serialised when an override changed it
+  std::filesystem::path path;  ///< the scene file
+  std::map<std::string, std::string, std::less<>>
+      places;  ///< key -> "FILE:LINE" or "--set key=value"
+};
+
+/// Reads and validates a scene. Each override is "key.path=VALUE" with a TOML value, applied in
+/// order. Files that the scene names are not opened: check_files, initial_spins and inertia do
+/// that. Throws SceneError.
+Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {});
+
+/// The one-line error for something found wrong with a key after reading, such as a shape that does
+/// not fit in memory: "FILE:LINE: key: message".
+SceneError scene_error(Scene const& scene, std::string_view key, std::string_view message);
+
+/// Number of spins, or of rigid bodies.
+std::int64_t sites(Scene const& scene);
+
+/// True when a component of the applied field contains t.
+bool depends_on_time(Scene const& scene);
+
+/// Opens every file that the scene reads and checks the datasets' types and shapes, not the values.
+/// Throws SceneError.
+void check_files(Scene const& scene);
+
+/// The start on the host, sites x 3 normalised in double: component c of site (i, j, k) lies at
+/// ((k*ny + j)*nx + i)*3 + c. Throws SceneError naming the site of a zero or non-finite spin.
+std::vector<double> initial_spins(Scene const& scene);
+
+/// The inertia tensors of a rigid body scene, row by row: one when all bodies share it, otherwise
+/// one per body. Throws SceneError naming the body that is not symmetric positive definite.
+std::vector<InertiaTensor> inertia(Scene const& scene);
+
+/// Their inverses in the order xx, yy, zz, xy, xz, yz. Throws as inertia does.
+std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene);
+
+}  // namespace cayspin::io
