@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# cayspin_add_test(<name> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>...]
+#                  [THREADS <count>...] [TIMEOUT <seconds>])
+# One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
+# inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
+# otherwise there is one entry with two threads.
+function(cayspin_add_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS;THREADS")
+  if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
+    message(FATAL_ERROR "cayspin_add_test(${name}): wrong arguments: ${arg_UNPARSED_ARGUMENTS}")
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+
+  add_executable(test_${name} ${arg_SOURCES})
+  target_link_libraries(test_${name} PRIVATE cayspin_test_main ${arg_LIBRARIES})
+
+  if(arg_THREADS AND (Kokkos_ENABLE_OPENMP OR Kokkos_ENABLE_THREADS))
+    foreach(count IN LISTS arg_THREADS)
+      cayspin_register_test(${name}_threads_${count} test_${name} ${count})
+    endforeach()
+  else()
+    cayspin_register_test(${name} test_${name} 2)
+  endif()
+endfunction()
+
+macro(cayspin_register_test entry program threads)
+  add_test(NAME ${entry} COMMAND ${program})
+  set_tests_properties(
+    ${entry}
+    PROPERTIES ENVIRONMENT
+               "OMP_NUM_THREADS=${threads};KOKKOS_NUM_THREADS=${threads};OMP_PROC_BIND=false"
+               LABELS "${arg_LABELS}"
+               TIMEOUT ${arg_TIMEOUT}
+               PROCESSORS ${threads})
+endmacro()

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Provides Kokkos::kokkos: a parent project's target, else an installed package, else a source tree.
+# Sets CAYSPIN_KOKKOS_VERSION, _ORIGIN and _BACKENDS for the summary and for the tests.
+set(CAYSPIN_KOKKOS_MINIMUM 4.5)
+
+if(TARGET Kokkos::kokkos)
+  set(CAYSPIN_KOKKOS_ORIGIN "the parent project's")
+else()
+  find_package(Kokkos ${CAYSPIN_KOKKOS_MINIMUM} CONFIG QUIET)
+  if(Kokkos_FOUND)
+    set(CAYSPIN_KOKKOS_ORIGIN "${Kokkos_DIR}")
+  elseif(CAYSPIN_KOKKOS_SOURCE)
+    add_subdirectory("${CAYSPIN_KOKKOS_SOURCE}" kokkos SYSTEM)
+    get_directory_property(Kokkos_VERSION DIRECTORY "${CAYSPIN_KOKKOS_SOURCE}" DEFINITION
+                                                    Kokkos_VERSION)
+    set(CAYSPIN_KOKKOS_ORIGIN "built from ${CAYSPIN_KOKKOS_SOURCE}")
+    if(Kokkos_VERSION VERSION_LESS CAYSPIN_KOKKOS_MINIMUM)
+      message(FATAL_ERROR "CAYSPIN_KOKKOS_SOURCE holds Kokkos ${Kokkos_VERSION}, "
+                          "cayspin needs ${CAYSPIN_KOKKOS_MINIMUM} or newer")
+    endif()
+  else()
+    set(refused "")
+    foreach(config version IN ZIP_LISTS Kokkos_CONSIDERED_CONFIGS Kokkos_CONSIDERED_VERSIONS)
+      string(APPEND refused "\nNot accepted: version ${version} at ${config}")
+    endforeach()
+    message(
+      FATAL_ERROR
+        "cayspin needs Kokkos ${CAYSPIN_KOKKOS_MINIMUM} or newer. Give it in one of three ways:\n"
+        "  1. define the target Kokkos::kokkos in the project that adds cayspin\n"
+        "  2. name an installed Kokkos: -DCMAKE_PREFIX_PATH=DIR\n"
+        "  3. name a Kokkos source tree to build: -DCAYSPIN_KOKKOS_SOURCE=DIR\n"
+        "or run: bash cmake/bootstrap.sh build${refused}")
+  endif()
+endif()
+
+set(CAYSPIN_KOKKOS_VERSION "${Kokkos_VERSION}")
+set(CAYSPIN_KOKKOS_BACKENDS "")
+foreach(backend SERIAL OPENMP THREADS CUDA HIP SYCL)
+  if(Kokkos_ENABLE_${backend})
+    list(APPEND CAYSPIN_KOKKOS_BACKENDS ${backend})
+  endif()
+endforeach()

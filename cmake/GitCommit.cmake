@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Target cayspin_git_commit: <cayspin_git_commit.hpp> defines CAYSPIN_GIT_COMMIT, the full commit
+# with "-dirty" behind it when tracked files differ from it, or "unknown" outside a repository.
+# Looked up at every build; the header is written only when the answer changed.
+# Run as a script (cmake -P) it is the look-up itself.
+if(CMAKE_SCRIPT_MODE_FILE)
+  cmake_policy(VERSION 3.25)
+  set(commit "")
+  if(GIT_EXECUTABLE)
+    execute_process(
+      COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=40 --exclude=*
+      WORKING_DIRECTORY ${SOURCE_DIR}
+      OUTPUT_VARIABLE commit
+      OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  endif()
+  if(NOT commit)
+    set(commit unknown)
+  endif()
+  file(CONFIGURE OUTPUT ${HEADER} CONTENT "#pragma once\n#define CAYSPIN_GIT_COMMIT \"@commit@\"\n"
+       @ONLY)
+  return()
+endif()
+
+find_package(Git QUIET)
+set(header ${PROJECT_BINARY_DIR}/generated/cayspin_git_commit.hpp)
+add_custom_target(
+  cayspin_look_up_git_commit
+  COMMAND ${CMAKE_COMMAND} -DGIT_EXECUTABLE=${GIT_EXECUTABLE} -DSOURCE_DIR=${PROJECT_SOURCE_DIR}
+          -DHEADER=${header} -P ${CMAKE_CURRENT_LIST_FILE}
+  BYPRODUCTS ${header}
+  COMMENT "Looking up the git commit")
+add_library(cayspin_git_commit INTERFACE)
+target_include_directories(cayspin_git_commit INTERFACE ${PROJECT_BINARY_DIR}/generated)
+add_dependencies(cayspin_git_commit cayspin_look_up_git_commit)

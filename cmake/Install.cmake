@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Headers, program and the package that find_package(cayspin [COMPONENTS io]) reads.
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cayspin)
+
+if(CAYSPIN_BUILD_APP)
+  set(headers_left_out "")
+else()
+  set(headers_left_out PATTERN io EXCLUDE)
+endif()
+install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.hpp" ${headers_left_out})
+
+install(TARGETS cayspin EXPORT cayspinTargets)
+install(EXPORT cayspinTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
+if(TARGET cayspin_io)
+  set_target_properties(cayspin_io PROPERTIES EXPORT_NAME io)
+  install(TARGETS cayspin_io EXPORT cayspin_ioTargets ARCHIVE)
+  install(EXPORT cayspin_ioTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
+endif()
+if(TARGET cayspin_program)
+  install(TARGETS cayspin_program RUNTIME)
+endif()
+
+if(Kokkos_DIR)
+  set(CAYSPIN_KOKKOS_HINT "${Kokkos_DIR}")
+else()
+  set(CAYSPIN_KOKKOS_HINT "\${PACKAGE_PREFIX_DIR}/${CMAKE_INSTALL_LIBDIR}/cmake/Kokkos")
+endif()
+configure_package_config_file(cmake/cayspinConfig.cmake.in cayspinConfig.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(cayspinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
+              ${PROJECT_BINARY_DIR}/cayspinConfigVersion.cmake DESTINATION ${package_dir})
