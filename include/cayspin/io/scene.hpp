@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <array>
 #include <cayspin/io/words.hpp>
+
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>

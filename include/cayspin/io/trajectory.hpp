@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// The trajectory file of a run (HDF5, laid out as docs/file_format.md says).
+///
+/// Every failure of the file system or of HDF5 throws std::runtime_error whose message is one line:
+/// the file, what could not be done, and why. HDF5 itself prints nothing. Not thread-safe.
+namespace cayspin::io {
+
+/// What a trajectory file says about the run that writes it.
+struct TrajectoryHeader {
+  std::string scene_text;  ///< the scene as run, command line overrides applied
+  std::string cayspin_version;
+  std::string git_commit;
+  std::string kokkos_version;
+  std::string space;                 ///< name of the execution space
+  std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
+  int threads = 1;
+  std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz
+};
+
+/// The observables of one instant, always in double.
+struct Scalars {
+  double energy = 0;                      ///< reduced units, summed over the sites
+  double norm_defect = 0;                 ///< max | |m| - 1 | over the sites
+  std::array<double, 3> magnetization{};  ///< mean of m over the sites
+};
+
+/// What a run cost, known once it has ended.
+struct RunCost {
+  std::int64_t evaluations = 0;  ///< evaluations of the generator over all sites
+  double wall_seconds = 0;       ///< the whole run
+  double step_seconds = 0;       ///< stepping alone: no observers, no writing
+};
+
+/// Writes one run. The file is readable after every write_frame, also by a reader that finds the
+/// writer killed: it then holds whole frames and `complete` = 0.
+class TrajectoryFile {
+ public:
+  /// Creates the file with everything but frames. An existing file is an error unless `overwrite`;
+  /// it is then replaced only once the new one stands beside it (as PATH.partial) with its header.
+  /// A failed creation changes nothing that was there and leaves no new file.
+  TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite);
+
+  /// Closes the file; without finish() before, it stays marked as not complete.
+  ~TrajectoryFile();
+  TrajectoryFile(TrajectoryFile&&) noexcept;
+  TrajectoryFile& operator=(TrajectoryFile&&) noexcept;
+
+  /// Appends one frame and its scalars, and flushes. `spins` is packed as (nz, ny, nx, 3), in the
+  /// precision of the header; the other one throws std::logic_error.
+  void write_frame(std::int64_t step, double time, Scalars const& scalars, float const* spins);
+  void write_frame(std::int64_t step, double time, Scalars const& scalars, double const* spins);
+
+  /// Appends one sample to /scalars; samples reach the file with the next frame, or within about a
+  /// second of calls.
+  void write_scalars(std::int64_t step, double time, Scalars const& scalars);
+
+  /// Ends a run that went as planned: `complete` = 1, written after all else is in the file.
+  void finish(RunCost const& cost);
+
+  /// Ends a run that was interrupted or failed: the same, but `complete` stays 0.
+  void close(RunCost const& cost);
+
+  std::int64_t frames() const;  ///< frames written so far
+  std::filesystem::path const& path() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// What a trajectory file holds, without its spins.
+struct TrajectoryInfo {
+  std::filesystem::path path;
+  int format = 0;
+  TrajectoryHeader header;
+  RunCost cost;
+  bool complete = false;
+  std::int64_t frames = 0;  ///< whole frames
+  std::vector<std::int64_t> frame_steps;
+  std::vector<double> frame_times;
+  std::vector<Scalars> frame_scalars;
+  std::int64_t samples = 0;  ///< length of /scalars
+};
+
+/// Reads all but the spins of a trajectory file.
+TrajectoryInfo read_info(std::filesystem::path const& path);
+
+/// The spins of one frame.
+struct StoredSpins {
+  std::array<std::int64_t, 3> shape{};  ///< nx, ny, nz
+  std::vector<double> spins;            ///< packed as (nz, ny, nx, 3)
+};
+
+/// Reads dataset /spins of any HDF5 file, (nz, ny, nx, 3) or (frame, nz, ny, nx, 3) of
+/// floating-point numbers: the last frame (the last whole one of a trajectory file). Bits are kept.
+StoredSpins read_spins(std::filesystem::path const& path);
+
+/// A dataset of floating-point numbers, the last index fastest.
+struct StoredArray {
+  std::vector<std::int64_t> extents;
+  std::vector<double> values;
+};
+
+/// Reads one dataset of any HDF5 file as doubles, e.g. "/inertia".
+StoredArray read_array(std::filesystem::path const& path, std::string const& dataset);
+
+}  // namespace cayspin::io

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include <cayspin/io/expression.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace cayspin::io {
+namespace {
+
+// muParser would let "x = 3" write into the variable.
+bool assigns(std::string_view text) {
+  for (std::size_t at = text.find('='); at != text.npos; at = text.find('=', at + 1)) {
+    bool const follows_comparison =
+        at > 0 && std::string_view("=<>!").find(text[at - 1]) != text.npos;
+    bool const starts_comparison = at + 1 < text.size() && text[at + 1] == '=';
+    if (!follows_comparison && !starts_comparison) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+struct Expression::Compiled {
+  std::string text;
+  std::vector<std::string> variables;
+  std::vector<double> values;
+  mu::Parser parser;
+};
+
+Expression::Expression(std::string text, std::vector<std::string> variables)
+    : compiled_(std::make_unique<Compiled>()) {
+  compiled_->text = std::move(text);
+  compiled_->variables = std::move(variables);
+  compiled_->values.resize(compiled_->variables.size());
+  auto const refuse = [&](std::string_view reason) {
+    return std::invalid_argument(fmt::format("expression \"{}\": {}; accepted: a formula in {}",
+                                             compiled_->text, reason,
+                                             fmt::join(compiled_->variables, ", ")));
+  };
+  auto& parser = compiled_->parser;
+  try {
+    parser.DefineConst("pi", std::numbers::pi);
+    for (std::size_t n = 0; n < compiled_->variables.size(); ++n) {
+      parser.DefineVar(compiled_->variables[n], &compiled_->values[n]);
+    }
+    parser.SetExpr(compiled_->text);
+    parser.Eval();
+  } catch (mu::ParserError const& error) {
+    throw refuse(error.GetMsg());
+  }
+  if (parser.GetNumResults() != 1) throw refuse("gives several values");
+  if (assigns(compiled_->text)) throw refuse("assignment has no meaning here");
+}
+
+Expression::Expression(Expression const& other)
+    : Expression(other.compiled_->text, other.compiled_->variables) {}
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression other) noexcept {
+  compiled_ = std::move(other.compiled_);
+  return *this;
+}
+Expression::~Expression() = default;
+
+double Expression::operator()(double const* values) const {
+  std::copy_n(values, compiled_->values.size(), compiled_->values.begin());
+  double const result = compiled_->parser.Eval();
+  if (std::isfinite(result)) return result;
+  std::string at;
+  for (std::size_t n = 0; n < compiled_->values.size(); ++n) {
+    at += fmt::format("{}{} = {}", n == 0 ? "" : ", ", compiled_->variables[n], values[n]);
+  }
+  throw std::runtime_error(
+      fmt::format("expression \"{}\" is not finite at {}", compiled_->text, at));
+}
+
+std::string const& Expression::text() const { return compiled_->text; }
+
+bool Expression::depends_on(std::string_view variable) const {
+  auto const& used = compiled_->parser.GetUsedVar();
+  return used.contains(std::string(variable));
+}
+
+}  // namespace cayspin::io

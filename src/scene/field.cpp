@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <cayspin/io/expression.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace cayspin::io::detail {
+namespace {
+
+Anisotropy read_anisotropy(Item const& item, Scene& scene) {
+  Table const table(item, scene);
+  table.accept_only({"constant", "axis"});
+  return {number(table.required("constant", "a finite number")),
+          direction(table.required("axis", "three numbers"))};
+}
+
+std::vector<Anisotropy> read_anisotropies(Item const& item, Scene& scene) {
+  constexpr std::string_view accepted =
+      "{ constant = K, axis = [x, y, z] }, or an array of such tables";
+  if (item.node->is_table()) return {read_anisotropy(item, scene)};
+  std::vector<Anisotropy> all;
+  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
+    all.push_back(read_anisotropy(entry, scene));
+  }
+  return all;
+}
+
+AppliedComponent read_applied_component(Item const& item) {
+  constexpr std::string_view accepted = "a finite number, or a string with an expression in t";
+  if (!item.node->is_string()) return number(item, accepted);
+  auto text = string(item, accepted);
+  try {
+    double const start = 0;
+    Expression(text, {"t"})(&start);
+  } catch (std::exception const& error) {
+    item.fail(error.what());
+  }
+  return text;
+}
+
+// Whether the scene's one word stands there.
+bool option(Table const& table, std::string_view name, std::string_view only) {
+  auto const item = table.find(name);
+  if (!item) return false;
+  auto const accepted = fmt::format("\"{}\", or no such key", only);
+  auto const typed = string(*item, accepted);
+  if (typed != only) item->fail(fmt::format("\"{}\" is not known", typed), accepted);
+  return true;
+}
+
+SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
+  Table const table(item, scene);
+  table.accept_only({"normal", "strength", "average", "where"});
+  SlabDemagnetization slab;
+  auto const normal = table.required("normal", "three numbers");
+  slab.normal = direction(normal);
+  if (auto const strength = table.find("strength")) slab.strength = number(*strength);
+  slab.average_layer = option(table, "average", "layer");
+  slab.on_host = option(table, "where", "host");
+  if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2) {
+    normal.fail("average = \"layer\" needs a normal along an axis",
+                "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");
+  }
+  return slab;
+}
+
+}  // namespace
+
+Field read_field(Table const& root, SystemKind kind) {
+  Field field;
+  auto const found = root.find("field");
+  if (!found) return field;
+  if (kind == SystemKind::rigid_body) {
+    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
+  }
+  Table const table(*found, root.scene());
+  table.accept_only({"exchange", "anisotropy", "applied", "slab_demag", "mu0"});
+  if (auto const item = table.find("exchange")) field.exchange = number(*item);
+  if (auto const item = table.find("anisotropy")) {
+    field.anisotropies = read_anisotropies(*item, root.scene());
+  }
+  if (auto const item = table.find("applied")) {
+    auto const three = entries(*item, 3, 3, "three numbers or expressions in t");
+    field.applied.emplace();
+    std::ranges::transform(three, field.applied->begin(), read_applied_component);
+  }
+  if (auto const item = table.find("slab_demag")) {
+    field.slab_demag = read_slab_demag(*item, root.scene());
+  }
+  if (auto const item = table.find("mu0")) field.mu0 = number(*item);
+  return field;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "files.hpp"
+#include "sections.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cayspin::io {
+namespace {
+
+Eigen::Matrix3d symmetric_part(InertiaTensor const& tensor) {
+  Eigen::Map<Eigen::Matrix3d const> const matrix(tensor.data());
+  return matrix / 2 + matrix.transpose() / 2;
+}
+
+Eigen::Matrix3d inverse(InertiaTensor const& tensor) {
+  return symmetric_part(tensor).llt().solve(Eigen::Matrix3d::Identity());
+}
+
+std::vector<InertiaTensor> read_file(Scene const& scene, std::filesystem::path const& path) {
+  constexpr std::string_view key = "system.inertia.file";
+  std::vector<InertiaTensor> tensors(static_cast<std::size_t>(sites(scene)));
+  double tolerance = 0;
+  try {
+    detail::Hdf5Dataset const dataset(path, "/inertia");
+    detail::check_inertia(dataset, sites(scene));
+    auto const values = dataset.read();
+    for (std::size_t body = 0; body < tensors.size(); ++body) {
+      std::copy_n(values.data() + 9 * body, 9, tensors[body].begin());
+    }
+    tolerance = 16 * dataset.epsilon();
+  } catch (std::runtime_error const& error) {
+    throw scene_error(scene, key, error.what());
+  }
+  for (std::size_t body = 0; body < tensors.size(); ++body) {
+    if (auto const fault = detail::inertia_fault(tensors[body], tolerance)) {
+      throw scene_error(scene, key, fmt::format("{}: body {}: {}", path.string(), body, *fault));
+    }
+  }
+  return tensors;
+}
+
+}  // namespace
+
+std::optional<std::string> detail::inertia_fault(InertiaTensor const& tensor, double tolerance) {
+  Eigen::Map<Eigen::Matrix3d const> const matrix(tensor.data());
+  if (!matrix.allFinite()) return "the tensor is not finite";
+  double const largest = matrix.cwiseAbs().maxCoeff();
+  if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > tolerance * largest) {
+    return "the tensor is not symmetric";
+  }
+  bool const positive = symmetric_part(tensor).llt().info() == Eigen::Success;
+  if (!positive || !inverse(tensor).allFinite()) return "the tensor is not positive definite";
+  return std::nullopt;
+}
+
+std::vector<InertiaTensor> inertia(Scene const& scene) {
+  auto const& given = scene.system.inertia;
+  if (auto const* const file = std::get_if<InertiaFile>(&given))
+    return read_file(scene, file->path);
+  if (auto const* const tensor = std::get_if<InertiaTensor>(&given)) return {*tensor};
+  auto const& moments = std::get<PrincipalMoments>(given);
+  return {{moments[0], 0, 0, 0, moments[1], 0, 0, 0, moments[2]}};
+}
+
+std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene) {
+  if (auto const* const moments = std::get_if<PrincipalMoments>(&scene.system.inertia)) {
+    return {{1 / (*moments)[0], 1 / (*moments)[1], 1 / (*moments)[2], 0, 0, 0}};
+  }
+  auto const tensors = inertia(scene);
+  std::vector<std::array<double, 6>> inverses(tensors.size());
+  std::ranges::transform(tensors, inverses.begin(), [](InertiaTensor const& tensor) {
+    Eigen::Matrix3d const m = inverse(tensor);
+    return std::array<double, 6>{m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
+  });
+  return inverses;
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+#include "start_variables.hpp"
+
+#include <cayspin/io/expression.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace cayspin::io::detail {
+namespace {
+
+ExpressionStart read_expressions(Item const& item) {
+  constexpr std::string_view accepted = "three strings, each an expression in x, y, z, i, j, k";
+  ExpressionStart start;
+  auto const three = entries(item, 3, 3, accepted);
+  for (std::size_t component = 0; component < 3; ++component) {
+    auto text = string(three[component], accepted);
+    try {
+      Expression(text, start_variables());
+    } catch (std::invalid_argument const& error) {
+      three[component].fail(error.what());
+    }
+    start.components[component] = std::move(text);
+  }
+  return start;
+}
+
+RandomStart read_random(Item const& item, Scene& scene) {
+  constexpr std::string_view accepted = "a whole number";
+  Table const table(item, scene);
+  table.accept_only({"seed"});
+  return {integer(table.required("seed", accepted), std::numeric_limits<std::int64_t>::min(),
+                  accepted)};
+}
+
+}  // namespace
+
+Initial read_initial(Table const& root) {
+  constexpr std::string_view accepted = "exactly one of uniform, expression, random, file";
+  auto const table = root.table("initial", "a table [initial]");
+  table.accept_only({"uniform", "expression", "random", "file"});
+  if (auto const count = table.item().node->as_table()->size(); count != 1) {
+    table.item().fail(fmt::format("has {} keys", count), accepted);
+  }
+  if (auto const item = table.find("uniform")) return UniformStart{direction(*item)};
+  if (auto const item = table.find("expression")) return read_expressions(*item);
+  if (auto const item = table.find("random")) return read_random(*item, root.scene());
+  return FileStart{input_file(table, "file")};
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "files.hpp"
+#include "normalise.hpp"
+#include "start_variables.hpp"
+
+#include <cayspin/io/expression.hpp>
+#include <cayspin/io/scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cayspin::io {
+namespace {
+
+using Site = std::array<std::int64_t, 3>;
+
+Site site_at(Lattice const& lattice, std::size_t number) {
+  auto const n = static_cast<std::int64_t>(number);
+  auto const& shape = lattice.shape;
+  return {n % shape[0], n / shape[0] % shape[1], n / shape[0] / shape[1]};
+}
+
+// Value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
+// 10.1145/2660193.2660195), reached directly, as a number in [0, 1).
+double random_number(std::uint64_t start, std::uint64_t counter) {
+  std::uint64_t z = start + (counter + 1) * 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+  z ^= z >> 31U;
+  return std::ldexp(static_cast<double>(z >> 11U), -53);
+}
+
+struct Start {
+  Scene const& scene;
+  std::vector<double>& spins;
+
+  std::size_t size() const { return spins.size() / 3; }
+  void set(std::size_t site, Triple const& m) const {
+    std::copy_n(m.data(), 3, spins.begin() + static_cast<std::ptrdiff_t>(3 * site));
+  }
+
+  // The site and its spin go into the message.
+  void set_normalised(std::size_t site, Triple const& m, std::string_view key) const {
+    if (auto const unit = detail::normalise(m)) {
+      set(site, *unit);
+      return;
+    }
+    auto const [i, j, k] = site_at(scene.lattice, site);
+    throw scene_error(
+        scene, key,
+        fmt::format("the spin of site ({}, {}, {}) is ({}, {}, {}); accepted: a finite vector that "
+                    "is not zero",
+                    i, j, k, m[0], m[1], m[2]));
+  }
+
+  void operator()(UniformStart const& uniform) const {
+    for (std::size_t site = 0; site < size(); ++site) set(site, uniform.direction);
+  }
+
+  void operator()(ExpressionStart const& start) const {
+    std::vector<Expression> components;
+    for (auto const& text : start.components) {
+      components.emplace_back(text, detail::start_variables());
+    }
+    auto const& shape = scene.lattice.shape;
+    for (std::size_t site = 0; site < size(); ++site) {
+      auto const index = site_at(scene.lattice, site);
+      std::array<double, 6> variables;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        auto const position = static_cast<double>(index[axis]);
+        variables[axis] = (position + 0.5) / static_cast<double>(shape[axis]);
+        variables[3 + axis] = position;
+      }
+      Triple m;
+      try {
+        for (std::size_t c = 0; c < 3; ++c) m[c] = components[c](variables.data());
+      } catch (std::runtime_error const& error) {
+        throw scene_error(scene, "initial.expression", error.what());
+      }
+      set_normalised(site, m, "initial.expression");
+    }
+  }
+
+  // Uniform on the sphere: z and the azimuth are uniform (Archimedes).
+  void operator()(RandomStart const& random) const {
+    auto const seed = static_cast<std::uint64_t>(random.seed);
+    for (std::size_t site = 0; site < size(); ++site) {
+      double const z = 2 * random_number(seed, 2 * site) - 1;
+      double const azimuth = 2 * std::numbers::pi * random_number(seed, 2 * site + 1);
+      double const radius = std::sqrt((1 - z) * (1 + z));
+      set_normalised(site, {radius * std::cos(azimuth), radius * std::sin(azimuth), z},
+                     "initial.random");
+    }
+  }
+
+  void operator()(FileStart const& file) const {
+    std::vector<double> values;
+    try {
+      detail::Hdf5Dataset const dataset(file.path, "/spins");
+      detail::check_spins(dataset, scene.lattice.shape);
+      values = dataset.extents().size() == 5 ? dataset.read_last() : dataset.read();
+    } catch (std::runtime_error const& error) {
+      throw scene_error(scene, "initial.file", error.what());
+    }
+    for (std::size_t site = 0; site < size(); ++site) {
+      auto const* const m = values.data() + 3 * site;
+      set_normalised(site, {m[0], m[1], m[2]}, "initial.file");
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<double> initial_spins(Scene const& scene) {
+  std::vector<double> spins(3 * static_cast<std::size_t>(sites(scene)));
+  std::visit(Start{scene, spins}, scene.initial);
+  return spins;
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cayspin::io::detail {
+namespace {
+
+// Times are n dt in double, so n itself has to be exact there.
+constexpr double most_steps = 9007199254740992.0;  // 2^53
+
+// `end` over dt, whole to 1e-9 of a step. Beyond 2e6 steps the rounding of the two decimal numbers
+// and of their quotient (2 eps of it) is larger than that and must not refuse a whole number.
+std::int64_t steps_until(Item const& end, double dt) {
+  auto const time = non_negative_number(end);
+  double const quotient = time / dt;
+  if (!(quotient <= most_steps)) end.fail("more than 2^53 steps", "a smaller end or a larger dt");
+  double const whole = std::round(quotient);
+  double const tolerance = std::max(1e-9, 2 * std::numeric_limits<double>::epsilon() * quotient);
+  if (std::abs(quotient - whole) > tolerance) {
+    double const fewer = std::max(1.0, std::floor(quotient));
+    end.fail(fmt::format("{} is {:.12g} steps of dt = {}, not a whole number", time, quotient, dt),
+             fmt::format("dt = {} or {}", time / fewer, time / (fewer + 1)));
+  }
+  return static_cast<std::int64_t>(whole);
+}
+
+std::int64_t read_steps(Table const& table, double dt) {
+  constexpr std::string_view accepted = "exactly one of end, steps";
+  auto const end = table.find("end");
+  auto const steps = table.find("steps");
+  if (end && steps) end->fail("stands beside integrator.steps", accepted);
+  if (end) return steps_until(*end, dt);
+  if (!steps) detail::fail(table.item().place, "integrator.end", "is missing", accepted);
+  auto const count = integer(*steps, 0, "a whole number >= 0");
+  if (static_cast<double>(count) > most_steps) steps->fail("more than 2^53 steps");
+  return count;
+}
+
+void read_isotropy(Item const& item, Scene& scene, Integrator& integrator) {
+  if (item.node->is_table()) {
+    Table const table(item, scene);
+    table.accept_only({"constant"});
+    integrator.isotropy = Isotropy::constant;
+    integrator.sigma = number(table.required("constant", "a finite number"));
+    return;
+  }
+  constexpr std::string_view accepted = "{ constant = sigma }";
+  std::string strings;
+  for (auto const& entry : words<Isotropy>()) {
+    if (entry.built && entry.value != Isotropy::constant) {
+      strings += fmt::format("\"{}\", ", entry.name);
+    }
+  }
+  integrator.isotropy = word<Isotropy>(item, strings + std::string(accepted));
+  if (integrator.isotropy == Isotropy::constant) item.fail("\"constant\" has no value", accepted);
+}
+
+// How the method meets the group: what the baselines do not have.
+void read_coordinates(Table const& table, Integrator& integrator) {
+  auto const method = to_string(integrator.method);
+  auto const generator = table.find("generator");
+  auto const isotropy = table.find("isotropy");
+  auto const rotation = table.find("rotation");
+  if (is_baseline(integrator.method)) {
+    for (auto const& item : {generator, isotropy, rotation}) {
+      if (item) item->fail(fmt::format("method \"{}\" does not take it", method), "no such key");
+    }
+    return;
+  }
+  if (generator) integrator.generator = word<Generator>(*generator);
+  if (isotropy) read_isotropy(*isotropy, table.scene(), integrator);
+  if (rotation) integrator.rotation = word<Rotation>(*rotation);
+  if (needs_cayley(integrator.method) && integrator.rotation != Rotation::cayley) {
+    rotation->fail(fmt::format("method \"{}\" belongs to Cayley coordinates", method),
+                   "\"cayley\"");
+  }
+}
+
+}  // namespace
+
+Integrator read_integrator(Table const& root, SystemKind kind) {
+  auto const table = root.table("integrator", "a table [integrator]");
+  table.accept_only({"method", "generator", "isotropy", "rotation", "dt", "end", "steps",
+                     "energy_guard", "until_torque"});
+  Integrator integrator;
+  integrator.method = word<Method>(table.required("method", built_words<Method>()));
+  read_coordinates(table, integrator);
+  integrator.dt = positive_number(table.required("dt", "a number > 0"));
+  integrator.steps = read_steps(table, integrator.dt);
+  if (auto const item = table.find("energy_guard")) integrator.energy_guard = boolean(*item);
+  if (auto const item = table.find("until_torque")) {
+    if (kind == SystemKind::rigid_body) {
+      item->fail("a rigid body has no torque m x H", "no such key");
+    }
+    integrator.until_torque = positive_number(*item);
+  }
+  return integrator;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace cayspin::io::detail {
+namespace {
+
+// One entry per axis of the shape, or one value for every axis.
+template <class Value, class Read>
+void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& values, Read read,
+                   std::string_view one) {
+  if (!item.node->is_array()) {
+    values.fill(read(item));
+    return;
+  }
+  auto const accepted = fmt::format("{}, or one per axis of lattice.shape ({})", one, axes);
+  auto const items = entries(item, axes, axes, accepted);
+  for (std::size_t axis = 0; axis < axes; ++axis) values[axis] = read(items[axis]);
+}
+
+}  // namespace
+
+Lattice read_lattice(Table const& root, SystemKind kind) {
+  auto const table = root.table("lattice", "a table [lattice]");
+  table.accept_only({"shape", "spacing", "boundary"});
+  bool const bodies = kind == SystemKind::rigid_body;
+  std::string_view const accepted = bodies ? "[count]" : "[nx], [nx, ny] or [nx, ny, nz]";
+
+  auto const shape = table.required("shape", accepted);
+  auto const extents = entries(shape, 1, bodies ? 1 : 3, accepted);
+  Lattice lattice;
+  std::int64_t room = std::numeric_limits<std::int64_t>::max() / std::int64_t{3 * sizeof(double)};
+  for (std::size_t axis = 0; axis < extents.size(); ++axis) {
+    auto const extent = integer(extents[axis], 1, "a whole number >= 1");
+    if (extent > room) shape.fail("more sites than memory can address", "a smaller shape");
+    room /= extent;
+    lattice.shape[axis] = extent;
+  }
+  for (auto const* const name : {"spacing", "boundary"}) {
+    if (auto const item = table.find(name); item && bodies) {
+      item->fail("has no meaning for independent rigid bodies", "no such key");
+    }
+  }
+  if (auto const item = table.find("spacing")) {
+    read_per_axis(*item, extents.size(), lattice.spacing, positive_number, "a number > 0");
+  }
+  if (auto const item = table.find("boundary")) {
+    auto const read = [](Item const& entry) { return word<BoundaryKind>(entry); };
+    read_per_axis(*item, extents.size(), lattice.boundary, read, built_words<BoundaryKind>());
+  }
+  return lattice;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <algorithm>
+
+namespace cayspin::io::detail {
+
+Output read_output(Table const& root, std::int64_t steps) {
+  Output output;
+  output.every = output.scalars_every = std::max<std::int64_t>(steps, 1);
+  auto const found = root.find("output");
+  if (!found) return output;
+  Table const table(*found, root.scene());
+  table.accept_only({"file", "every", "scalars_every"});
+  constexpr std::string_view accepted = "the name of an HDF5 file";
+  constexpr std::string_view period = "a whole number of steps >= 1";
+  if (auto const item = table.find("file")) {
+    auto const file = string(*item, accepted);
+    if (file.empty()) item->fail("the file name is empty", accepted);
+    output.file = file;
+  }
+  if (auto const item = table.find("every")) {
+    output.every = output.scalars_every = integer(*item, 1, period);
+  }
+  if (auto const item = table.find("scalars_every")) {
+    output.scalars_every = integer(*item, 1, period);
+  }
+  return output;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "overrides.hpp"
+
+#include "message.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace cayspin::io::detail {
+namespace {
+
+std::vector<std::string> split_path(std::string_view path) {
+  std::vector<std::string> keys(1);
+  for (char const c : path) {
+    if (c == '.') {
+      keys.emplace_back();
+    } else {
+      keys.back() += c;
+    }
+  }
+  return keys;
+}
+
+std::optional<std::size_t> as_index(std::string_view text) {
+  std::size_t index = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return index;
+}
+
+// One value parsed with the override as its source, which is where messages will point.
+toml::table parse_value(std::string const& place, std::string_view value) {
+  toml::table parsed;
+  try {
+    parsed = toml::parse(fmt::format("value = {}\n", value), place);
+  } catch (toml::parse_error const& error) {
+    fail(place, "", fmt::format("the value is not TOML ({})", error.description()),
+         "key.path=VALUE with a TOML value; a string needs its quotes");
+  }
+  if (parsed.size() != 1) {
+    fail(place, "", "more than one value", "key.path=VALUE with one TOML value");
+  }
+  return parsed;
+}
+
+// Moves, because a copied node forgets its source.
+void put(toml::node& parent, std::string const& key, toml::node&& value, std::string const& place) {
+  std::move(value).visit([&](auto&& typed) {
+    if (auto* const table = parent.as_table()) {
+      table->insert_or_assign(key, std::move(typed));
+    } else {
+      auto& array = *parent.as_array();
+      auto const index = as_index(key);
+      if (!index || *index >= array.size()) {
+        fail(place, "", fmt::format("\"{}\" is not an entry of an array of {}", key, array.size()),
+             "an index from 0");
+      }
+      array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(*index), std::move(typed));
+    }
+  });
+}
+
+}  // namespace
+
+void apply_override(toml::table& root, std::string const& assignment) {
+  auto const place = one_line("--set " + assignment);
+  auto const equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    fail(place, "", "not an assignment", "key.path=VALUE");
+  }
+  auto const keys = split_path(std::string_view(assignment).substr(0, equals));
+  auto value = parse_value(place, std::string_view(assignment).substr(equals + 1));
+
+  toml::node* parent = &root;
+  for (std::size_t n = 0; n < keys.size(); ++n) {
+    auto const& key = keys[n];
+    if (key.empty()) fail(place, "", "an empty key in the path", "key.path=VALUE");
+    if (!parent->is_table() && !parent->is_array()) {
+      fail(place, "", fmt::format("\"{}\" is neither a table nor an array", keys[n - 1]),
+           "the path of a scene key");
+    }
+    if (n + 1 == keys.size()) {
+      put(*parent, key, std::move(*value.get("value")), place);
+      return;
+    }
+    toml::node* child = nullptr;
+    if (auto* const table = parent->as_table()) {
+      child = table->get(key);
+      if (child == nullptr) {
+        put(*parent, key, std::move(*parse_value(place, "{}").get("value")), place);
+        child = table->get(key);
+        child->as_table()->is_inline(false);
+      }
+    } else if (auto const index = as_index(key); index) {
+      child = parent->as_array()->get(*index);
+    }
+    if (child == nullptr) {
+      fail(place, "", fmt::format("\"{}\" is not an entry of the array", key), "an index from 0");
+    }
+    parent = child;
+  }
+}
+
+}  // namespace cayspin::io::detail

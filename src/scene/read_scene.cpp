@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "overrides.hpp"
+#include "sections.hpp"
+
+#include <cayspin/io/expression.hpp>
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <system_error>
+
+namespace cayspin::io {
+namespace {
+
+std::string read_text(std::filesystem::path const& path) {
+  constexpr std::string_view accepted = "a readable TOML file";
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    detail::fail(path.string(), "", "is a folder", accepted);
+  }
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad()) {
+    auto const reason = errno == 0 ? std::string("cannot be read")
+                                   : "cannot be read: " + std::generic_category().message(errno);
+    detail::fail(path.string(), "", reason, accepted);
+  }
+  return text;
+}
+
+toml::table parse(std::string const& text, std::filesystem::path const& path) {
+  try {
+    return toml::parse(text, path.string());
+  } catch (toml::parse_error const& error) {
+    auto const place = fmt::format("{}:{}", path.string(), error.source().begin.line);
+    detail::fail(place, "", fmt::format("not TOML: {}", error.description()), "TOML 1.0");
+  }
+}
+
+}  // namespace
+
+Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
+  Scene scene;
+  scene.path = path;
+  scene.text = read_text(path);
+  auto document = parse(scene.text, path);
+  for (auto const& assignment : overrides) detail::apply_override(document, assignment);
+  if (!overrides.empty()) {
+    std::ostringstream stream;
+    stream << document << '\n';
+    scene.text = stream.str();
+  }
+
+  detail::Table const root({&document, "", fmt::format("{}:1", path.string())}, scene);
+  root.accept_only({"system", "lattice", "field", "initial", "integrator", "output"});
+  scene.system = detail::read_system(root);
+  scene.lattice = detail::read_lattice(root, scene.system.kind);
+  scene.field = detail::read_field(root, scene.system.kind);
+  scene.initial = detail::read_initial(root);
+  scene.integrator = detail::read_integrator(root, scene.system.kind);
+  scene.output = detail::read_output(root, scene.integrator.steps);
+  return scene;
+}
+
+SceneError scene_error(Scene const& scene, std::string_view key, std::string_view message) {
+  for (auto known = key;; known = known.substr(0, known.find_last_of(".["))) {
+    auto const found = scene.places.find(known);
+    if (found != scene.places.end()) {
+      return SceneError(detail::one_line(fmt::format("{}: {}: {}", found->second, key, message)));
+    }
+    if (known.find_last_of(".[") == known.npos) break;
+  }
+  return SceneError(
+      detail::one_line(fmt::format("{}:1: {}: {}", scene.path.string(), key, message)));
+}
+
+std::int64_t sites(Scene const& scene) {
+  auto const& shape = scene.lattice.shape;
+  return shape[0] * shape[1] * shape[2];
+}
+
+bool depends_on_time(Scene const& scene) {
+  if (!scene.field.applied) return false;
+  for (auto const& component : *scene.field.applied) {
+    auto const* const text = std::get_if<std::string>(&component);
+    if (text != nullptr && Expression(*text, {"t"}).depends_on("t")) return true;
+  }
+  return false;
+}
+
+}  // namespace cayspin::io

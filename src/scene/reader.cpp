@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "reader.hpp"
+
+#include "normalise.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace cayspin::io::detail {
+namespace {
+
+std::string type_name(toml::node const& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+      return "an integer";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "a boolean";
+    default:
+      return "a date or time";
+  }
+}
+
+std::string typed_text(toml::node const& node) {
+  std::ostringstream stream;
+  node.visit([&](auto const& value) { stream << value; });
+  return stream.str();
+}
+
+}  // namespace
+
+void Item::wrong_type(std::string_view accepted) const {
+  constexpr std::size_t longest = 40;
+  bool const short_value = node->is_value() && typed_text(*node).size() <= longest;
+  fail(short_value ? fmt::format("{} is {}", typed_text(*node), type_name(*node))
+                   : "is " + type_name(*node),
+       accepted);
+}
+
+std::string place_of(toml::source_region const& source, std::string_view otherwise) {
+  if (!source.path || !source.begin) return std::string(otherwise);
+  if (source.path->starts_with("--set ")) return *source.path;
+  return fmt::format("{}:{}", *source.path, source.begin.line);
+}
+
+Table::Table(Item item, Scene& scene) : item_(std::move(item)), scene_(&scene) {
+  if (!item_.node->is_table()) item_.wrong_type("a table");
+}
+
+void Table::accept_only(std::initializer_list<std::string_view> known) const {
+  for (auto const& [key, node] : *item_.node->as_table()) {
+    if (std::ranges::find(known, key.str()) != known.end()) continue;
+    auto const place = place_of(node.source(), item_.place);
+    auto const full =
+        item_.key.empty() ? std::string(key.str()) : fmt::format("{}.{}", item_.key, key.str());
+    auto const hint = did_you_mean(key.str(), {known.begin(), known.size()});
+    detail::fail(place, full, "unknown key" + hint, fmt::format("{}", fmt::join(known, ", ")));
+  }
+}
+
+std::optional<Item> Table::find(std::string_view name) const {
+  auto const* const node = item_.node->as_table()->get(name);
+  if (node == nullptr) return std::nullopt;
+  auto full = item_.key.empty() ? std::string(name) : fmt::format("{}.{}", item_.key, name);
+  auto place = place_of(node->source(), item_.place);
+  scene_->places[full] = place;
+  return Item{node, std::move(full), std::move(place)};
+}
+
+Item Table::required(std::string_view name, std::string_view accepted) const {
+  auto found = find(name);
+  if (found) return std::move(*found);
+  auto const full = item_.key.empty() ? std::string(name) : fmt::format("{}.{}", item_.key, name);
+  detail::fail(item_.place, full, "is missing", accepted);
+}
+
+Table Table::table(std::string_view name, std::string_view accepted) const {
+  return Table(required(name, accepted), *scene_);
+}
+
+double number(Item const& item, std::string_view accepted) {
+  if (auto const* const whole = item.node->as_integer()) return static_cast<double>(whole->get());
+  auto const* const real = item.node->as_floating_point();
+  if (real == nullptr) item.wrong_type(accepted);
+  if (!std::isfinite(real->get()))
+    item.fail(fmt::format("{} is not finite", real->get()), accepted);
+  return real->get();
+}
+
+double positive_number(Item const& item) {
+  constexpr std::string_view accepted = "a number > 0";
+  auto const value = number(item, accepted);
+  if (!(value > 0)) item.fail(fmt::format("{} is not positive", value), accepted);
+  return value;
+}
+
+double non_negative_number(Item const& item) {
+  constexpr std::string_view accepted = "a number >= 0";
+  auto const value = number(item, accepted);
+  if (value < 0) item.fail(fmt::format("{} is negative", value), accepted);
+  return value;
+}
+
+std::int64_t integer(Item const& item, std::int64_t minimum, std::string_view accepted) {
+  auto const* const whole = item.node->as_integer();
+  if (whole == nullptr) item.wrong_type(accepted);
+  if (whole->get() < minimum) item.fail(fmt::format("{} is too small", whole->get()), accepted);
+  return whole->get();
+}
+
+bool boolean(Item const& item) {
+  auto const* const value = item.node->as_boolean();
+  if (value == nullptr) item.wrong_type("true, false");
+  return value->get();
+}
+
+std::string string(Item const& item, std::string_view accepted) {
+  auto const* const value = item.node->as_string();
+  if (value == nullptr) item.wrong_type(accepted);
+  return value->get();
+}
+
+std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
+                          std::string_view accepted) {
+  auto const* const array = item.node->as_array();
+  if (array == nullptr) item.wrong_type(accepted);
+  if (array->size() < least || array->size() > most) {
+    item.fail(fmt::format("has {} entries", array->size()), accepted);
+  }
+  std::vector<Item> result;
+  for (auto const& node : *array) {
+    result.push_back({&node, fmt::format("{}[{}]", item.key, result.size()),
+                      place_of(node.source(), item.place)});
+  }
+  return result;
+}
+
+Triple triple(Item const& item) {
+  auto const three = entries(item, 3, 3, "three numbers");
+  return {number(three[0]), number(three[1]), number(three[2])};
+}
+
+Triple direction(Item const& item) {
+  auto const normalised = normalise(triple(item));
+  if (!normalised) item.fail("is a zero vector", "three numbers that are not all zero");
+  return *normalised;
+}
+
+std::filesystem::path input_file(Table const& table, std::string_view name) {
+  constexpr std::string_view accepted = "the name of an HDF5 file";
+  auto const item = table.required(name, accepted);
+  auto const file = string(item, accepted);
+  if (file.empty()) item.fail("the file name is empty", accepted);
+  return table.scene().path.parent_path() / file;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "message.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cayspin::io::detail {
+
+/// A value of the scene with its full key and the place it was typed at.
+struct Item {
+  toml::node const* node;
+  std::string key;
+  std::string place;
+
+  [[noreturn]] void fail(std::string_view what, std::string_view accepted = {}) const {
+    detail::fail(place, key, what, accepted);
+  }
+  /// Says what was typed: `"big" is a string`.
+  [[noreturn]] void wrong_type(std::string_view accepted) const;
+};
+
+/// "FILE:LINE", or "--set key=value"; `otherwise` for a node that was never typed.
+std::string place_of(toml::source_region const& source, std::string_view otherwise);
+
+/// A table whose keys are looked up by name. Places go into the scene for later messages.
+class Table {
+ public:
+  Table(Item item, Scene& scene);
+
+  /// Refuses every other key.
+  void accept_only(std::initializer_list<std::string_view> known) const;
+
+  std::optional<Item> find(std::string_view name) const;
+  Item required(std::string_view name, std::string_view accepted) const;
+  bool contains(std::string_view name) const { return find(name).has_value(); }
+  Table table(std::string_view name, std::string_view accepted) const;
+
+  Item const& item() const { return item_; }
+  Scene& scene() const { return *scene_; }
+
+ private:
+  Item item_;
+  Scene* scene_;
+};
+
+double number(Item const& item, std::string_view accepted = "a finite number");
+double positive_number(Item const& item);
+double non_negative_number(Item const& item);
+std::int64_t integer(Item const& item, std::int64_t minimum, std::string_view accepted);
+bool boolean(Item const& item);
+std::string string(Item const& item, std::string_view accepted);
+
+/// The entries of an array of `least` to `most` entries.
+std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
+                          std::string_view accepted);
+Triple triple(Item const& item);
+/// Three numbers, normalised; a zero vector is refused.
+Triple direction(Item const& item);
+
+/// A file name relative to the scene file's folder.
+std::filesystem::path input_file(Table const& table, std::string_view name);
+
+template <class Value>
+std::string built_words() {
+  std::string list;
+  for (auto const& word : words<Value>()) {
+    if (word.built) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word.name);
+  }
+  return list;
+}
+
+/// A word of the tables in words.hpp that this version has built.
+template <class Value>
+Value word(Item const& item, std::string_view accepted = {}) {
+  auto const built = accepted.empty() ? built_words<Value>() : std::string(accepted);
+  auto const name = string(item, built);
+  if (auto const* const found = find_word<Value>(name)) {
+    if (found->built) return found->value;
+    item.fail(fmt::format("\"{}\" is not built in this version; available: {}", name, built));
+  }
+  std::vector<std::string_view> known;
+  for (auto const& word : words<Value>()) known.push_back(word.name);
+  item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), built);
+}
+
+}  // namespace cayspin::io::detail

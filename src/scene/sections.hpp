@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "reader.hpp"
+
+namespace cayspin::io::detail {
+
+System read_system(Table const& root);
+/// A rigid body takes neither spacing nor boundary, and one extent.
+Lattice read_lattice(Table const& root, SystemKind kind);
+Field read_field(Table const& root, SystemKind kind);
+Initial read_initial(Table const& root);
+Integrator read_integrator(Table const& root, SystemKind kind);
+Output read_output(Table const& root, std::int64_t steps);
+
+/// Why a tensor is refused, or nothing when it is symmetric to `tolerance` times its largest entry
+/// and positive definite.
+std::optional<std::string> inertia_fault(InertiaTensor const& tensor, double tolerance);
+
+}  // namespace cayspin::io::detail

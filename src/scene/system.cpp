@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace cayspin::io::detail {
+namespace {
+
+constexpr std::string_view inertia_accepted =
+    "three principal moments, a symmetric 3x3 array, or { file = \"...\" }";
+
+std::variant<PrincipalMoments, InertiaTensor, InertiaFile> read_inertia(Item const& item,
+                                                                        Scene& scene) {
+  if (item.node->is_table()) {
+    Table const table(item, scene);
+    table.accept_only({"file"});
+    return InertiaFile{input_file(table, "file")};
+  }
+  auto const rows = entries(item, 3, 3, inertia_accepted);
+  if (!rows[0].node->is_array()) {
+    PrincipalMoments moments;
+    std::ranges::transform(rows, moments.begin(), positive_number);
+    return moments;
+  }
+  InertiaTensor tensor;
+  for (std::size_t row = 0; row < 3; ++row) {
+    auto const numbers = triple(rows[row]);
+    std::ranges::copy(numbers, tensor.begin() + 3 * static_cast<std::ptrdiff_t>(row));
+  }
+  constexpr double tolerance = 16 * std::numeric_limits<double>::epsilon();
+  if (auto const fault = inertia_fault(tensor, tolerance)) item.fail(*fault, inertia_accepted);
+  return tensor;
+}
+
+void refuse(Table const& table, std::string_view name, std::string_view kind) {
+  if (auto const item = table.find(name)) {
+    item->fail(fmt::format("has no meaning for kind = \"{}\"", kind), "no such key");
+  }
+}
+
+}  // namespace
+
+System read_system(Table const& root) {
+  auto const table = root.table("system", "a table [system]");
+  table.accept_only({"kind", "damping", "precession", "inertia"});
+  System system;
+  system.kind = word<SystemKind>(table.required("kind", built_words<SystemKind>()));
+  if (system.kind == SystemKind::llg) {
+    refuse(table, "inertia", "llg");
+    system.damping = non_negative_number(table.required("damping", "a number >= 0"));
+    if (auto const item = table.find("precession")) system.precession = boolean(*item);
+  } else {
+    refuse(table, "damping", "rigid_body");
+    refuse(table, "precession", "rigid_body");
+    system.inertia = read_inertia(table.required("inertia", inertia_accepted), table.scene());
+  }
+  return system;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include <cayspin/io/words.hpp>
+
+#include <array>
+
+namespace cayspin::io {
+namespace {
+
+constexpr bool later = false;
+
+constexpr auto system_kinds = std::to_array<Word<SystemKind>>({
+    {"llg", SystemKind::llg},
+    {"rigid_body", SystemKind::rigid_body},
+});
+
+constexpr auto boundary_kinds = std::to_array<Word<BoundaryKind>>({
+    {"open", BoundaryKind::open},
+    {"periodic", BoundaryKind::periodic},
+});
+
+constexpr auto methods = std::to_array<Word<Method>>({
+    {"euler", Method::euler},
+    {"implicit_euler", Method::implicit_euler, later},
+    {"heun", Method::heun, later},
+    {"rkmk4", Method::rkmk4},
+    {"rkmk4_as_printed", Method::rkmk4_as_printed},
+    {"series4", Method::series4, later},
+    {"series4_paper", Method::series4_paper, later},
+    {"ab2", Method::ab2, later},
+    {"implicit_midpoint", Method::implicit_midpoint, later},
+    {"classical_euler", Method::classical_euler},
+    {"classical_heun", Method::classical_heun},
+    {"classical_rk4", Method::classical_rk4},
+    {"projected_euler", Method::projected_euler},
+    {"projected_heun", Method::projected_heun},
+    {"projected_rk4", Method::projected_rk4},
+});
+
+constexpr auto generators = std::to_array<Word<Generator>>({
+    {"default", Generator::standard},
+    {"orthogonal", Generator::orthogonal},
+    {"tangent", Generator::tangent, later},
+});
+
+constexpr auto isotropies = std::to_array<Word<Isotropy>>({
+    {"zero", Isotropy::zero},
+    {"constant", Isotropy::constant},
+    {"analytic", Isotropy::analytic, later},
+    {"finite_difference", Isotropy::finite_difference, later},
+    {"finite_difference_backward", Isotropy::finite_difference_backward, later},
+    {"energy", Isotropy::energy, later},
+});
+
+constexpr auto rotations = std::to_array<Word<Rotation>>({
+    {"cayley", Rotation::cayley},
+    {"exponential", Rotation::exponential},
+});
+
+}  // namespace
+
+template <>
+std::span<Word<SystemKind> const> words() {
+  return system_kinds;
+}
+template <>
+std::span<Word<BoundaryKind> const> words() {
+  return boundary_kinds;
+}
+template <>
+std::span<Word<Method> const> words() {
+  return methods;
+}
+template <>
+std::span<Word<Generator> const> words() {
+  return generators;
+}
+template <>
+std::span<Word<Isotropy> const> words() {
+  return isotropies;
+}
+template <>
+std::span<Word<Rotation> const> words() {
+  return rotations;
+}
+
+bool is_classical(Method method) {
+  return method == Method::classical_euler || method == Method::classical_heun ||
+         method == Method::classical_rk4;
+}
+
+bool is_baseline(Method method) {
+  return is_classical(method) || method == Method::projected_euler ||
+         method == Method::projected_heun || method == Method::projected_rk4;
+}
+
+bool needs_cayley(Method method) {
+  return method == Method::rkmk4_as_printed || method == Method::series4 ||
+         method == Method::series4_paper;
+}
+
+}  // namespace cayspin::io
