@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# shellcheck shell=bash disable=SC2154
 # Sourced by bootstrap.sh. provide_kokkos sets kokkos_prefix: empty when CMake finds a Kokkos by
 # itself (CMAKE_PREFIX_PATH, Kokkos_ROOT), otherwise the one built here. A preset other than release
 # builds Kokkos inside its own tree and needs the source alone.

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# shellcheck shell=bash disable=SC2154
 # Sourced by bootstrap.sh. install_packages: the Debian packages that are missing.
 
 packages=(
