@@ -92,6 +92,9 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   read_coordinates(table, integrator);
   integrator.dt = positive_number(table.required("dt", "a number > 0"));
   integrator.steps = read_steps(table, integrator.dt);
+  if (!std::isfinite(static_cast<double>(integrator.steps) * integrator.dt)) {
+    table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");
+  }
   if (auto const item = table.find("energy_guard")) integrator.energy_guard = boolean(*item);
   if (auto const item = table.find("until_torque")) {
     if (kind == SystemKind::rigid_body) {

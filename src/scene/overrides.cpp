@@ -19,7 +19,7 @@ std::vector<std::string> split_path(std::string_view path) {
   for (char const c : path) {
     if (c == '.') {
       keys.emplace_back();
-    } else {
+    } else if (c != ' ') {
       keys.back() += c;
     }
   }

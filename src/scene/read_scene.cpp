@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -17,18 +16,22 @@ namespace {
 
 std::string read_text(std::filesystem::path const& path) {
   constexpr std::string_view accepted = "a readable TOML file";
+  constexpr std::size_t largest = std::size_t{16} << 20U;
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     detail::fail(path.string(), "", "is a folder", accepted);
   }
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text(largest + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
   if (!stream.is_open() || stream.bad()) {
     auto const reason = errno == 0 ? std::string("cannot be read")
                                    : "cannot be read: " + std::generic_category().message(errno);
     detail::fail(path.string(), "", reason, accepted);
   }
+  if (text.size() > largest) detail::fail(path.string(), "", "is larger than 16 MiB", accepted);
   return text;
 }
 

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5_file.hpp"
+#include "scene_file.hpp"
+
+#include <algorithm>
+
+namespace cayspin::io::test {
+namespace {
+
+constexpr InertiaTensor tensor = {2, 0.5, 0.25, 0.5, 3, -0.125, 0.25, -0.125, 4};
+
+// The product of a tensor and an inverse given as xx, yy, zz, xy, xz, yz.
+void expect_inverse(InertiaTensor const& a, std::array<double, 6> const& b) {
+  std::array<double, 9> const full = {b[0], b[3], b[4], b[3], b[1], b[5], b[4], b[5], b[2]};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      double sum = 0;
+      for (std::size_t n = 0; n < 3; ++n) sum += a[3 * row + n] * full[3 * n + column];
+      EXPECT_NEAR(sum, row == column ? 1 : 0, 1e-14);
+    }
+  }
+}
+
+TEST(Inertia, PrincipalMomentsAreADiagonalTensor) {
+  Folder const folder;
+  auto const scene = read_text(folder, body_scene, {"system.inertia=[1, 2, 4]"});
+  EXPECT_EQ(inertia(scene), (std::vector<InertiaTensor>{{1, 0, 0, 0, 2, 0, 0, 0, 4}}));
+  EXPECT_EQ(inverse_inertia(scene), (std::vector<std::array<double, 6>>{{1, 0.5, 0.25, 0, 0, 0}}));
+}
+
+TEST(Inertia, TensorIsInverted) {
+  Folder const folder;
+  auto const scene = read_text(folder, body_scene,
+                               {"system.inertia=[[2,0.5,0.25],[0.5,3,-0.125],[0.25,-0.125,4]]"});
+  EXPECT_EQ(inertia(scene), std::vector<InertiaTensor>{tensor});
+  auto const inverses = inverse_inertia(scene);
+  ASSERT_EQ(inverses.size(), 1U);
+  expect_inverse(tensor, inverses[0]);
+}
+
+std::vector<double> five_tensors() {
+  std::vector<double> values;
+  for (int body = 0; body < 5; ++body) {
+    for (auto const entry : tensor) values.push_back(entry * (body + 1));
+  }
+  return values;
+}
+
+TEST(Inertia, FileGivesEachBodyItsOwn) {
+  Folder const folder;
+  write_dataset(folder / "i.h5", "/inertia", {5, 3, 3}, five_tensors());
+  auto const scene = read_text(folder, body_scene, {"system.inertia={file=\"i.h5\"}"});
+  check_files(scene);
+  auto const tensors = inertia(scene);
+  auto const inverses = inverse_inertia(scene);
+  ASSERT_EQ(tensors.size(), 5U);
+  ASSERT_EQ(inverses.size(), 5U);
+  for (std::size_t body = 0; body < 5; ++body) {
+    EXPECT_EQ(tensors[body][4], 3.0 * static_cast<double>(body + 1));
+    expect_inverse(tensors[body], inverses[body]);
+  }
+}
+
+TEST(Inertia, WrongFilesAreRefusedInOneLine) {
+  Folder const folder;
+  auto bent = five_tensors();
+  bent[9 * 3 + 1] += 0.01;
+  auto negative = five_tensors();
+  negative[9 * 2] = -1;
+  auto infinite = five_tensors();
+  infinite[9] = 1 / 0.0;
+  write_dataset(folder / "shape.h5", "/inertia", {5, 9}, five_tensors());
+  write_dataset(folder / "count.h5", "/inertia", {1, 3, 3}, {tensor.begin(), tensor.end()});
+  write_dataset(folder / "name.h5", "/moments", {5, 3, 3}, five_tensors());
+  write_dataset(folder / "bent.h5", "/inertia", {5, 3, 3}, bent);
+  write_dataset(folder / "negative.h5", "/inertia", {5, 3, 3}, negative);
+  write_dataset(folder / "infinite.h5", "/inertia", {5, 3, 3}, infinite);
+  struct Case {
+    std::string file;
+    std::string message;
+  };
+  for (auto const& wrong : std::vector<Case>{
+           {"none.h5", "no such file"},
+           {"shape.h5", "dataset /inertia has the shape (5, 9); accepted: (5, 3, 3)"},
+           {"count.h5", "dataset /inertia has the shape (1, 3, 3); accepted: (5, 3, 3)"},
+           {"name.h5", "has no dataset /inertia"},
+           {"bent.h5", "body 3: the tensor is not symmetric"},
+           {"negative.h5", "body 2: the tensor is not positive definite"},
+           {"infinite.h5", "body 1: the tensor is not finite"}}) {
+    auto const assignment = "system.inertia={file=\"" + wrong.file + "\"}";
+    auto const scene = read_text(folder, body_scene, {assignment});
+    try {
+      inverse_inertia(scene);
+      FAIL() << wrong.file << " was accepted";
+    } catch (SceneError const& error) {
+      std::string const message = error.what();
+      EXPECT_TRUE(message.starts_with("--set " + assignment + ": system.inertia.file: "))
+          << message;
+      EXPECT_TRUE(message.ends_with(wrong.message)) << message;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::io::test

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5_file.hpp"
+#include "scene_file.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+namespace cayspin::io::test {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+std::vector<double> start(Folder const& folder, std::string const& initial,
+                          std::string const& shape = "[4, 3, 2]") {
+  return initial_spins(
+      read_text(folder, llg_scene, {"lattice={shape=" + shape + "}", "initial=" + initial}));
+}
+
+std::string start_refusal(Folder const& folder, std::string const& initial) {
+  try {
+    start(folder, initial);
+    return "the start was accepted";
+  } catch (SceneError const& error) {
+    return error.what();
+  }
+}
+
+TEST(Start, UniformIsTheNormalisedVectorEverywhere) {
+  Folder const folder;
+  auto const spins = start(folder, "{uniform=[3, 0, -4]}");
+  ASSERT_EQ(spins.size(), 72U);
+  for (std::size_t site = 0; site < 24; ++site) {
+    EXPECT_EQ(spins[3 * site], 0.6);
+    EXPECT_EQ(spins[3 * site + 1], 0);
+    EXPECT_EQ(spins[3 * site + 2], -0.8);
+  }
+}
+
+TEST(Start, NormalisesWithoutOverflowOrUnderflow) {
+  Folder const folder;
+  for (std::string const scale : {"1e308", "1e-308", "5e-324"}) {
+    auto const spins = start(folder, "{uniform=[" + scale + ", 0, " + scale + "]}", "[1]");
+    EXPECT_NEAR(spins[0], std::sqrt(0.5), 2 * eps) << scale;
+    EXPECT_EQ(spins[0], spins[2]) << scale;
+  }
+}
+
+TEST(Start, ExpressionsSeePositionAndIndexWithXFastest) {
+  Folder const folder;
+  auto const spins = start(folder, R"toml({expression=["1+i+10*x", "2+j+10*y", "3+k+10*z"]})toml");
+  std::size_t at = 0;
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 4; ++i, at += 3) {
+        Triple const m = {1 + i + 10 * (i + 0.5) / 4, 2 + j + 10 * (j + 0.5) / 3,
+                          3 + k + 10 * (k + 0.5) / 2};
+        double const norm = std::hypot(m[0], m[1], m[2]);
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(spins[at + c], m[c] / norm, 4 * eps);
+      }
+    }
+  }
+}
+
+TEST(Start, ExpressionThatFailsNamesTheSiteAndTheLine) {
+  Folder const folder;
+  EXPECT_TRUE(start_refusal(folder, R"toml({expression=["i-2", "j-1", "k"]})toml")
+                  .ends_with("initial.expression: the spin of site (2, 1, 0) is (0, 0, 0); "
+                             "accepted: a finite vector that is not zero"));
+  EXPECT_TRUE(start_refusal(folder, R"toml({expression=["1/(i-1)", "1", "1"]})toml")
+                  .ends_with("initial.expression: expression \"1/(i-1)\" is not finite at x = "
+                             "0.375, y = 0.16666666666666666, z = 0.25, i = 1, j = 0, k = 0"));
+  auto const scene = read_text(folder, replaced(llg_scene, "uniform = [0.3, 0.5, 0.8]",
+                                                "expression = [\"0\", \"0\", \"i\"]"));
+  try {
+    initial_spins(scene);
+    FAIL() << "accepted";
+  } catch (SceneError const& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(scene.path.string() + ":19: initial.expr"));
+  }
+}
+
+TEST(Start, RandomIsReproducibleAndFollowsTheSeed) {
+  Folder const folder;
+  auto const first = start(folder, "{random={seed=1}}");
+  EXPECT_EQ(first, start(folder, "{random={seed=1}}"));
+  EXPECT_NE(first, start(folder, "{random={seed=2}}"));
+  EXPECT_NE(first, start(folder, "{random={seed=-1}}"));
+  auto const longer = start(folder, "{random={seed=1}}", "[100]");
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), longer.begin()));
+}
+
+// With seed 0 the first value of SplitMix64 is 0xe220a8397b1dcdaf, published with the generator.
+TEST(Start, RandomStartsFromThePublishedSequence) {
+  Folder const folder;
+  double const u = std::ldexp(static_cast<double>(0xe220a8397b1dcdafULL >> 11U), -53);
+  EXPECT_NEAR(start(folder, "{random={seed=0}}", "[1]")[2], 2 * u - 1, 2 * eps);
+}
+
+// On the sphere a component c has <c> = 0, <c^2> = 1/3, <c^4> = 1/5, and <c d> = 0, <c^2 d^2> =
+// 1/15. Means of n sites then scatter by sqrt(1/3n), sqrt((1/5 - 1/9)/n) and sqrt(1/15n); the bound
+// is 5 of each.
+TEST(Start, RandomIsUniformOnTheSphere) {
+  Folder const folder;
+  constexpr std::size_t n = 100000;
+  for (std::string const seed : {"1", "2", "3"}) {
+    auto const spins = start(folder, "{random={seed=" + seed + "}}", "[100000]");
+    double mean[3] = {};
+    double second[3][3] = {};
+    double neighbor = 0;
+    for (std::size_t site = 0; site < n; ++site) {
+      auto const* const m = spins.data() + 3 * site;
+      EXPECT_NEAR(std::hypot(m[0], m[1], m[2]), 1, 4 * eps);
+      for (int c = 0; c < 3; ++c) {
+        mean[c] += m[c] / n;
+        for (int d = 0; d < 3; ++d) second[c][d] += m[c] * m[d] / n;
+        if (site > 0) neighbor += m[c] * m[c - 3] / n;
+      }
+    }
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_LT(std::abs(mean[c]), 5 * std::sqrt(1.0 / (3 * n)));
+      EXPECT_LT(std::abs(second[c][c] - 1.0 / 3), 5 * std::sqrt((1.0 / 5 - 1.0 / 9) / n));
+      EXPECT_LT(std::abs(second[c][(c + 1) % 3]), 5 * std::sqrt(1.0 / (15 * n)));
+    }
+    EXPECT_LT(std::abs(neighbor), 5 * std::sqrt(1.0 / (3 * n)));
+  }
+}
+
+TEST(Start, FileComesBackNormalised) {
+  Folder const folder;
+  auto const spins = start(folder, "{random={seed=7}}");
+  auto doubled = spins;
+  for (auto& value : doubled) value *= 2;
+  write_dataset(folder / "state.h5", "/spins", {2, 3, 4, 3}, doubled);
+  auto const back = start(folder, "{file=\"state.h5\"}");
+  ASSERT_EQ(back.size(), spins.size());
+  for (std::size_t n = 0; n < spins.size(); ++n) EXPECT_NEAR(back[n], spins[n], 2 * eps);
+}
+
+TEST(Start, FileOfFloatFramesGivesTheLastFrame) {
+  Folder const folder;
+  auto const last = start(folder, "{random={seed=7}}");
+  auto frames = start(folder, "{random={seed=8}}");
+  frames.insert(frames.end(), last.begin(), last.end());
+  write_dataset(folder / "state.h5", "/spins", {2, 2, 3, 4, 3}, frames, H5T_IEEE_F32LE);
+  auto const back = start(folder, "{file=\"state.h5\"}");
+  double const rounding = std::numeric_limits<float>::epsilon();
+  for (std::size_t n = 0; n < last.size(); ++n) EXPECT_NEAR(back[n], last[n], rounding);
+}
+
+TEST(Start, WrongFilesAreRefusedInOneLine) {
+  Folder const folder;
+  std::vector<double> const spins(72, 1);
+  auto zero = spins;
+  zero[15] = zero[16] = zero[17] = 0;
+  auto nan = spins;
+  nan[71] = std::nan("");
+  folder.write("text", "text.h5");
+  std::filesystem::create_directory(folder / "folder.h5");
+  write_dataset(folder / "other.h5", "/state", {2, 3, 4, 3}, spins);
+  write_dataset(folder / "shape.h5", "/spins", {4, 3, 2, 3}, spins);
+  write_dataset(folder / "flat.h5", "/spins", {72}, spins);
+  write_dataset(folder / "empty.h5", "/spins", {0, 2, 3, 4, 3}, {});
+  write_dataset(folder / "integer.h5", "/spins", {2, 3, 4, 3}, spins, H5T_STD_I32LE);
+  write_dataset(folder / "zero.h5", "/spins", {2, 3, 4, 3}, zero);
+  write_dataset(folder / "nan.h5", "/spins", {2, 3, 4, 3}, nan);
+  struct Case {
+    std::string file;
+    std::string message;
+    bool seen_unread;  ///< by check_files
+  };
+  for (auto const& wrong :
+       std::vector<Case>{{"none.h5", "no such file", true},
+                         {"text.h5", "cannot be opened as an HDF5 file", true},
+                         {"folder.h5", "not a regular file", true},
+                         {"other.h5", "has no dataset /spins", true},
+                         {"shape.h5",
+                          "dataset /spins has the shape (4, 3, 2, 3); accepted: (2, 3, 4, 3) or "
+                          "(frame, 2, 3, 4, 3)",
+                          true},
+                         {"flat.h5", "dataset /spins has the shape (72)", true},
+                         {"empty.h5", "dataset /spins has no frame", true},
+                         {"integer.h5", "dataset /spins is not of type float or double", true},
+                         {"zero.h5", "the spin of site (1, 1, 0) is (0, 0, 0)", false},
+                         {"nan.h5", "the spin of site (3, 2, 1) is (1, 1, nan)", false}}) {
+    auto const initial = "{file=\"" + wrong.file + "\"}";
+    testing::internal::CaptureStderr();
+    auto const message = start_refusal(folder, initial);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << wrong.file;
+    EXPECT_TRUE(message.starts_with("--set initial=" + initial + ": initial.file: ")) << message;
+    EXPECT_NE(message.find(wrong.message), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    auto const scene =
+        read_text(folder, llg_scene, {"lattice={shape=[4,3,2]}", "initial=" + initial});
+    if (wrong.seen_unread) {
+      EXPECT_THROW(check_files(scene), SceneError) << wrong.file;
+    } else {
+      EXPECT_NO_THROW(check_files(scene)) << wrong.file;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::io::test

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "scene_file.hpp"
+
+#include <cmath>
+
+namespace cayspin::io::test {
+namespace {
+
+constexpr std::string_view least_scene = R"toml([system]
+kind = "llg"
+damping = 0
+[lattice]
+shape = [100]
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "euler"
+dt = 0.01
+steps = 6000
+)toml";
+
+TEST(Scene, EveryKeyArrives) {
+  Folder const folder;
+  auto const scene = read_text(folder, llg_scene);
+  EXPECT_EQ(scene.system.kind, SystemKind::llg);
+  EXPECT_EQ(scene.system.damping, 0.05);
+  EXPECT_TRUE(scene.system.precession);
+  EXPECT_EQ(scene.lattice.shape, (std::array<std::int64_t, 3>{4, 3, 1}));
+  EXPECT_EQ(scene.lattice.spacing, (Triple{1, 0.5, 1}));
+  EXPECT_EQ(scene.lattice.boundary[0], BoundaryKind::open);
+  EXPECT_EQ(scene.lattice.boundary[1], BoundaryKind::periodic);
+  EXPECT_EQ(sites(scene), 12);
+  EXPECT_EQ(scene.field.exchange, 1.0);
+  ASSERT_EQ(scene.field.anisotropies.size(), 1U);
+  EXPECT_EQ(scene.field.anisotropies[0].constant, 1);
+  EXPECT_EQ(scene.field.anisotropies[0].axis, (Triple{0, 0, 1}));
+  ASSERT_TRUE(scene.field.applied);
+  EXPECT_EQ(std::get<double>((*scene.field.applied)[0]), 0.05);
+  EXPECT_EQ(std::get<std::string>((*scene.field.applied)[1]), "0.1*cos(t)");
+  EXPECT_EQ(std::get<double>((*scene.field.applied)[2]), 0);
+  EXPECT_TRUE(depends_on_time(scene));
+  ASSERT_TRUE(scene.field.slab_demag);
+  EXPECT_EQ(scene.field.slab_demag->normal, (Triple{1, 0, 0}));
+  EXPECT_EQ(scene.field.slab_demag->strength, 2);
+  EXPECT_FALSE(scene.field.slab_demag->average_layer);
+  EXPECT_FALSE(scene.field.slab_demag->on_host);
+  EXPECT_EQ(scene.field.mu0, 1.5);
+  EXPECT_EQ(scene.integrator.method, Method::rkmk4);
+  EXPECT_EQ(scene.integrator.steps, 6000);
+  EXPECT_EQ(scene.output.file, "slab.h5");
+  EXPECT_EQ(scene.output.every, 100);
+  EXPECT_EQ(scene.output.scalars_every, 100);
+  EXPECT_EQ(scene.path, folder / "scene.toml");
+}
+
+TEST(Scene, DefaultsAreTheDocumentedOnes) {
+  Folder const folder;
+  auto const scene = read_text(folder, least_scene);
+  EXPECT_TRUE(scene.system.precession);
+  EXPECT_EQ(scene.lattice.shape, (std::array<std::int64_t, 3>{100, 1, 1}));
+  EXPECT_EQ(scene.lattice.spacing, (Triple{1, 1, 1}));
+  for (auto const boundary : scene.lattice.boundary) EXPECT_EQ(boundary, BoundaryKind::open);
+  EXPECT_FALSE(scene.field.exchange);
+  EXPECT_TRUE(scene.field.anisotropies.empty());
+  EXPECT_FALSE(scene.field.applied);
+  EXPECT_FALSE(scene.field.slab_demag);
+  EXPECT_EQ(scene.field.mu0, 1);
+  EXPECT_FALSE(depends_on_time(scene));
+  EXPECT_EQ(scene.integrator.generator, Generator::standard);
+  EXPECT_EQ(scene.integrator.isotropy, Isotropy::zero);
+  EXPECT_EQ(scene.integrator.rotation, Rotation::cayley);
+  EXPECT_TRUE(scene.integrator.energy_guard);
+  EXPECT_FALSE(scene.integrator.until_torque);
+  EXPECT_FALSE(scene.output.file);
+  EXPECT_EQ(scene.output.every, 6000);
+  EXPECT_EQ(scene.output.scalars_every, 6000);
+}
+
+TEST(Scene, DemagnetizationStrengthDefaultsToOne) {
+  Folder const folder;
+  auto const text = replaced(llg_scene, "strength = 2", "average = \"layer\", where = \"host\"");
+  auto const slab = read_text(folder, text).field.slab_demag;
+  EXPECT_EQ(slab->strength, 1);
+  EXPECT_TRUE(slab->average_layer);
+  EXPECT_TRUE(slab->on_host);
+}
+
+TEST(Scene, WholeNumbersServeAsNumbers) {
+  Folder const folder;
+  auto const scene = read_text(folder, llg_scene,
+                               {"system.damping=1", "field.exchange=2", "field.mu0=3",
+                                "lattice.spacing=2", "integrator.dt=1", "integrator.end=60"});
+  EXPECT_EQ(scene.system.damping, 1);
+  EXPECT_EQ(scene.field.exchange, 2.0);
+  EXPECT_EQ(scene.lattice.spacing, (Triple{2, 2, 2}));
+  EXPECT_EQ(scene.integrator.steps, 60);
+}
+
+TEST(Scene, SeveralAnisotropiesAndOneBoundaryForAllAxes) {
+  Folder const folder;
+  auto const scene =
+      read_text(folder, llg_scene,
+                {"lattice.boundary=\"periodic\"",
+                 "field.anisotropy=[{constant=1,axis=[1,1,0]},{constant=-2,axis=[0,-3,0]}]"});
+  for (auto const boundary : scene.lattice.boundary) EXPECT_EQ(boundary, BoundaryKind::periodic);
+  ASSERT_EQ(scene.field.anisotropies.size(), 2U);
+  EXPECT_DOUBLE_EQ(scene.field.anisotropies[0].axis[1], std::sqrt(0.5));
+  EXPECT_EQ(scene.field.anisotropies[1].constant, -2);
+  EXPECT_EQ(scene.field.anisotropies[1].axis, (Triple{0, -1, 0}));
+}
+
+TEST(Scene, AFormulaWithoutTDoesNotDependOnTime) {
+  Folder const folder;
+  EXPECT_FALSE(depends_on_time(read_text(folder, llg_scene, {"field.applied=[\"2*pi\",0,1]"})));
+}
+
+TEST(Scene, IsotropyConstantCarriesSigma) {
+  Folder const folder;
+  auto const integrator =
+      read_text(folder, llg_scene, {"integrator.isotropy={constant=0.7}"}).integrator;
+  EXPECT_EQ(integrator.isotropy, Isotropy::constant);
+  EXPECT_EQ(integrator.sigma, 0.7);
+}
+
+TEST(Scene, EveryBuiltMethodIsAccepted) {
+  Folder const folder;
+  for (auto const& method : words<Method>()) {
+    auto const name = "\"" + std::string(method.name) + "\"";
+    auto const path = folder.write(replaced(least_scene, "\"euler\"", name));
+    if (method.built) {
+      EXPECT_EQ(read_scene(path).integrator.method, method.value);
+    } else {
+      EXPECT_TRUE(refusal(path)) << name;
+    }
+  }
+}
+
+TEST(Scene, EndIsAWholeNumberOfSteps) {
+  Folder const folder;
+  auto const steps = [&](std::string const& dt, std::string const& end) {
+    return read_text(folder, llg_scene, {"integrator.dt=" + dt, "integrator.end=" + end})
+        .integrator.steps;
+  };
+  EXPECT_EQ(steps("0.01", "60.0"), 6000);
+  EXPECT_EQ(steps("0.1", "0.3"), 3);
+  EXPECT_EQ(steps("0.1", "0"), 0);
+  EXPECT_EQ(steps("0.3", "0.9000000001"), 3);
+  EXPECT_EQ(steps("0.007", "7e6"), 1000000000);
+  EXPECT_EQ(steps("0.003333333333333333", "0.01"), 3);
+  EXPECT_THROW(steps("0.3", "0.900000001"), SceneError);
+  EXPECT_THROW(steps("0.3", "0.899999999"), SceneError);
+}
+
+TEST(Scene, ProposedStepsAreAccepted) {
+  Folder const folder;
+  auto const path = folder.write(llg_scene);
+  auto const message = *refusal(path, {"integrator.dt=0.013", "integrator.end=7.1"});
+  auto const at = message.find("accepted: dt = ") + 15;
+  auto const between = message.find(" or ", at);
+  for (auto const& dt : {message.substr(at, between - at), message.substr(between + 4)}) {
+    EXPECT_FALSE(refusal(path, {"integrator.dt=" + dt, "integrator.end=7.1"})) << dt;
+  }
+}
+
+TEST(Scene, NoStepsStillHaveAPeriod) {
+  Folder const folder;
+  auto const scene = read_text(folder, body_scene, {"integrator.steps=0"});
+  EXPECT_EQ(scene.integrator.steps, 0);
+  EXPECT_EQ(scene.output.every, 1);
+  EXPECT_EQ(scene.output.scalars_every, 1);
+}
+
+TEST(Scene, FilesLieBesideTheScene) {
+  Folder const folder;
+  auto const start = read_text(folder, llg_scene, {"initial={file=\"in/state.h5\"}"}).initial;
+  EXPECT_EQ(std::get<FileStart>(start).path, folder / "in/state.h5");
+  auto const absolute = read_text(folder, llg_scene, {"initial={file=\"/data/state.h5\"}"}).initial;
+  EXPECT_EQ(std::get<FileStart>(absolute).path, "/data/state.h5");
+}
+
+}  // namespace
+}  // namespace cayspin::io::test
