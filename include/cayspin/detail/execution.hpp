@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+namespace cayspin::detail {
+
+/// Host spaces run over rows with packs, device spaces with one thread per site.
+template <class Exec>
+inline constexpr bool is_host_execution =
+    std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
+
+template <class Exec, class MemorySpace>
+constexpr void check_access() {
+  static_assert(Kokkos::is_execution_space_v<Exec>,
+                "The first argument of a cayspin function is a Kokkos execution space instance.");
+  static_assert(bool(Kokkos::SpaceAccessibility<Exec, MemorySpace>::accessible),
+                "This execution space cannot reach the memory space of the field or View.");
+}
+
+template <class View>
+void require_extents(char const* where, View const& view, std::int64_t sites, int components) {
+  if (static_cast<std::int64_t>(view.extent(0)) != sites ||
+      static_cast<int>(view.extent(1)) != components)
+    throw std::invalid_argument(std::string(where) + ": the View is " +
+                                std::to_string(view.extent(0)) + " x " +
+                                std::to_string(view.extent(1)) + ", the field " +
+                                std::to_string(sites) + " x " + std::to_string(components));
+}
+
+inline void require_size(char const* where, std::size_t size, std::int64_t expected) {
+  if (static_cast<std::int64_t>(size) != expected)
+    throw std::invalid_argument(std::string(where) + ": " + std::to_string(size) +
+                                " numbers for a field of " + std::to_string(expected));
+}
+
+}  // namespace cayspin::detail

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/pack.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
+
+// Loads and stores of packs, and the few things that depend on processor or operating system:
+// non-temporal stores, huge pages, the size of the last cache.
+namespace cayspin::detail {
+
+template <class Value, class Real>
+KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    return static_cast<Value>(*from);
+  } else if constexpr (std::is_same_v<scalar_t<Value>, Real>) {
+    Value value;
+    value.copy_from(from, Kokkos::Experimental::simd_flag_default);
+    return value;
+  } else {
+    return Value([from](auto lane) { return static_cast<scalar_t<Value>>(from[lane()]); });
+  }
+}
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    *to = value;
+  } else {
+    value.copy_to(to, Kokkos::Experimental::simd_flag_default);
+  }
+}
+
+/// Writes past the caches. `to` is aligned to the pack.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Value>* to) {
+#if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<Value, Pack<double>>) {
+    _mm512_stream_pd(to, static_cast<__m512d>(value));
+    return;
+  } else if constexpr (std::is_same_v<Value, Pack<float>>) {
+    _mm512_stream_ps(to, static_cast<__m512>(value));
+    return;
+  }
+#elif defined(KOKKOS_ARCH_AVX2) && !defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<Value, Pack<double>>) {
+    _mm256_stream_pd(to, static_cast<__m256d>(value));
+    return;
+  } else if constexpr (std::is_same_v<Value, Pack<float>>) {
+    _mm256_stream_ps(to, static_cast<__m256>(value));
+    return;
+  }
+#endif
+  store(value, to);
+}
+
+/// Orders this thread's streaming stores before what it does next.
+inline void streaming_fence() {
+#if defined(__x86_64__)
+  _mm_sfence();
+#endif
+}
+
+inline std::size_t last_level_cache_bytes() {
+#if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
+  static std::size_t const bytes = [] {
+    long const reported = sysconf(_SC_LEVEL3_CACHE_SIZE);
+    return reported > 0 ? static_cast<std::size_t>(reported) : std::size_t(32) << 20;
+  }();
+  return bytes;
+#else
+  return std::size_t(32) << 20;
+#endif
+}
+
+/// Asks for 2 MiB pages inside [begin, begin + bytes); call before the memory is first touched.
+inline void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  constexpr std::uintptr_t page = std::uintptr_t(2) << 20;
+  auto const address = reinterpret_cast<std::uintptr_t>(begin);
+  std::uintptr_t const first = (address + page - 1) / page * page;
+  std::uintptr_t const last = (address + bytes) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
+}
+
+}  // namespace cayspin::detail

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Kokkos_Core.hpp>
+#include <Kokkos_SIMD.hpp>
+
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+#if defined(__x86_64__) && !defined(__CUDA_ARCH__)
+#include <immintrin.h>
+#endif
+
+// A Pack is what one iteration of a host loop works on: a register of Kokkos' SIMD types where the
+// configured architecture has one, otherwise one number. Device loops work on plain numbers. Every
+// operation the kernels need is overloaded here for both, so kernels are written once.
+namespace cayspin::detail {
+
+#if defined(KOKKOS_ARCH_AVX512XEON)
+#define CAYSPIN_DETAIL_SIMD_ABI avx512_fixed_size
+inline constexpr std::size_t register_bytes = 64;
+#elif defined(KOKKOS_ARCH_AVX2)
+#define CAYSPIN_DETAIL_SIMD_ABI avx2_fixed_size
+inline constexpr std::size_t register_bytes = 32;
+#elif defined(KOKKOS_ARCH_ARM_NEON)
+#define CAYSPIN_DETAIL_SIMD_ABI neon_fixed_size
+inline constexpr std::size_t register_bytes = 16;
+#endif
+
+#if defined(CAYSPIN_DETAIL_SIMD_ABI)
+template <std::floating_point Real>
+inline constexpr int host_lanes = static_cast<int>(register_bytes / sizeof(Real));
+#if KOKKOS_VERSION >= 40600
+template <std::floating_point Real, int Lanes>
+using Simd = Kokkos::Experimental::basic_simd<
+    Real, Kokkos::Experimental::simd_abi::CAYSPIN_DETAIL_SIMD_ABI<Lanes>>;
+#else
+template <std::floating_point Real, int Lanes>
+using Simd =
+    Kokkos::Experimental::simd<Real,
+                               Kokkos::Experimental::simd_abi::CAYSPIN_DETAIL_SIMD_ABI<Lanes>>;
+#endif
+template <std::floating_point Real>
+using Pack = Simd<Real, host_lanes<Real>>;
+#undef CAYSPIN_DETAIL_SIMD_ABI
+#else
+template <std::floating_point Real>
+inline constexpr int host_lanes = 1;
+template <std::floating_point Real>
+using Pack = Real;
+#endif
+
+template <class Value>
+struct ValueTraits {
+  using scalar = typename Value::value_type;
+  using mask = typename Value::mask_type;
+  static constexpr int lanes = static_cast<int>(Value::size());
+};
+template <std::floating_point Value>
+struct ValueTraits<Value> {
+  using scalar = Value;
+  using mask = bool;
+  static constexpr int lanes = 1;
+};
+template <class Value>
+using scalar_t = typename ValueTraits<Value>::scalar;
+template <class Value>
+inline constexpr int lanes_of = ValueTraits<Value>::lanes;
+
+/// a * b + c, rounded once wherever the hardware can.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, Value const& c) {
+  if constexpr (std::is_floating_point_v<Value>) {
+#if defined(__FMA__) || defined(__ARM_FEATURE_FMA) || defined(__CUDA_ARCH__) || \
+    defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
+    return Kokkos::fma(a, b, c);
+#else
+    return a * b + c;  // a library call per product would cost more than the rounding is worth
+#endif
+  } else {
+    return Kokkos::fma(a, b, c);
+  }
+}
+
+/// a * b - c, rounded once wherever the hardware can. (Kokkos' packs negate by subtracting from
+/// zero, which the compiler cannot fold into the product.)
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const& b,
+                                                    Value const& c) {
+#if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<Value, Pack<double>>) {
+    return Value(
+        _mm512_fmsub_pd(static_cast<__m512d>(a), static_cast<__m512d>(b), static_cast<__m512d>(c)));
+  } else if constexpr (std::is_same_v<Value, Pack<float>>) {
+    return Value(
+        _mm512_fmsub_ps(static_cast<__m512>(a), static_cast<__m512>(b), static_cast<__m512>(c)));
+  }
+#elif defined(KOKKOS_ARCH_AVX2) && !defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<Value, Pack<double>>) {
+    return Value(
+        _mm256_fmsub_pd(static_cast<__m256d>(a), static_cast<__m256d>(b), static_cast<__m256d>(c)));
+  } else if constexpr (std::is_same_v<Value, Pack<float>>) {
+    return Value(
+        _mm256_fmsub_ps(static_cast<__m256>(a), static_cast<__m256>(b), static_cast<__m256>(c)));
+  }
+#endif
+  return multiply_add(a, b, Value(-c));
+}
+
+/// Conditions are made with < and == alone: in Kokkos 4.7 the > and >= of 512-bit double packs
+/// compare the wrong way round, and != is false for NaN.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const& condition,
+                                         Value const& yes, Value const& no) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    return condition ? yes : no;
+  } else {
+    return Kokkos::Experimental::condition(condition, yes, no);
+  }
+}
+
+/// (Kokkos' pack of 512 bits takes a root through an intrinsic that g++ 12 calls uninitialised.)
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
+#if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<Value, Pack<double>>) {
+    return Value(_mm512_maskz_sqrt_pd(0xff, static_cast<__m512d>(a)));
+  } else if constexpr (std::is_same_v<Value, Pack<float>>) {
+    return Value(_mm512_maskz_sqrt_ps(0xffff, static_cast<__m512>(a)));
+  }
+#endif
+  return Kokkos::sqrt(a);
+}
+
+/// The nearest whole number, for |a| below half the largest that is exact; beyond it, a nearby one.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
+  Value const shift(sizeof(scalar_t<Value>) == sizeof(double)
+                        ? static_cast<scalar_t<Value>>(0x1.8p52)
+                        : static_cast<scalar_t<Value>>(0x1.8p23));
+  return (a + shift) - shift;
+}
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
+  return select<Value>(a < b, b, a);
+}
+
+/// 0, 1, 2, ... over the lanes.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value lane_numbers() {
+  if constexpr (std::is_floating_point_v<Value>) {
+    return Value(0);
+  } else {
+    return Value([](auto lane) { return static_cast<scalar_t<Value>>(lane()); });
+  }
+}
+
+}  // namespace cayspin::detail

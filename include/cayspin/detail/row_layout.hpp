@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/lattice/lattice.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cayspin::detail {
+
+inline constexpr std::int64_t cache_line_bytes = 64;
+
+/// Where sites lie in memory: one array per component, rows along x padded to whole packs, no ghost
+/// sites. Row pitch and component stride are odd numbers of cache lines once there is more than one
+/// row, so that neighbouring rows and components do not compete for the same cache sets.
+struct RowLayout {
+  std::int32_t nx = 0, ny = 0, nz = 0;
+  bool periodic[3] = {false, false, false};
+  std::ptrdiff_t pitch = 0;             // from row to row
+  std::ptrdiff_t component_stride = 0;  // from component to component
+  std::ptrdiff_t origin = 0;            // of site 0 in the allocation; a pack may read before it
+
+  template <class Real>
+  static RowLayout of(Lattice const& lattice) {
+    constexpr std::ptrdiff_t line = cache_line_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
+    auto const odd_lines = [](std::ptrdiff_t count) {
+      std::ptrdiff_t const lines = (count + line - 1) / line;
+      return (lines % 2 == 0 ? lines + 1 : lines) * line;
+    };
+    RowLayout layout;
+    layout.nx = static_cast<std::int32_t>(lattice.shape[0]);
+    layout.ny = static_cast<std::int32_t>(lattice.shape[1]);
+    layout.nz = static_cast<std::int32_t>(lattice.shape[2]);
+    for (int axis = 0; axis < 3; ++axis)
+      layout.periodic[axis] = lattice.boundary[axis] == Boundary::periodic;
+    std::ptrdiff_t const rows = std::ptrdiff_t(layout.ny) * layout.nz;
+    layout.pitch =
+        rows > 1 && layout.nx > line ? odd_lines(layout.nx) : (layout.nx + line - 1) / line * line;
+    layout.component_stride = odd_lines(rows * layout.pitch);
+    layout.origin = line;
+    return layout;
+  }
+
+  KOKKOS_FUNCTION std::int64_t rows() const { return std::int64_t(ny) * nz; }
+  KOKKOS_FUNCTION std::int64_t sites() const { return rows() * nx; }
+  std::size_t allocation(int components) const {
+    return static_cast<std::size_t>(2 * origin + components * component_stride);
+  }
+  KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
+    return site / nx * pitch + site % nx;
+  }
+};
+
+/// What a kernel holds of a field: component c of the site at `offset` is data[c * stride +
+/// offset].
+template <class Real, int Components>
+struct SiteArray {
+  using value_type = Real;
+  static constexpr int components = Components;
+  Real* data = nullptr;
+  std::ptrdiff_t stride = 0;
+};
+
+/// A SiteArray that a kernel only writes; `streaming` when it is larger than the caches.
+template <class Real, int Components>
+struct OutputArray : SiteArray<Real, Components> {
+  bool streaming = false;
+};
+
+}  // namespace cayspin::detail

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <type_traits>
+
+namespace cayspin::detail {
+
+/// A row along x and the way to its neighbour rows; an open end leads back to the row itself.
+struct Row {
+  std::ptrdiff_t offset;
+  std::ptrdiff_t to_neighbor[2][2];  // [axis - 1][previous, next], relative to `offset`
+  std::int32_t nx, y, z;
+  bool periodic_x;
+
+  KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int64_t row)
+      : offset(row * layout.pitch),
+        nx(layout.nx),
+        y(static_cast<std::int32_t>(row % layout.ny)),
+        z(static_cast<std::int32_t>(row / layout.ny)),
+        periodic_x(layout.periodic[0]) {
+    step(0, y, layout.ny, layout.pitch, layout.periodic[1]);
+    step(1, z, layout.nz, layout.pitch * layout.ny, layout.periodic[2]);
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION void step(int which, std::int32_t index, std::int32_t extent,
+                                        std::ptrdiff_t stride, bool periodic) {
+    std::ptrdiff_t const around = periodic ? (extent - 1) * stride : 0;
+    to_neighbor[which][0] = index > 0 ? -stride : around;
+    to_neighbor[which][1] = index + 1 < extent ? stride : -around;
+  }
+};
+
+/// The sites that one iteration works on: as many as Value has lanes, starting at x, in one row.
+/// AtEdge: they may hold the first or the last site of the row.
+template <class Value, bool AtEdge>
+class Site {
+ public:
+  using value_type = Value;
+  using scalar_type = scalar_t<Value>;
+  static constexpr int lanes = lanes_of<Value>;
+
+  KOKKOS_FORCEINLINE_FUNCTION Site(Row const& row, std::int32_t x) : row_(row), x_(x) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return x_; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return row_.z; }
+  KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t offset() const { return row_.offset + x_; }
+
+  /// 1 on lanes that are sites, 0 on lanes past the end of the row.
+  KOKKOS_FORCEINLINE_FUNCTION Value inside() const {
+    if constexpr (!AtEdge || lanes == 1) {
+      return Value(scalar_type(1));
+    } else {
+      return select<Value>(lane_numbers<Value>() < Value(static_cast<scalar_type>(row_.nx - x_)),
+                           Value(scalar_type(1)), Value(scalar_type(0)));
+    }
+  }
+
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 1> const& array) const {
+    return detail::load<Value>(array.data + offset());
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
+    return load_at(array, offset());
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 6> const& array, int component) const {
+    return detail::load<Value>(array.data + component * array.stride + offset());
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
+                                         OutputArray<Real, 3> const& array) const {
+    Real* const to = array.data + offset();
+    if (array.streaming) {
+      store_streaming(value.x, to);
+      store_streaming(value.y, to + array.stride);
+      store_streaming(value.z, to + 2 * array.stride);
+    } else {
+      detail::store(value.x, to);
+      detail::store(value.y, to + array.stride);
+      detail::store(value.z, to + 2 * array.stride);
+    }
+  }
+
+  /// The value one site back (direction 0) or on (direction 1) along an axis; at an open end, and
+  /// along an axis of extent 1, `center` itself.
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
+                                                   Vec3<Value> const& center) const {
+    if constexpr (Axis > 0) {
+      return load_at(array, offset() + row_.to_neighbor[Axis - 1][Direction]);
+    } else {
+      Vec3<Value> found = load_at(array, offset() + (Direction == 0 ? -1 : 1));
+      if constexpr (AtEdge) {
+        std::int32_t const lane = Direction == 0 ? -x_ : row_.nx - 1 - x_;  // with no neighbour
+        if (lane >= 0 && lane < lanes) {
+          std::ptrdiff_t const other_end = row_.offset + (Direction == 0 ? row_.nx - 1 : 0);
+          auto const here = lane_numbers<Value>() == Value(static_cast<scalar_type>(lane));
+          auto const wrap = [&](Value const& value, Value const& own, int component) {
+            Value const beyond =
+                row_.periodic_x
+                    ? Value(scalar_type(array.data[component * array.stride + other_end]))
+                    : own;
+            return select<Value>(here, beyond, value);
+          };
+          found = {wrap(found.x, center.x, 0), wrap(found.y, center.y, 1),
+                   wrap(found.z, center.z, 2)};
+        }
+      }
+      return found;
+    }
+  }
+
+ private:
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(SiteArray<Real, 3> const& array,
+                                                  std::ptrdiff_t offset) const {
+    Real const* const from = array.data + offset;
+    return {detail::load<Value>(from), detail::load<Value>(from + array.stride),
+            detail::load<Value>(from + 2 * array.stride)};
+  }
+
+  Row const& row_;
+  std::int32_t x_;
+};
+
+}  // namespace cayspin::detail

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/concepts.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <utility>
+
+namespace cayspin {
+
+/// The sum of field terms, composed by type: what is not listed is not computed.
+///
+/// A term is a plain struct with two device-callable templates,
+///   Vec3<Value> field(Stencil const&) const          H at the stencil's centre
+///   Value       energy_density(Stencil const&) const its share of E, with H = -dE/dm
+/// where Value = Stencil::value_type. A term that needs more than neighbours, or depends on time,
+/// has instead
+///   auto prepare(exec, spins, t) const
+/// which is called on the host before each stage and returns such a struct.
+template <class... Terms>
+class EffectiveField;
+
+template <>
+class EffectiveField<> {
+ public:
+  template <class Exec, class Spins>
+  EffectiveField prepare(Exec const&, Spins const&, double) const {
+    return {};
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
+    using Value = typename Stencil::value_type;
+    return {Value(0), Value(0), Value(0)};
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
+    return typename Stencil::value_type(0);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Stencil const&) const {
+    return typename Stencil::value_type(0);
+  }
+};
+
+template <class First, class... Rest>
+class EffectiveField<First, Rest...> {
+ public:
+  explicit EffectiveField(First first, Rest... rest)
+      : first_(std::move(first)), rest_(std::move(rest)...) {}
+
+  /// Every term made ready for one evaluation at time t.
+  template <class Exec, class Spins>
+  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+    return join(detail::prepare_term(first_, exec, spins, t), rest_.prepare(exec, spins, t));
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    check<Stencil>();
+    if constexpr (sizeof...(Rest) == 0) {
+      return first_.field(stencil);
+    } else {
+      return first_.field(stencil) + rest_.field(stencil);
+    }
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    check<Stencil>();
+    return first_.energy_density(stencil) + rest_.energy_density(stencil);
+  }
+
+  /// Sum of |energy density| over the terms: what round-off in the energy is proportional to.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    return Kokkos::abs(first_.energy_density(stencil)) + rest_.energy_magnitude(stencil);
+  }
+
+ private:
+  template <class...>
+  friend class EffectiveField;
+
+  EffectiveField(First first, EffectiveField<Rest...> rest)
+      : first_(std::move(first)), rest_(std::move(rest)) {}
+
+  template <class Prepared, class... Others>
+  static EffectiveField<Prepared, Others...> join(Prepared first, EffectiveField<Others...> rest) {
+    return EffectiveField<Prepared, Others...>::from(std::move(first), std::move(rest));
+  }
+  static EffectiveField from(First first, EffectiveField<Rest...> rest) {
+    EffectiveField joined(std::move(first), std::move(rest));
+    return joined;
+  }
+
+  template <class Stencil>
+  static constexpr void check() {
+    static_assert(detail::has_field<First, Stencil>,
+                  "A field term needs a const, device-callable template field(stencil) that "
+                  "returns Vec3<typename Stencil::value_type>, or a prepare(exec, spins, t) that "
+                  "returns such a term.");
+    static_assert(detail::has_energy_density<First, Stencil>,
+                  "A field term needs a const, device-callable template energy_density(stencil) "
+                  "that returns typename Stencil::value_type, with field = -d energy / d spin.");
+  }
+
+  First first_;
+  [[no_unique_address]] EffectiveField<Rest...> rest_;
+};
+
+template <class... Terms>
+EffectiveField(Terms...) -> EffectiveField<Terms...>;
+
+}  // namespace cayspin

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/stencil.hpp>
+
+namespace cayspin {
+
+/// Exchange with the nearest neighbours along each axis: H = A Lap(m), the second difference over
+/// existing neighbours, each divided by the axis' spacing squared.
+/// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
+class Exchange {
+ public:
+  Exchange(Lattice const& lattice, double constant) {
+    for (int axis = 0; axis < 3; ++axis)
+      coefficient_[axis] = lattice.has_neighbors(axis)
+                               ? constant / (lattice.spacing[axis] * lattice.spacing[axis])
+                               : 0.0;
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    if (coefficient_[0] != 0) h = second_difference<0>(stencil, h);
+    if (coefficient_[1] != 0) h = second_difference<1>(stencil, h);
+    if (coefficient_[2] != 0) h = second_difference<2>(stencil, h);
+    return h;
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value e(0);
+    if (coefficient_[0] != 0) e = bonds<0>(stencil, e);
+    if (coefficient_[1] != 0) e = bonds<1>(stencil, e);
+    if (coefficient_[2] != 0) e = bonds<2>(stencil, e);
+    return e;
+  }
+
+ private:
+  template <int Axis, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value scaled(double factor) const {
+    return Value(static_cast<detail::scalar_t<Value>>(factor * coefficient_[Axis]));
+  }
+
+  // previous + next - 2 center, in a form that is exactly zero where the three are equal.
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector second_difference(Stencil const& stencil,
+                                                       Vector const& sum) const {
+    using Value = typename Stencil::value_type;
+    Vector const both = stencil.template previous<Axis>() + stencil.template next<Axis>();
+    return multiply_add(scaled<Axis, Value>(1), multiply_add(Value(-2), stencil.center(), both),
+                        sum);
+  }
+
+  // Each site carries half of each of its bonds.
+  template <int Axis, class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value bonds(Stencil const& stencil, Value const& sum) const {
+    auto const back = stencil.template previous<Axis>() - stencil.center();
+    auto const on = stencil.template next<Axis>() - stencil.center();
+    return detail::multiply_add(scaled<Axis, Value>(0.25), Value(dot(back, back) + dot(on, on)),
+                                sum);
+  }
+
+  double coefficient_[3];
+};
+
+}  // namespace cayspin

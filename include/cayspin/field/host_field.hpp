@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <stdexcept>
+#include <utility>
+
+namespace cayspin {
+
+namespace detail {
+
+template <class Real>
+struct StoredField {
+  SiteArray<Real, 3> array;
+  double energy_factor;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    return stencil.site().load(array);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(static_cast<scalar_t<Value>>(energy_factor)) *
+           dot(stencil.center(), stencil.site().load(array));
+  }
+};
+
+}  // namespace detail
+
+/// A field that host code computes from all spins at once, through a mirror copy: the way to bring
+/// any non-local field (an FFT demag, a boundary-element solve). Before each stage the spins are
+/// copied to host memory, `solver(spins, field, t)` fills `field`, and that is copied back. Where
+/// spins live in host memory already, nothing is copied.
+///
+/// Solver: a callable void(SpinField<Real, HostSpace> const& spins, SpinField<Real, HostSpace>
+/// const& field, double t) with a member `degree`: 1 when H does not depend on m (E = -m.H), 2 when
+/// it is linear in m and symmetric (E = -m.H/2).
+template <class Spins, class Solver>
+class HostField {
+  using Real = typename Spins::value_type;
+  using HostSpins = SpinField<Real, Kokkos::HostSpace>;
+  static constexpr bool on_host = std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>;
+  static_assert(std::is_invocable_v<Solver const&, HostSpins const&, HostSpins const&, double>,
+                "HostField needs a solver callable as solver(host_spins, host_field, t) const.");
+  static_assert(Solver::degree == 1 || Solver::degree == 2,
+                "HostField's solver needs a static constexpr int degree: 1 for H independent of m, "
+                "2 for H linear in m.");
+
+ public:
+  HostField(Lattice const& lattice, Solver solver)
+      : solver_(std::move(solver)), field_("HostField::field", lattice) {
+    if constexpr (!on_host) {
+      host_spins_ = HostSpins("HostField::host_spins", lattice);
+      host_field_ = HostSpins("HostField::host_field", lattice);
+    }
+  }
+
+  template <class Exec>
+  detail::StoredField<Real> prepare(Exec const& exec, Spins const& spins, double t) const {
+    if (!(spins.lattice() == field_.lattice()))
+      throw std::invalid_argument("cayspin::HostField: made for another lattice");
+    if constexpr (on_host) {
+      exec.fence("cayspin::HostField: spins ready");
+      solver_(spins, field_, t);
+    } else {
+      Kokkos::deep_copy(exec, host_spins_.allocation(), spins.allocation());
+      exec.fence("cayspin::HostField: spins copied");
+      solver_(host_spins_, host_field_, t);
+      Kokkos::deep_copy(exec, field_.allocation(), host_field_.allocation());
+    }
+    return {field_.array(), Solver::degree == 1 ? -1.0 : -0.5};
+  }
+
+ private:
+  Solver solver_;
+  Spins field_;
+  HostSpins host_spins_, host_field_;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <cstdint>
+#include <stdexcept>
+
+namespace cayspin {
+
+namespace detail {
+
+/// The mean of one component over each plane normal to an axis, summed in a fixed order. Along x a
+/// task is a pack of planes, along y and z one plane.
+template <class Value, class Real>
+struct AverageLayers {
+  Real const* component;
+  RowLayout layout;
+  int axis;
+  double* averages;
+
+  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
+    if (axis == 0) {
+      std::int64_t const x = task * lanes_of<Value>;
+      Value sum(0.0);
+      for (std::int64_t row = 0; row < layout.rows(); ++row)
+        sum = sum + load<Value>(component + row * layout.pitch + x);
+      store(Value(sum * Value(1.0 / static_cast<double>(layout.rows()))), averages + x);
+    } else {
+      std::int64_t const first = axis == 1 ? task : task * layout.ny;
+      std::int64_t const step = axis == 1 ? layout.ny : 1;
+      std::int64_t const count = axis == 1 ? layout.nz : layout.ny;
+      double sum = 0;
+      for (std::int64_t i = 0; i < count; ++i) {
+        Real const* const row = component + (first + i * step) * layout.pitch;
+        for (std::int32_t x = 0; x < layout.nx; ++x) sum += row[x];
+      }
+      averages[task] = sum / (static_cast<double>(count) * layout.nx);
+    }
+  }
+};
+
+struct LayerField {
+  double const* averages;
+  int axis;
+  double strength;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const h = along<Value>(stencil.site());
+    Value const zero(0);
+    return {axis == 0 ? h : zero, axis == 1 ? h : zero, axis == 2 ? h : zero};
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto const m = stencil.center();
+    Value const m_along = axis == 0 ? m.x : axis == 1 ? m.y : m.z;
+    return Value(-0.5) * along<Value>(stencil.site()) * m_along;
+  }
+
+ private:
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION Value along(Site const& site) const {
+    Value const average =
+        axis == 0 ? load<Value>(averages + site.x())
+                  : Value(static_cast<scalar_t<Value>>(averages[axis == 1 ? site.y() : site.z()]));
+    return Value(static_cast<scalar_t<Value>>(-strength)) * average;
+  }
+};
+
+}  // namespace detail
+
+/// The demagnetising field of a layered slab: (m.n) is averaged over each plane of sites normal to
+/// n, an axis of the lattice: H = -strength <m.n> n, E = strength <m.n> (m.n) / 2 per site.
+template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+class LayerAveragedSlabDemag {
+ public:
+  /// `axis`: 0, 1 or 2 for a normal along x, y or z.
+  LayerAveragedSlabDemag(Lattice const& lattice, int axis, double strength = 1)
+      : axis_(checked(axis)),
+        strength_(strength),
+        shape_(lattice.shape),
+        averages_("cayspin::LayerAveragedSlabDemag::averages",
+                  static_cast<std::size_t>(lattice.shape[axis]) + detail::cache_line_bytes) {}
+
+  template <class Exec, class Real>
+  detail::LayerField prepare(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
+                             double) const {
+    if (spins.lattice().shape != shape_)
+      throw std::invalid_argument("cayspin::LayerAveragedSlabDemag: made for another lattice");
+    using Value = std::conditional_t<detail::is_host_execution<Exec>, detail::Pack<double>, double>;
+    constexpr std::int64_t lanes = detail::lanes_of<Value>;
+    std::int64_t const tasks = axis_ == 0 ? (shape_[0] + lanes - 1) / lanes : shape_[axis_];
+    auto const array = spins.array();
+    Kokkos::parallel_for(
+        "cayspin::LayerAveragedSlabDemag",
+        Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, tasks),
+        detail::AverageLayers<Value, Real>{array.data + axis_ * array.stride, spins.layout(), axis_,
+                                           averages_.data()});
+    return {averages_.data(), axis_, strength_};
+  }
+
+ private:
+  static int checked(int axis) {
+    if (axis < 0 || axis > 2)
+      throw std::invalid_argument("cayspin::LayerAveragedSlabDemag: the axis is 0, 1 or 2");
+    return axis;
+  }
+
+  int axis_;
+  double strength_;
+  std::array<std::int64_t, 3> shape_;
+  Kokkos::View<double*, MemorySpace> averages_;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/field/uniaxial_anisotropy.hpp>
+#include <cayspin/stencil.hpp>
+
+namespace cayspin {
+
+/// The demagnetising field of an infinite slab, spin by spin: H = -strength (m.n) n,
+/// E = strength (m.n)^2 / 2 per site. The normal n is normalised.
+class SlabDemag {
+ public:
+  explicit SlabDemag(Vec3<double> const& normal, double strength = 1)
+      : strength_(strength), normal_(normalized(normal, "cayspin::SlabDemag: the normal")) {}
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto const n = as_value<Value>(normal_);
+    return Value(strength<Value>(-1) * dot(stencil.center(), n)) * n;
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const along = dot(stencil.center(), as_value<Value>(normal_));
+    return strength<Value>(0.5) * along * along;
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value strength(double factor) const {
+    return Value(static_cast<detail::scalar_t<Value>>(factor * strength_));
+  }
+
+  double strength_;
+  Vec3<double> normal_;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace cayspin {
+
+/// A symmetric 3 x 3 matrix: xx, yy, zz, xy, xz, yz.
+using SymmetricTensor = std::array<double, 6>;
+
+namespace detail {
+
+template <class Value>
+struct SymmetricMatrix {
+  Value xx, yy, zz, xy, xz, yz;
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator*(Vec3<Value> const& m) const {
+    return {multiply_add(xx, m.x, multiply_add(xy, m.y, Value(xz * m.z))),
+            multiply_add(xy, m.x, multiply_add(yy, m.y, Value(yz * m.z))),
+            multiply_add(xz, m.x, multiply_add(yz, m.y, Value(zz * m.z)))};
+  }
+};
+
+template <class Matrix, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type half_quadratic_form(
+    Matrix const& b, Stencil const& stencil) {
+  using Value = typename Stencil::value_type;
+  return Value(0.5) * dot(stencil.center(), b * stencil.center());
+}
+
+}  // namespace detail
+
+/// Free rigid bodies of one inertia, by their body angular momentum m on the unit sphere:
+/// m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign corrected);
+/// E = <m, I^-1 m> / 2 per body. Lattice::chain(count) holds count independent bodies.
+class RigidBody {
+ public:
+  explicit RigidBody(SymmetricTensor const& inverse_inertia)
+      : xx_(inverse_inertia[0]),
+        yy_(inverse_inertia[1]),
+        zz_(inverse_inertia[2]),
+        xy_(inverse_inertia[3]),
+        xz_(inverse_inertia[4]),
+        yz_(inverse_inertia[5]) {
+    for (double const entry : inverse_inertia)
+      if (!std::isfinite(entry))
+        throw std::invalid_argument("cayspin::RigidBody: the inverse inertia must be finite");
+  }
+
+  /// From principal moments of inertia; none may be zero.
+  static RigidBody principal(double i1, double i2, double i3) {
+    return RigidBody(SymmetricTensor{1 / i1, 1 / i2, 1 / i3, 0, 0, 0});
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(-1) * (matrix<Value>() * stencil.center());
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    return detail::half_quadratic_form(matrix<typename Stencil::value_type>(), stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    return Kokkos::abs(energy_density(stencil));
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> matrix() const {
+    using Scalar = detail::scalar_t<Value>;
+    auto const value = [](double entry) { return Value(static_cast<Scalar>(entry)); };
+    return {value(xx_), value(yy_), value(zz_), value(xy_), value(xz_), value(yz_)};
+  }
+
+  double xx_, yy_, zz_, xy_, xz_, yz_;
+};
+
+/// Free rigid bodies, each with an inertia of its own: six numbers per body, ordered as
+/// SymmetricTensor.
+template <class Real, class MemorySpace>
+class RigidBodyEnsemble {
+ public:
+  using Tensors = SiteField<Real, 6, MemorySpace>;
+
+  explicit RigidBodyEnsemble(Tensors inverse_inertia) : tensors_(std::move(inverse_inertia)) {}
+
+  template <class Exec, class Spins>
+  auto prepare(Exec const&, Spins const& spins, double) const {
+    if (spins.lattice().shape != tensors_.lattice().shape)
+      throw std::invalid_argument(
+          "cayspin::RigidBodyEnsemble: one inertia tensor per body is needed, on the same lattice");
+    return Prepared{tensors_.array()};
+  }
+
+ private:
+  struct Prepared {
+    detail::SiteArray<Real, 6> tensors;
+
+    template <class Stencil>
+    KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
+        Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      return Value(-1) * (matrix<Value>(stencil.site()) * stencil.center());
+    }
+    template <class Stencil>
+    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+        Stencil const& stencil) const {
+      using Value = typename Stencil::value_type;
+      return detail::half_quadratic_form(matrix<Value>(stencil.site()), stencil);
+    }
+    template <class Stencil>
+    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+        Stencil const& stencil) const {
+      return Kokkos::abs(energy_density(stencil));
+    }
+    template <class Value, class Site>
+    KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> matrix(Site const& site) const {
+      return {site.load(tensors, 0), site.load(tensors, 1), site.load(tensors, 2),
+              site.load(tensors, 3), site.load(tensors, 4), site.load(tensors, 5)};
+    }
+  };
+
+  Tensors tensors_;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+
+#include <Kokkos_Timer.hpp>
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace cayspin {
+
+/// `steps` steps of length dt from `begin`; the time of step n is begin + n dt.
+struct Times {
+  double begin = 0, dt = 0;
+  std::int64_t steps = 0;
+
+  double at(std::int64_t step) const { return begin + static_cast<double>(step) * dt; }
+};
+
+/// Where an integration stands when an observer is called.
+struct Step {
+  std::int64_t number = 0;  // steps taken
+  double time = 0, dt = 0;
+  bool last = false;
+};
+
+/// What an observer may return to end an integration early. Observers that return nothing proceed.
+enum class Next { proceed, stop };
+
+/// What an integration did.
+struct Summary {
+  std::int64_t steps = 0;
+  std::int64_t evaluations = 0;  // of the generator
+  double step_seconds = 0;       // stepping alone: fenced, without observers
+  bool stopped = false;          // by an observer
+};
+
+/// Calls an observer every `period` steps, and at the first and last step.
+template <class Observer>
+class Every {
+ public:
+  Every(std::int64_t period, Observer observer) : period_(period), observer_(std::move(observer)) {
+    if (period < 1) throw std::invalid_argument("cayspin::Every: the period must be at least 1");
+  }
+
+  bool due(Step const& step) const { return step.last || step.number % period_ == 0; }
+
+  template <class Exec, class Spins>
+  auto operator()(Exec const& exec, Step const& step, Spins const& spins) {
+    return observer_(exec, step, spins);
+  }
+
+ private:
+  std::int64_t period_;
+  Observer observer_;
+};
+
+namespace detail {
+
+template <class Observer>
+bool is_due(Observer const& observer, Step const& step) {
+  if constexpr (requires {
+                  { observer.due(step) } -> std::convertible_to<bool>;
+                })
+    return observer.due(step);
+  else
+    return true;
+}
+
+template <class Exec, class Observer, class Spins>
+Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const& spins) {
+  static_assert(std::is_invocable_v<Observer&, Exec const&, Step const&, Spins const&>,
+                "An observer is called as observer(exec, Step, spins).");
+  if (!is_due(observer, step)) return Next::proceed;
+  using Result = std::invoke_result_t<Observer&, Exec const&, Step const&, Spins const&>;
+  if constexpr (std::is_same_v<Result, Next>) {
+    return observer(exec, step, spins);
+  } else {
+    static_assert(std::is_void_v<Result>,
+                  "An observer returns nothing, or cayspin::Next to say whether to go on.");
+    observer(exec, step, spins);
+    return Next::proceed;
+  }
+}
+
+}  // namespace detail
+
+/// Advances `spins` over `times`. Observers see the state before the first step and after each one.
+/// Returns what was done; `spins` holds the state at the end, and the work has finished.
+/// Throws std::invalid_argument when dt is not finite or steps is negative.
+template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
+Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
+                  Times const& times, Observers&&... observers) {
+  static_assert(std::is_same_v<Spins, typename Stepper::spins_type>,
+                "The stepper was made for another type of spin field.");
+  if (!std::isfinite(times.dt) || !std::isfinite(times.begin))
+    throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
+  if (times.steps < 0)
+    throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
+
+  Summary summary;
+  Kokkos::Timer clock;
+  exec.fence("cayspin::integrate: begin");
+  clock.reset();
+  for (std::int64_t number = 0;; ++number) {
+    Step const now{number, times.at(number), times.dt, number == times.steps};
+    if ((detail::is_due(observers, now) || ...) || now.last) {
+      exec.fence("cayspin::integrate: observers");
+      summary.step_seconds += clock.seconds();
+      bool const stop =
+          ((detail::observe(exec, observers, now, spins) == Next::stop) | ... | false);
+      if (now.last || stop) {
+        summary.stopped = stop && !now.last;
+        break;
+      }
+      clock.reset();
+    }
+    stepper.step(exec, generator, spins, now.time, times.dt);
+    ++summary.steps;
+    summary.evaluations += Stepper::evaluations;
+  }
+  return summary;
+}
+
+}  // namespace cayspin

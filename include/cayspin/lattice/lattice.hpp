@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace cayspin {
+
+/// open: a missing neighbour adds nothing (Neumann). periodic: the axis closes on itself.
+enum class Boundary { open, periodic };
+
+/// A simple lattice of sites in one, two or three dimensions, x fastest. An axis of extent 1 has no
+/// neighbours; a periodic axis of extent 2 has its other site twice.
+struct Lattice {
+  std::array<std::int64_t, 3> shape{1, 1, 1};
+  std::array<double, 3> spacing{1, 1, 1};
+  std::array<Boundary, 3> boundary{Boundary::open, Boundary::open, Boundary::open};
+
+  static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
+    return {{nx, 1, 1}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
+  }
+  static Lattice square(std::int64_t nx, std::int64_t ny, double spacing = 1,
+                        Boundary boundary = Boundary::open) {
+    return {{nx, ny, 1}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
+  }
+  static Lattice cubic(std::int64_t nx, std::int64_t ny, std::int64_t nz, double spacing = 1,
+                       Boundary boundary = Boundary::open) {
+    return {{nx, ny, nz}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
+  }
+
+  std::int64_t sites() const { return shape[0] * shape[1] * shape[2]; }
+  bool has_neighbors(int axis) const { return shape[axis] > 1; }
+
+  friend bool operator==(Lattice const&, Lattice const&) = default;
+
+  /// Throws std::invalid_argument naming the first extent or spacing that no lattice can have.
+  void validate() const {
+    for (int axis = 0; axis < 3; ++axis) {
+      std::string const which(1, "xyz"[axis]);
+      if (shape[axis] < 1 || shape[axis] > std::numeric_limits<std::int32_t>::max() / 4)
+        throw std::invalid_argument("cayspin::Lattice: the extent along " + which + " is " +
+                                    std::to_string(shape[axis]) + "; it must be 1 .. 536870911");
+      if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]))
+        throw std::invalid_argument("cayspin::Lattice: the spacing along " + which +
+                                    " must be positive and finite");
+    }
+    if (static_cast<double>(shape[0]) * static_cast<double>(shape[1]) *
+            static_cast<double>(shape[2]) >
+        1e15)
+      throw std::invalid_argument("cayspin::Lattice: more than 1e15 sites");
+  }
+};
+
+}  // namespace cayspin

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/vec3.hpp>
+
+namespace cayspin {
+
+/// The Cayley map of so(3), in coordinates f whose rotation is about f by 2 atan(|f|/2).
+/// Lewis and Nigam 2002, Sec. 3; right-trivialised differential.
+struct Cayley {
+  /// cay(f) m. Right to a few ulp up to |f| about 1e150 (double), 1e18 (float).
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
+                                                        Vec3<Value> const& m) {
+    Vec3<Value> const h = Value(0.5) * f;
+    Vec3<Value> const c = cross(h, m);
+    // Written as m plus a small change: the quotient form of the same map drifts off the sphere.
+    return multiply_add(Value(Value(2) / (Value(1) + dot(h, h))), c + cross(h, c), m);
+  }
+
+  /// dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4)
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> tangent(Vec3<Value> const& f,
+                                                         Vec3<Value> const& y) {
+    Vec3<Value> const h = Value(0.5) * f;
+    return Value(Value(1) / (Value(1) + dot(h, h))) * (y + cross(h, y));
+  }
+
+  /// dcay_f^-1 y = y - f x y / 2 + f <f, y> / 4
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_tangent(Vec3<Value> const& f,
+                                                                 Vec3<Value> const& y) {
+    Vec3<Value> const h = Value(0.5) * f;
+    return multiply_add(dot(h, y), h, y - cross(h, y));
+  }
+};
+
+/// The same map for any finite f: nothing overflows on the way to the result. Somewhat slower.
+struct OverflowSafeCayley : Cayley {
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
+                                                        Vec3<Value> const& m) {
+    Vec3<Value> const h = Value(0.5) * f;
+    Value const t = Value(1) / largest_or_one(h);
+    Vec3<Value> const p = t * h;
+    Vec3<Value> const c = cross(p, m);
+    Value const scale = Value(2) / detail::multiply_add(t, t, dot(p, p));
+    return multiply_add(scale, multiply_add(t, c, cross(p, c)), m);
+  }
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> tangent(Vec3<Value> const& f,
+                                                         Vec3<Value> const& y) {
+    Vec3<Value> const h = Value(0.5) * f;
+    Value const t = Value(1) / largest_or_one(h);
+    Vec3<Value> const p = t * h;
+    Value const scale = t / detail::multiply_add(t, t, dot(p, p));
+    return scale * multiply_add(t, y, cross(p, y));
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value largest_or_one(Vec3<Value> const& h) {
+    Value const yz = detail::maximum<Value>(Kokkos::abs(h.y), Kokkos::abs(h.z));
+    return detail::maximum<Value>(Value(1), detail::maximum<Value>(Kokkos::abs(h.x), yz));
+  }
+};
+
+}  // namespace cayspin

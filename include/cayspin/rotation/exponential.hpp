@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/half_angle.hpp>
+#include <cayspin/vec3.hpp>
+
+namespace cayspin {
+
+/// The exponential map of so(3) (Rodrigues' rotation): about f by |f|. Vectorises: no library sine.
+/// On the sphere for every finite f; the angle itself is known to about eps |f|, so beyond
+/// |f| = 1/eps the result is some point on the circle.
+struct Exponential {
+  /// exp(f) m
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
+                                                        Vec3<Value> const& m) {
+    auto const half = detail::half_angle(f);
+    // The unit quaternion (cosine, v) turns m by m + 2 (cosine v x m + v x (v x m)).
+    Vec3<Value> const v = half.sine * half.direction;
+    Vec3<Value> const c = cross(v, m);
+    return multiply_add(Value(2), multiply_add(half.cosine, c, cross(v, c)), m);
+  }
+
+  /// dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_tangent(Vec3<Value> const& f,
+                                                                 Vec3<Value> const& y) {
+    Vec3<Value> const c = cross(f, y);
+    return multiply_add(detail::inverse_tangent_coefficient(f), cross(f, c),
+                        multiply_add(Value(-0.5), c, y));
+  }
+};
+
+}  // namespace cayspin

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <concepts>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cayspin {
+
+namespace detail {
+
+template <class Real>
+struct FillRows {
+  Real* data;
+  RowLayout layout;
+  int components;
+  Real last_component;
+  KOKKOS_FUNCTION void operator()(std::int64_t row) const {
+    for (int c = 0; c < components; ++c) {
+      Real const value = c + 1 == components ? last_component : Real(0);
+      Real* const begin = data + layout.origin + c * layout.component_stride + row * layout.pitch;
+      for (std::ptrdiff_t x = 0; x < layout.pitch; ++x) begin[x] = value;
+    }
+  }
+};
+
+template <class View, class Real, int Components, bool ToField>
+struct CopySites {
+  View view;
+  SiteArray<Real, Components> array;
+  RowLayout layout;
+  KOKKOS_FUNCTION void operator()(std::int64_t site) const {
+    std::ptrdiff_t const offset = layout.offset(site);
+    for (int c = 0; c < Components; ++c) {
+      Real& here = array.data[c * array.stride + offset];
+      if constexpr (ToField) {
+        here = static_cast<Real>(view(site, c));
+      } else {
+        view(site, c) = here;
+      }
+    }
+  }
+};
+
+}  // namespace detail
+
+/// Components numbers on every site of a lattice, each component an array of its own (RowLayout).
+/// A handle: copies share the memory, as copies of a Kokkos::View do.
+template <std::floating_point Real, int Components,
+          class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+class SiteField {
+  static_assert(!std::is_same_v<Real, long double>, "cayspin fields hold float or double.");
+
+ public:
+  using value_type = Real;
+  using memory_space = MemorySpace;
+  using array_type = detail::SiteArray<Real, Components>;
+  static constexpr int components = Components;
+
+  SiteField() = default;
+
+  /// Allocates; every site starts as (0, .., 0, last_component).
+  SiteField(std::string const& label, Lattice const& lattice, Real last_component = Real(0))
+      : lattice_(validated(lattice)),
+        layout_(detail::RowLayout::of<Real>(lattice)),
+        data_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + label),
+              layout_.allocation(Components)) {
+    using Exec = typename MemorySpace::execution_space;
+    if constexpr (detail::is_host_execution<Exec>)
+      detail::advise_huge_pages(data_.data(), data_.size() * sizeof(Real));
+    Exec const exec;
+    Kokkos::parallel_for(
+        "cayspin::SiteField::fill",
+        Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, layout_.rows()),
+        detail::FillRows<Real>{data_.data(), layout_, Components, last_component});
+    fill_margins(exec);
+    exec.fence("cayspin::SiteField: filled");
+  }
+
+  Lattice const& lattice() const { return lattice_; }
+  detail::RowLayout const& layout() const { return layout_; }
+  std::int64_t sites() const { return layout_.sites(); }
+  std::size_t bytes() const { return data_.size() * sizeof(Real); }
+  std::string label() const { return data_.label(); }
+
+  /// What kernels take.
+  array_type array() const { return {data_.data() + layout_.origin, layout_.component_stride}; }
+  detail::OutputArray<Real, Components> output(bool streaming) const {
+    return {array(), streaming};
+  }
+  /// The allocation, for deep copies between fields of one lattice.
+  Kokkos::View<Real*, MemorySpace> const& allocation() const { return data_; }
+
+  /// The numbers of one site, for host code on fields in host memory.
+  Vec3<Real> get(std::int64_t site) const
+      requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
+    Real const* const from = data_.data() + layout_.origin + layout_.offset(site);
+    return {from[0], from[layout_.component_stride], from[2 * layout_.component_stride]};
+  }
+  void set(std::int64_t site, Vec3<Real> const& value) const
+      requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
+    Real* const to = data_.data() + layout_.origin + layout_.offset(site);
+    to[0] = value.x;
+    to[layout_.component_stride] = value.y;
+    to[2 * layout_.component_stride] = value.z;
+  }
+
+  friend void swap(SiteField& a, SiteField& b) noexcept {
+    std::swap(a.lattice_, b.lattice_);
+    std::swap(a.layout_, b.layout_);
+    std::swap(a.data_, b.data_);
+  }
+
+ private:
+  static Lattice const& validated(Lattice const& lattice) {
+    lattice.validate();
+    return lattice;
+  }
+
+  // Packs at the ends of the first and last row, and between components, read a few numbers that
+  // belong to no site; they are discarded, but must not trap or be denormal.
+  template <class Exec>
+  void fill_margins(Exec const& exec) const {
+    auto const fill = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+      Kokkos::deep_copy(exec, Kokkos::subview(data_, std::pair(begin, end)), Real(0));
+    };
+    std::ptrdiff_t const used = layout_.rows() * layout_.pitch;
+    fill(0, layout_.origin);
+    for (int c = 0; c < Components; ++c)
+      fill(layout_.origin + c * layout_.component_stride + used,
+           layout_.origin + (c + 1) * layout_.component_stride);
+    fill(layout_.origin + Components * layout_.component_stride,
+         static_cast<std::ptrdiff_t>(data_.size()));
+  }
+
+  Lattice lattice_;
+  detail::RowLayout layout_;
+  Kokkos::View<Real*, MemorySpace> data_;
+};
+
+/// One number per site, for example a coefficient.
+template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+using ScalarField = SiteField<Real, 1, MemorySpace>;
+
+/// A unit vector per site; starts as +z everywhere.
+template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+class SpinField : public SiteField<Real, 3, MemorySpace> {
+ public:
+  SpinField() = default;
+  SpinField(std::string const& label, Lattice const& lattice)
+      : SiteField<Real, 3, MemorySpace>(label, lattice, Real(1)) {}
+};
+
+/// Copies a View of extents (sites, Components), x fastest, into a field.
+/// Throws std::invalid_argument when the extents differ.
+template <class Exec, class View, class Real, int Components, class MemorySpace>
+void copy(Exec const& exec, View const& from, SiteField<Real, Components, MemorySpace> const& to) {
+  static_assert(View::rank() == 2, "cayspin::copy takes a View of rank 2: (sites, components).");
+  detail::check_access<Exec, MemorySpace>();
+  detail::check_access<Exec, typename View::memory_space>();
+  detail::require_extents("cayspin::copy", from, to.sites(), Components);
+  Kokkos::parallel_for(
+      "cayspin::copy",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, to.sites()),
+      detail::CopySites<View, Real, Components, true>{from, to.array(), to.layout()});
+}
+
+/// Copies a field into a View of extents (sites, Components), x fastest.
+/// Throws std::invalid_argument when the extents differ.
+template <class Exec, class View, class Real, int Components, class MemorySpace>
+void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from, View const& to) {
+  static_assert(View::rank() == 2, "cayspin::copy takes a View of rank 2: (sites, components).");
+  detail::check_access<Exec, MemorySpace>();
+  detail::check_access<Exec, typename View::memory_space>();
+  detail::require_extents("cayspin::copy", to, from.sites(), Components);
+  Kokkos::parallel_for(
+      "cayspin::copy",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, from.sites()),
+      detail::CopySites<View, Real, Components, false>{to, from.array(), from.layout()});
+}
+
+/// Reads numbers in host memory, (sites, Components) with x fastest, into a field; waits.
+template <class Number, class Real, int Components, class MemorySpace>
+void copy_from_host(std::vector<Number> const& from,
+                    SiteField<Real, Components, MemorySpace> const& to) {
+  detail::require_size("cayspin::copy_from_host", from.size(), to.sites() * Components);
+  using Exec = typename MemorySpace::execution_space;
+  Kokkos::View<Number const* [Components], Kokkos::LayoutRight, Kokkos::HostSpace,
+               Kokkos::MemoryUnmanaged> const host(from.data(), to.sites());
+  auto const there = Kokkos::create_mirror_view_and_copy(MemorySpace(), host);
+  Exec const exec;
+  copy(exec, there, to);
+  exec.fence("cayspin::copy_from_host");
+}
+
+/// The field's numbers in host memory, (sites, Components) with x fastest; waits.
+template <class Real, int Components, class MemorySpace>
+std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& from) {
+  using Exec = typename MemorySpace::execution_space;
+  std::vector<Real> numbers(static_cast<std::size_t>(from.sites()) * Components);
+  Kokkos::View<Real* [Components], Kokkos::LayoutRight, Kokkos::HostSpace,
+               Kokkos::MemoryUnmanaged> const host(numbers.data(), from.sites());
+  auto const there = Kokkos::create_mirror_view(MemorySpace(), host);
+  Exec const exec;
+  copy(exec, from, there);
+  Kokkos::deep_copy(exec, host, there);
+  exec.fence("cayspin::copy_to_host");
+  return numbers;
+}
+
+}  // namespace cayspin

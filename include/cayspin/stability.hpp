@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/rotation/exponential.hpp>
+#include <cayspin/stepper/update.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+// The largest stable time step of a method for the Landau-Lifshitz equation, known before a run:
+// the method's own stages act on one transverse mode of a nearly uniform state,
+// u' = s (-damping + i) u, with a parallel part sigma in the generator.
+namespace cayspin {
+
+namespace detail {
+
+using Complex = std::complex<double>;
+
+/// Lie-algebra coordinates of a spin near the axis, across the spin (first order in the mode's
+/// amplitude) and along it (zeroth order).
+struct NearAxis {
+  Complex transverse{0, 0};
+  double parallel = 0;
+};
+
+inline NearAxis operator+(NearAxis const& a, NearAxis const& b) {
+  return {a.transverse + b.transverse, a.parallel + b.parallel};
+}
+inline NearAxis operator*(double s, NearAxis const& a) {
+  return {s * a.transverse, s * a.parallel};
+}
+
+template <class Update>
+struct LinearUpdate;
+
+// The transverse part of f x y.
+inline Complex transverse_cross(NearAxis const& f, NearAxis const& y) {
+  return Complex(0, 1) * (f.parallel * y.transverse - y.parallel * f.transverse);
+}
+
+template <>
+struct LinearUpdate<update::Lie<Cayley>> {
+  static NearAxis increment(NearAxis const& f, NearAxis const& y, Complex, Complex) {
+    return {
+        y.transverse - 0.5 * transverse_cross(f, y) + 0.25 * f.parallel * y.parallel * f.transverse,
+        y.parallel * (1 + 0.25 * f.parallel * f.parallel)};
+  }
+  /// Amplitude after the move, less one.
+  static Complex growth(NearAxis const& f) {
+    return Complex(0, -1) * f.transverse / Complex(1, -0.5 * f.parallel);
+  }
+};
+
+template <>
+struct LinearUpdate<update::LieAsPrinted<Cayley>> : LinearUpdate<update::Lie<Cayley>> {};
+
+template <>
+struct LinearUpdate<update::Lie<Exponential>> {
+  static NearAxis increment(NearAxis const& f, NearAxis const& y, Complex, Complex) {
+    double const n = f.parallel, half = 0.5 * n;
+    double const c =
+        std::abs(n) < 1e-2 ? 1. / 12 + n * n / 720 : (1 - half / std::tan(half)) / (n * n);
+    return {y.transverse - 0.5 * transverse_cross(f, y) +
+                c * n * (y.parallel * f.transverse - n * y.transverse),
+            y.parallel};
+  }
+  static Complex growth(NearAxis const& f) {
+    double const n = f.parallel, half = 0.5 * n;
+    Complex const mean =  // (exp(i n) - 1) / (i n)
+        std::polar(std::abs(n) < 1e-8 ? 1.0 : std::sin(half) / half, half);
+    return Complex(0, -1) * f.transverse * mean;
+  }
+};
+
+template <bool Renormalise>
+struct LinearUpdate<update::Classical<Renormalise>> {
+  static NearAxis increment(NearAxis const&, NearAxis const&, Complex z, Complex amplitude) {
+    return {z * amplitude, 0};
+  }
+  static Complex growth(NearAxis const& f) { return f.transverse; }
+};
+
+/// One step on the mode: its factor less one. z = dt s (-damping + i), q = dt sigma.
+template <class Tableau, class Update>
+Complex mode_growth(Complex z, double q) {
+  using Linear = LinearUpdate<Update>;
+  constexpr int stages = Tableau::stages;
+  std::array<NearAxis, stages> increments, kept;
+  for (int stage = 0; stage < stages; ++stage) {
+    NearAxis argument;
+    for (int j = 0; j < stage; ++j) argument = argument + Tableau::a[stage][j] * kept[j];
+    Complex const growth = Linear::growth(argument);
+    NearAxis const generator{Complex(0, 1) * z * (1.0 + growth) + q * growth, q};
+    increments[stage] = Linear::increment(argument, generator, z, 1.0 + growth);
+    kept[stage] = Update::keeps_generators ? generator : increments[stage];
+  }
+  NearAxis total;
+  for (int j = 0; j < stages; ++j) total = total + Tableau::b[j] * increments[j];
+  return Linear::growth(total);
+}
+
+template <class Tableau, class Update>
+bool amplifies(Complex rate, double dt, double sigma) {
+  Complex const growth = mode_growth<Tableau, Update>(dt * rate, dt * sigma);
+  double const excess = 2 * growth.real() + std::norm(growth);  // |1 + growth|^2 - 1
+  double const size = 4 * std::numeric_limits<double>::epsilon() * std::abs(growth);
+  // Round-off is relative to |growth|^2 without sigma, to |growth| with it.
+  return !(excess < (sigma == 0 ? -size * std::abs(growth) : size));
+}
+
+/// The smallest dt below `limit` at which a mode of this rate grows; `limit` when there is none,
+/// 0 when every dt down to 1e-9 of the mode's time amplifies.
+template <class Tableau, class Update>
+double first_amplifying_step(Complex rate, double sigma, double limit) {
+  auto const grows = [&](double dt) { return amplifies<Tableau, Update>(rate, dt, sigma); };
+  double const unit = 1 / std::abs(rate);
+  double stable = 1e-3 * unit, unstable = stable;
+  if (stable >= limit) return limit;
+  if (grows(stable)) {
+    while (grows(stable)) {
+      unstable = stable;
+      stable /= 2;
+      if (stable < 1e-9 * unit) return 0;
+    }
+  } else {
+    while (!grows(unstable)) {
+      stable = unstable;
+      if (stable >= limit) return limit;
+      unstable *= 1.01;
+    }
+  }
+  for (int halving = 0; halving < 60; ++halving) {
+    double const middle = 0.5 * (stable + unstable);
+    (grows(middle) ? unstable : stable) = middle;
+  }
+  return std::min(stable, limit);
+}
+
+}  // namespace detail
+
+/// The largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field bound.
+inline double exchange_bound(Lattice const& lattice, double constant) {
+  double bound = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto const n = static_cast<double>(lattice.shape[axis]);
+    if (!lattice.has_neighbors(axis)) continue;
+    double share = 1;
+    if (lattice.boundary[axis] == Boundary::open)
+      share = std::pow(std::sin(std::numbers::pi * (n - 1) / (2 * n)), 2);
+    else if (lattice.shape[axis] % 2 == 1)
+      share = std::pow(std::cos(std::numbers::pi / (2 * n)), 2);
+    bound += 4 * std::abs(constant) / (lattice.spacing[axis] * lattice.spacing[axis]) * share;
+  }
+  return bound;
+}
+
+/// The largest dt at which no mode of a nearly uniform state grows, an a-priori bound that is never
+/// above the linear limit. 0 when every dt amplifies, infinity when none does.
+/// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
+template <class Stepper>
+double largest_stable_step(double field_bound, double damping, bool precession = true,
+                           double sigma = 0) {
+  using Tableau = typename Stepper::tableau_type;
+  using Update = typename Stepper::update_type;
+  double limit = std::numeric_limits<double>::infinity();
+  detail::Complex const rate(-damping, precession ? 1 : 0);
+  if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
+  limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
+  double const scan_end = limit;
+  // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
+  int const modes = sigma == 0 ? 1 : 400;
+  for (int mode = modes; mode >= 1; --mode)
+    limit = detail::first_amplifying_step<Tableau, Update>(
+        field_bound * (static_cast<double>(mode) / modes) * rate, sigma, limit);
+  return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace cayspin

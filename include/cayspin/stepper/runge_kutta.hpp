@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/runge_kutta_stage.hpp>
+
+#include <Kokkos_Profiling_ScopedRegion.hpp>
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace cayspin {
+
+/// An explicit one-step method on a spin field: a tableau, and the geometry by which increments
+/// move spins (cayspin::update). Holds all work memory; one fused kernel per stage.
+template <class Spins, class Tableau, class Update, class Isotropy>
+class RungeKutta {
+ public:
+  using spins_type = Spins;
+  using tableau_type = Tableau;
+  using update_type = Update;
+  using Real = typename Spins::value_type;
+  static constexpr int order = Tableau::order;
+  static constexpr int evaluations = Tableau::stages;  // of the generator, per step
+
+  /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
+  explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
+      : region_("cayspin::" + name), isotropy_(isotropy) {
+    for (int i = 0; i < stages; ++i) labels_[i] = region_ + "::stage_" + std::to_string(i + 1);
+    for (int i = 0; i < level_count; ++i)
+      levels_[i] = Spins(name + "::level_" + std::to_string(i + 1), like.lattice());
+    for (int i = 0; i + 1 < stages; ++i)
+      if (detail::stores_increment<Tableau, Update>(i))
+        increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), like.lattice());
+    using Exec = typename Spins::memory_space::execution_space;
+    if constexpr (detail::is_host_execution<Exec>)
+      streaming_ = like.bytes() + work_bytes() > detail::last_level_cache_bytes();
+  }
+
+  /// Bytes of work memory.
+  std::size_t work_bytes() const {
+    std::size_t bytes = 0;
+    for (auto const& level : levels_) bytes += level.bytes();
+    for (auto const& increment : increments_) bytes += increment.bytes();
+    return bytes;
+  }
+
+  /// Advances `spins` from t to t + dt under `generator`. A one-stage method exchanges the memory
+  /// of `spins` with its own, so take arrays of `spins` anew after a step.
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    detail::check_access<Exec, typename Spins::memory_space>();
+    Kokkos::Profiling::ScopedRegion const region(region_);
+    if (!(spins.lattice() == levels_[0].lattice()))
+      throw std::invalid_argument(region_ + "::step: the spins are not of the stepper's lattice");
+    stages_from<0>(exec, generator, spins, t, dt);
+    if constexpr (stages == 1) swap(spins, levels_[0]);
+  }
+
+ private:
+  static constexpr int stages = Tableau::stages;
+  static constexpr int level_count = stages < 3 ? 1 : 2;
+
+  template <int Stage, class Exec, class Generator>
+  void stages_from(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                   double dt) {
+    Spins const& level = Stage == 0 ? spins : levels_[(Stage + level_count - 1) % level_count];
+    constexpr bool last = Stage == stages - 1;
+    constexpr bool in_place = last && stages > 1;
+    Spins const& next = in_place ? spins : levels_[Stage % level_count];
+    auto prepared = detail::prepare_term(generator, exec, level, t + Tableau::c[Stage] * dt);
+    using Kernel =
+        detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, decltype(prepared), Real>;
+    Kernel kernel{std::move(prepared),  isotropy_, spins.array(), level.array(), {}, {}, {},
+                  static_cast<Real>(dt)};
+    for (int i = 0; i < Stage; ++i) kernel.increments[i] = increments_[i].array();
+    if constexpr (!last) kernel.increment = increments_[Stage].output(streaming_);
+    kernel.next = next.output(streaming_ && !in_place);
+    detail::for_each_site<Real>(exec, labels_[Stage], spins.layout(), kernel);
+    if constexpr (!last) stages_from<Stage + 1>(exec, generator, spins, t, dt);
+  }
+
+  std::string region_;
+  std::array<std::string, stages> labels_;
+  std::array<Spins, level_count> levels_;
+  std::array<Spins, stages> increments_;
+  Isotropy isotropy_;
+  bool streaming_ = false;
+};
+
+}  // namespace cayspin
