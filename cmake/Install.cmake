@@ -12,6 +12,8 @@ install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.hpp" ${headers_left_out})
 
+install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
 install(TARGETS cayspin EXPORT cayspinTargets)
 install(EXPORT cayspinTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
 if(TARGET cayspin_io)

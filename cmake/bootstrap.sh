@@ -55,6 +55,18 @@ build() {
   logged build cmake --build --preset "$preset" --target "$@"
 }
 
+# The scripts that draw read PYTHON: an interpreter put in front of Debian's may lack its packages.
+choose_python() {
+  local candidate
+  for candidate in python3 /usr/bin/python3; do
+    if "$candidate" -c 'import h5py, matplotlib' 2>/dev/null; then
+      export PYTHON=$candidate
+      return
+    fi
+  done
+  fail "no python3 with h5py and matplotlib"
+}
+
 run_benchmarks() {
   local program
   for program in "$build_dir"/bin/bench_*; do
@@ -87,6 +99,6 @@ case $verb in
   deps) say "everything needed is there" ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
   test) build all; ctest --preset "$preset" -j "$(nproc)" ;;
-  demo) build cayspin_program; bash scenes/demo.sh "$build_dir" ;;
+  demo) choose_python; build cayspin_program; bash scenes/demo.sh "$build_dir" ;;
   bench) build all; run_benchmarks ;;
 esac
