@@ -12,6 +12,7 @@
 ///
 /// Every failure of the file system or of HDF5 throws std::runtime_error whose message is one line:
 /// the file, what could not be done, and why. HDF5 itself prints nothing. Not thread-safe.
+/// Where this is a program's first use of HDF5, HDF5 does not close files of others at exit.
 namespace cayspin::io {
 
 /// What a trajectory file says about the run that writes it.

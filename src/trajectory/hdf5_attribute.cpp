@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5_attribute.hpp"
+
+#include "hdf5_error.hpp"
+
+namespace cayspin::io {
+namespace {
+
+std::string action(char const* verb, char const* name) {
+  return std::string("cannot ") + verb + " attribute " + name;
+}
+
+DatatypeHandle text_type() {
+  DatatypeHandle type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+}  // namespace
+
+void RootAttributes::create(char const* name, hid_t stored, hid_t given, void const* value) const {
+  DataspaceHandle const scalar(H5Screate(H5S_SCALAR));
+  AttributeHandle const attribute(
+      check(H5Acreate2(file_, name, stored, scalar.get(), H5P_DEFAULT, H5P_DEFAULT), path_,
+            action("create", name)));
+  check(H5Awrite(attribute.get(), given, value), path_, action("write", name));
+}
+
+void RootAttributes::create(char const* name, std::string const& value) const {
+  auto const type = text_type();
+  auto const* text = value.c_str();
+  create(name, type.get(), type.get(), &text);
+}
+
+void RootAttributes::create(char const* name, std::int64_t value) const {
+  create(name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
+}
+
+void RootAttributes::create(char const* name, double value) const {
+  create(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+AttributeHandle RootAttributes::open(char const* name) const {
+  if (H5Aexists(file_, name) <= 0) throw_failure(path_, action("read", name), "it is not there");
+  return AttributeHandle(check(H5Aopen(file_, name, H5P_DEFAULT), path_, action("open", name)));
+}
+
+void RootAttributes::replace(char const* name, hid_t given, void const* value) const {
+  auto const attribute = open(name);
+  check(H5Awrite(attribute.get(), given, value), path_, action("write", name));
+}
+
+void RootAttributes::replace(char const* name, std::int64_t value) const {
+  replace(name, H5T_NATIVE_INT64, &value);
+}
+
+void RootAttributes::replace(char const* name, double value) const {
+  replace(name, H5T_NATIVE_DOUBLE, &value);
+}
+
+void RootAttributes::read(char const* name, hid_t wanted, void* value) const {
+  auto const attribute = open(name);
+  check(H5Aread(attribute.get(), wanted, value), path_, action("read", name));
+}
+
+std::string RootAttributes::read_text(char const* name) const {
+  char* text = nullptr;
+  read(name, text_type().get(), &text);
+  std::string const value = text ? text : "";
+  H5free_memory(text);
+  return value;
+}
+
+std::int64_t RootAttributes::read_integer(char const* name) const {
+  std::int64_t value = 0;
+  read(name, H5T_NATIVE_INT64, &value);
+  return value;
+}
+
+double RootAttributes::read_real(char const* name) const {
+  double value = 0;
+  read(name, H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
+}  // namespace cayspin::io

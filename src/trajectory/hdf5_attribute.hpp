@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "hdf5_handle.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace cayspin::io {
+
+/// The attributes of a file's root group.
+class RootAttributes {
+ public:
+  RootAttributes(hid_t file, std::filesystem::path const& path) : file_(file), path_(path) {}
+
+  void create(char const* name, std::string const& value) const;
+  void create(char const* name, std::int64_t value) const;
+  void create(char const* name, double value) const;
+
+  /// Overwrites a number in place, which takes no room on the disk.
+  void replace(char const* name, std::int64_t value) const;
+  void replace(char const* name, double value) const;
+
+  std::string read_text(char const* name) const;
+  std::int64_t read_integer(char const* name) const;
+  double read_real(char const* name) const;
+
+ private:
+  AttributeHandle open(char const* name) const;
+  void create(char const* name, hid_t stored, hid_t given, void const* value) const;
+  void replace(char const* name, hid_t given, void const* value) const;
+  void read(char const* name, hid_t wanted, void* value) const;
+
+  hid_t file_;
+  std::filesystem::path const& path_;
+};
+
+}  // namespace cayspin::io

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "hdf5_handle.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace cayspin::io {
+
+using Extents = std::vector<hsize_t>;
+
+/// A chunked dataset whose first extent is 0 and unlimited and whose other extents are `inner`, or
+/// those of the chunk when `inner` is empty. `properties` may bring filters along.
+DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
+                                     std::span<hsize_t const> chunk, PropertyHandle properties,
+                                     std::filesystem::path const& path,
+                                     std::span<hsize_t const> inner = {});
+
+DatasetHandle open_dataset(hid_t group, char const* name, std::filesystem::path const& path);
+
+/// The same, and an error unless the dataset has `rank` extents.
+DatasetHandle open_dataset(hid_t group, char const* name, std::size_t rank,
+                           std::filesystem::path const& path);
+
+Extents dataset_extents(hid_t dataset, std::filesystem::path const& path);
+
+/// Grows a dataset along its first extent to begin[0] + extents[0] and writes that block.
+void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
+                  void const* values, std::filesystem::path const& path);
+
+/// Reads a block; `begin` and `extents` have the dataset's rank.
+void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
+                void* values, std::filesystem::path const& path);
+
+}  // namespace cayspin::io

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5_error.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace cayspin::io {
+namespace {
+
+herr_t keep_description(unsigned, H5E_error2_t const* error, void* data) {
+  auto& reason = *static_cast<std::string*>(data);
+  if (reason.empty() && error->desc) reason = error->desc;
+  return 0;
+}
+
+// The file drivers put the system's words into their own: "..., error message = 'No space left on
+// device', ...".
+std::string system_words(std::string const& description) {
+  std::string const opening = "error message = '";
+  auto const begin = description.find(opening);
+  if (begin == std::string::npos) return description;
+  auto const words = description.substr(begin + opening.size());
+  return words.substr(0, words.find('\''));
+}
+
+}  // namespace
+
+// At the exit of a program HDF5 closes what is open, and crashes on a file whose disk has failed.
+// Here nothing is left open that could be closed, so HDF5 is told, before it starts, not to.
+QuietErrors::QuietErrors() {
+  [[maybe_unused]] static auto const told = H5dont_atexit();
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+QuietErrors::~QuietErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+std::string failure_reason() {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_description, &reason);
+  if (reason.empty()) return "HDF5 gives no reason";
+  reason = system_words(reason);
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  return reason;
+}
+
+void throw_failure(std::filesystem::path const& path, std::string const& action,
+                   std::string const& reason) {
+  throw std::runtime_error(path.string() + ": " + action + ": " + reason);
+}
+
+}  // namespace cayspin::io

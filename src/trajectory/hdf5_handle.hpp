@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <hdf5.h>
+
+#include <utility>
+
+namespace cayspin::io {
+
+/// Owns one HDF5 identifier and closes it with `Close`.
+template <herr_t (*Close)(hid_t)>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(hid_t id) : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) Close(id_);
+  }
+
+  hid_t get() const { return id_; }
+
+  /// Closes now; the result tells what a destructor has to swallow.
+  herr_t close() {
+    auto const id = std::exchange(id_, H5I_INVALID_HID);
+    return id >= 0 ? Close(id) : 0;
+  }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+};
+
+using FileHandle = Handle<H5Fclose>;
+using GroupHandle = Handle<H5Gclose>;
+using DatasetHandle = Handle<H5Dclose>;
+using DataspaceHandle = Handle<H5Sclose>;
+using DatatypeHandle = Handle<H5Tclose>;
+using AttributeHandle = Handle<H5Aclose>;
+using PropertyHandle = Handle<H5Pclose>;
+
+}  // namespace cayspin::io

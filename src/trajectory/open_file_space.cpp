@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "open_file_space.hpp"
+
+#include "hdf5_error.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace cayspin::io {
+namespace {
+
+// Asked here because passing the limit would raise a signal that ends the program.
+bool passes_size_limit(std::uint64_t size) {
+  rlimit limit{};
+  return getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+         size > limit.rlim_cur;
+}
+
+}  // namespace
+
+int take_room(int descriptor, std::uint64_t begin, std::uint64_t end) {
+  if (passes_size_limit(end)) return EFBIG;
+  auto const bytes = static_cast<off_t>(end - begin);
+  if (::fallocate(descriptor, 0, static_cast<off_t>(begin), bytes) == 0) return 0;
+  bool const full = errno == ENOSPC || errno == EFBIG || errno == EDQUOT;
+  return full ? errno : 0;
+}
+
+OpenFileSpace::OpenFileSpace(hid_t file, std::filesystem::path const& path) : file_(file) {
+  void* descriptor = nullptr;
+  check(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), path, "cannot create the file");
+  descriptor_ = *static_cast<int*>(descriptor);
+}
+
+std::uint64_t OpenFileSpace::used() const {
+  hsize_t size = 0;
+  H5Fget_filesize(file_, &size);
+  return size;
+}
+
+void OpenFileSpace::reserve(std::uint64_t bytes, std::filesystem::path const& path) {
+  auto const wanted = used() + bytes;
+  if (wanted <= reserved_) return;
+  if (int const error = take_room(descriptor_, reserved_, wanted))
+    throw_failure(path, "cannot write the file", std::strerror(error));
+  reserved_ = wanted;
+}
+
+void OpenFileSpace::trim() const {
+  [[maybe_unused]] auto const result = ::ftruncate(descriptor_, static_cast<off_t>(used()));
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "trajectory_test.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace cayspin::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+TrajectoryFile create(fs::path const& path, bool overwrite = false) {
+  return TrajectoryFile(path, small_header(), overwrite);
+}
+
+void write_text(fs::path const& path, std::string const& text) { std::ofstream(path) << text; }
+
+std::string read_text(fs::path const& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<std::string> names_in(fs::path const& folder) {
+  std::vector<std::string> names;
+  for (auto const& entry : fs::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
+  return names;
+}
+
+TEST_F(TrajectoryTest, ExistingFileIsKept) {
+  auto const path = folder_ / "a.h5";
+  write_text(path, "precious");
+  auto const message = error_line(path, [&] { create(path); });
+  EXPECT_TRUE(contains(message, "--overwrite"));
+  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
+}
+
+TEST_F(TrajectoryTest, OverwriteReplacesTheFileAtOnce) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 3).finish({});
+  auto const file = create(path, true);
+  EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
+}
+
+TEST_F(TrajectoryTest, OverwrittenFileHoldsTheNewRun) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 3).finish({});
+  create(path, true).close({});
+  auto const info = read_info(path);
+  EXPECT_EQ(info.frames, 0);
+  EXPECT_FALSE(info.complete);
+}
+
+TEST_F(TrajectoryTest, OverwriteFollowsALink) {
+  auto const path = folder_ / "a.h5";
+  auto const link = folder_ / "link.h5";
+  write_text(path, "old");
+  fs::create_symlink("a.h5", link);
+  create(link, true).finish({});
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(read_info(path).complete);
+}
+
+TEST_F(TrajectoryTest, OverwriteOfNothingIsFine) {
+  auto const path = folder_ / "a.h5";
+  create(path, true).finish({});
+  EXPECT_TRUE(read_info(path).complete);
+}
+
+TEST_F(TrajectoryTest, FileOfAnotherWriterIsKept) {
+  auto const path = folder_ / "a.h5";
+  write_text(path, "precious");
+  int const writer = ::open(path.c_str(), O_RDWR);
+  ASSERT_EQ(::flock(writer, LOCK_EX), 0);
+  auto const message = error_line(path, [&] { create(path, true); });
+  ::close(writer);
+  EXPECT_TRUE(contains(message, "another program"));
+  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
+}
+
+TEST_F(TrajectoryTest, MissingFolder) {
+  auto const path = folder_ / "missing" / "a.h5";
+  auto const message = error_line(path, [&] { create(path); });
+  EXPECT_TRUE(contains(message, (folder_ / "missing").string() + " does not exist"));
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
+TEST_F(TrajectoryTest, FolderThatIsAFile) {
+  write_text(folder_ / "file", "");
+  auto const path = folder_ / "file" / "a.h5";
+  EXPECT_TRUE(contains(error_line(path, [&] { create(path); }), "is a file"));
+}
+
+TEST_F(TrajectoryTest, NameThatIsAFolderOrADevice) {
+  EXPECT_TRUE(contains(error_line(folder_, [&] { create(folder_, true); }), "not a regular file"));
+  fs::path const device = "/dev/full";
+  EXPECT_TRUE(contains(error_line(device, [&] { create(device, true); }), "not a regular file"));
+}
+
+TEST_F(TrajectoryTest, NameTooLong) {
+  auto const path = folder_ / std::string(300, 'a');
+  EXPECT_TRUE(contains(error_line(path, [&] { create(path); }), "too long"));
+}
+
+// Root may write anywhere: it drops to an ordinary user, in a child.
+int create_without_permission(fs::path const& folder) {
+  if (::geteuid() == 0 && ::seteuid(65534) != 0) return 2;
+  auto const path = folder / "a.h5";
+  auto const message = error_line(path, [&] { create(path); });
+  return contains(message, "Permission denied") ? 0 : 1;
+}
+
+TEST_F(TrajectoryTest, NoPermission) {
+  ASSERT_EQ(::chmod(folder_.c_str(), 0555), 0);
+  EXPECT_EXIT(std::exit(create_without_permission(folder_)), testing::ExitedWithCode(0), "");
+  EXPECT_TRUE(names_in(folder_).empty());
+  ::chmod(folder_.c_str(), 0755);
+}
+
+TEST_F(TrajectoryTest, ImpossibleHeader) {
+  auto header = small_header("half");
+  EXPECT_THROW(TrajectoryFile(folder_ / "a.h5", header, false), std::invalid_argument);
+  header = small_header();
+  header.shape = {4, 0, 1};
+  EXPECT_THROW(TrajectoryFile(folder_ / "a.h5", header, false), std::invalid_argument);
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
+}  // namespace
+}  // namespace cayspin::io

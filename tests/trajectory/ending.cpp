@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What a run leaves behind, however it ends.
+#include "hdf5_handle.hpp"
+#include "trajectory_test.hpp"
+
+#include <array>
+#include <csignal>
+
+namespace cayspin::io {
+namespace {
+
+TEST_F(TrajectoryTest, FinishedRunIsComplete) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 2).finish({7, 2, 1});
+  EXPECT_TRUE(read_info(path).complete);
+}
+
+TEST_F(TrajectoryTest, InterruptedRunIsNotComplete) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 2).close({7, 2, 1});
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(info.frames, 2);
+  EXPECT_EQ(info.cost.evaluations, 7);
+  EXPECT_EQ(info.cost.wall_seconds, 2);
+  EXPECT_EQ(info.cost.step_seconds, 1);
+}
+
+TEST_F(TrajectoryTest, RunThatNeverEndsIsNotComplete) {
+  auto const path = folder_ / "a.h5";
+  { auto const file = write_frames(path, 2); }
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(info.frames, 2);
+}
+
+TEST_F(TrajectoryTest, NothingIsWrittenAfterTheEnd) {
+  auto const path = folder_ / "a.h5";
+  auto const spins = numbered_spins<double>(small_header(), 0);
+  auto file = write_frames(path, 1);
+  file.finish({});
+  EXPECT_THROW(file.write_frame(1, 1, {}, spins.data()), std::logic_error);
+  EXPECT_THROW(file.write_scalars(1, 1, {}), std::logic_error);
+  EXPECT_THROW(file.finish({}), std::logic_error);
+  EXPECT_THROW(file.close({}), std::logic_error);
+  EXPECT_TRUE(read_info(path).complete);
+}
+
+TEST_F(TrajectoryTest, ReservedRoomIsGivenBack) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 2).finish({});
+  EXPECT_LT(std::filesystem::file_size(path), 300000u);
+}
+
+// 100 frames pass the points where HDF5 splits a node of its index.
+TEST_F(TrajectoryTest, KilledRunLeavesWholeFrames) {
+  auto const path = folder_ / "a.h5";
+  auto const die = [&] {
+    auto file = write_frames(path, 100);
+    file.write_scalars(1000, 10, {});
+    std::raise(SIGKILL);
+  };
+  EXPECT_EXIT(die(), testing::KilledBySignal(SIGKILL), "");
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(info.frames, 100);
+  EXPECT_EQ(info.frame_steps.back(), 990);
+  EXPECT_EQ(info.samples, 100);
+  EXPECT_EQ(read_spins(path).spins, numbered_spins<double>(small_header(), 99));
+}
+
+TEST_F(TrajectoryTest, FrameWithoutItsScalarsDoesNotCount) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 2).close({});
+  {
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    DatasetHandle const spins(H5Dopen2(file.get(), "/spins", H5P_DEFAULT));
+    std::array<hsize_t, 5> const torn{3, 2, 3, 4, 3};
+    ASSERT_GE(H5Dset_extent(spins.get(), torn.data()), 0);
+  }
+  EXPECT_EQ(read_info(path).frames, 2);
+  EXPECT_EQ(read_spins(path).spins, numbered_spins<double>(small_header(), 1));
+}
+
+}  // namespace
+}  // namespace cayspin::io

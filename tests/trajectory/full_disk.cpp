@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The disk fills, or fails, under a run. All of it happens in child processes, whose exit status
+// also tells that HDF5 was left fit to close.
+#include "hdf5_handle.hpp"
+#include "trajectory_test.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+
+#include <cstdlib>
+#include <iostream>
+
+namespace cayspin::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Without its signal set to be ignored, going past this limit kills.
+void limit_file_size(rlim_t bytes) {
+  rlimit const limit{bytes, bytes};
+  if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) std::exit(9);
+}
+
+[[noreturn]] void exit_with_message(std::runtime_error const& error) {
+  std::cerr << error.what() << std::flush;
+  std::exit(3);
+}
+
+[[noreturn]] void write_until_it_fails(fs::path const& path, rlim_t room) {
+  limit_file_size(room);
+  try {
+    auto const file = write_frames(path, 1000000);
+    std::exit(0);
+  } catch (std::runtime_error const& error) {
+    exit_with_message(error);
+  }
+}
+
+TEST_F(TrajectoryTest, FullDiskLeavesTheFramesThatFitted) {
+  auto const path = folder_ / "a.h5";
+  EXPECT_EXIT(write_until_it_fails(path, 1000000), testing::ExitedWithCode(3),
+              "a.h5: cannot write the file: File too large$");
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  ASSERT_GT(info.frames, 10);
+  EXPECT_EQ(read_spins(path).spins,
+            numbered_spins<double>(small_header(), static_cast<int>(info.frames) - 1));
+}
+
+TEST_F(TrajectoryTest, FullDiskAtCreationLeavesNothing) {
+  auto const path = folder_ / "a.h5";
+  for (rlim_t const room : {10000, 100000, 500000})
+    EXPECT_EXIT(write_until_it_fails(path, room), testing::ExitedWithCode(3),
+                "a.h5: cannot create the file: File too large$");
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+[[noreturn]] void overwrite_on_full_disk(fs::path const& path) {
+  limit_file_size(10000);
+  try {
+    TrajectoryFile const file(path, small_header(), true);
+    std::exit(0);
+  } catch (std::runtime_error const& error) {
+    exit_with_message(error);
+  }
+}
+
+TEST_F(TrajectoryTest, FullDiskAtOverwritingKeepsTheOldFile) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 2).finish({});
+  EXPECT_EXIT(overwrite_on_full_disk(path), testing::ExitedWithCode(3),
+              "a.h5: cannot create the file: File too large$");
+  EXPECT_TRUE(read_info(path).complete);
+  EXPECT_FALSE(fs::exists(folder_ / "a.h5.partial"));
+}
+
+// Makes every later write to `path` fail, as a broken disk would.
+void make_read_only(fs::path const& path) {
+  for (auto const& entry : fs::directory_iterator("/proc/self/fd")) {
+    std::error_code error;
+    if (fs::read_symlink(entry.path(), error) != path) continue;
+    int const reading = ::open(path.c_str(), O_RDONLY);
+    ::dup2(reading, std::stoi(entry.path().filename().string()));
+    ::close(reading);
+    return;
+  }
+  std::exit(9);
+}
+
+[[noreturn]] void write_to_broken_disk(fs::path const& path) {
+  auto const spins = numbered_spins<double>(small_header(), 0);
+  try {
+    auto file = write_frames(path, 5);
+    make_read_only(fs::canonical(path));
+    file.write_frame(5, 5, {}, spins.data());
+    std::exit(0);
+  } catch (std::runtime_error const& error) {
+    exit_with_message(error);
+  }
+}
+
+TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // HDF5 must not have started before
+  auto const path = folder_ / "a.h5";
+  EXPECT_EXIT(write_to_broken_disk(path), testing::ExitedWithCode(3),
+              "a.h5: cannot write .*: Bad file descriptor$");
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(info.frames, 5);
+}
+
+}  // namespace
+}  // namespace cayspin::io

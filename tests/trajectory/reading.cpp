@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5_handle.hpp"
+#include "trajectory_test.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <cstring>
+#include <fstream>
+#include <numeric>
+
+namespace cayspin::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file of someone else's making: one dataset.
+void write_dataset(fs::path const& path, char const* name, std::vector<hsize_t> const& extents,
+                   hid_t type = H5T_IEEE_F64LE) {
+  FileHandle const file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  DataspaceHandle const space(
+      H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr));
+  DatasetHandle const dataset(
+      H5Dcreate2(file.get(), name, type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  hsize_t count = 1;
+  for (auto const extent : extents) count *= extent;
+  std::vector<double> values(count);
+  std::iota(values.begin(), values.end(), 0.0);
+  ASSERT_GE(
+      H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+}
+
+TEST_F(TrajectoryTest, SpinsOfOneState) {
+  auto const path = folder_ / "state.h5";
+  write_dataset(path, "spins", {2, 3, 4, 3}, H5T_IEEE_F32LE);
+  auto const stored = read_spins(path);
+  EXPECT_EQ(stored.shape, (std::array<std::int64_t, 3>{4, 3, 2}));
+  ASSERT_EQ(stored.spins.size(), 72u);
+  EXPECT_EQ(stored.spins.front(), 0);
+  EXPECT_EQ(stored.spins.back(), 71);
+}
+
+TEST_F(TrajectoryTest, SpinsOfTheLastFrame) {
+  auto const path = folder_ / "state.h5";
+  write_dataset(path, "spins", {5, 1, 1, 4, 3});
+  auto const stored = read_spins(path);
+  EXPECT_EQ(stored.shape, (std::array<std::int64_t, 3>{4, 1, 1}));
+  ASSERT_EQ(stored.spins.size(), 12u);
+  EXPECT_EQ(stored.spins.front(), 48);
+}
+
+TEST_F(TrajectoryTest, SpinsOfAnotherShape) {
+  auto const path = folder_ / "state.h5";
+  for (auto const& extents : {std::vector<hsize_t>{4, 3}, {2, 3, 4, 2}, {3}}) {
+    write_dataset(path, "spins", extents);
+    auto const message = error_line(path, [&] { read_spins(path); });
+    EXPECT_TRUE(contains(message, "(frame, nz, ny, nx, 3)"));
+  }
+  write_dataset(path, "spins", {0, 1, 1, 4, 3});
+  EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path); }), "no frame"));
+}
+
+TEST_F(TrajectoryTest, SpinsThatAreNotNumbersOrNotThere) {
+  auto const path = folder_ / "state.h5";
+  write_dataset(path, "spins", {1, 1, 4, 3}, H5T_STD_I32LE);
+  EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path); }), "floating-point"));
+  write_dataset(path, "other", {1, 1, 4, 3});
+  EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path); }), "spins: it is not there"));
+}
+
+TEST_F(TrajectoryTest, ArrayOfAnyName) {
+  auto const path = folder_ / "inertia.h5";
+  write_dataset(path, "inertia", {2, 3, 3});
+  auto const array = read_array(path, "/inertia");
+  EXPECT_EQ(array.extents, (std::vector<std::int64_t>{2, 3, 3}));
+  EXPECT_EQ(array.values.at(17), 17);
+  auto const message = error_line(path, [&] { read_array(path, "/moments"); });
+  EXPECT_TRUE(contains(message, "/moments: it is not there"));
+}
+
+TEST_F(TrajectoryTest, FileThatIsNone) {
+  auto const missing = folder_ / "missing.h5";
+  EXPECT_TRUE(contains(error_line(missing, [&] { read_info(missing); }), "No such file"));
+  auto const text = folder_ / "text.h5";
+  std::ofstream(text) << "not a trajectory\n";
+  EXPECT_TRUE(contains(error_line(text, [&] { read_info(text); }), "not an HDF5 file"));
+  EXPECT_TRUE(contains(error_line(text, [&] { read_spins(text); }), "not an HDF5 file"));
+  auto const other = folder_ / "other.h5";
+  write_dataset(other, "spins", {1, 1, 4, 3});
+  EXPECT_TRUE(contains(error_line(other, [&] { read_info(other); }), "attribute format"));
+}
+
+TEST_F(TrajectoryTest, FileBeingWritten) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 1).finish({});
+  int const writer = ::open(path.c_str(), O_RDWR);
+  ASSERT_EQ(::flock(writer, LOCK_EX), 0);
+  EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "another program"));
+  ::close(writer);
+}
+
+TEST_F(TrajectoryTest, TruncatedFile) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 100).finish({});
+  auto const size = fs::file_size(path);
+  for (auto const kept : {size - 1, size / 2, std::uintmax_t{600}, std::uintmax_t{4}}) {
+    fs::resize_file(path, kept);
+    error_line(path, [&] { read_info(path); });
+    error_line(path, [&] { read_spins(path); });
+  }
+}
+
+TEST_F(TrajectoryTest, DamagedSpinsAreNoticed) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 1).finish({});
+  double const known = numbered_spins<double>(small_header(), 0)[5];
+  std::string pattern(sizeof known, '\0');
+  std::memcpy(pattern.data(), &known, sizeof known);
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  std::string const bytes{std::istreambuf_iterator<char>(file), {}};
+  auto const place = bytes.find(pattern);
+  ASSERT_NE(place, std::string::npos);
+  file.clear();
+  file.seekp(static_cast<std::streamoff>(place));
+  file.put(static_cast<char>(bytes[place] ^ 1));
+  file.close();
+  EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path); }), "cannot read"));
+}
+
+TEST_F(TrajectoryTest, Hdf5KeepsPrintingItsErrorsForOthers) {
+  H5E_auto2_t before = nullptr, after = nullptr;
+  void* data = nullptr;
+  H5Eget_auto2(H5E_DEFAULT, &before, &data);
+  testing::internal::CaptureStderr();
+  auto const path = folder_ / "missing.h5";
+  error_line(path, [&] { read_info(path); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  H5Eget_auto2(H5E_DEFAULT, &after, &data);
+  EXPECT_EQ(before, after);
+}
+
+}  // namespace
+}  // namespace cayspin::io
