@@ -60,6 +60,8 @@ struct WrongOverride {
   char const* message;  ///< after "--set assignment: "
 };
 
+void PrintTo(WrongOverride const& wrong, std::ostream* stream) { *stream << wrong.assignment; }
+
 class WrongOverrides : public testing::TestWithParam<WrongOverride> {};
 
 TEST_P(WrongOverrides, AreRefusedInOneLine) {

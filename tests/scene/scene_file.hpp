@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,6 +120,8 @@ struct WrongScene {
   char const* begins;    ///< ":LINE: key: ..."
   char const* contains;  ///< what is wrong or accepted
 };
+
+inline void PrintTo(WrongScene const& wrong, std::ostream* stream) { *stream << wrong.to; }
 
 inline std::string name_of(testing::TestParamInfo<WrongScene> const& info) {
   return info.param.name;
