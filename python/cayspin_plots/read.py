@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Reads a trajectory file into numpy arrays."""
+
+import os
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+
+@dataclass
+class Series:
+    """The observables over time: /scalars, or the ones of the frames."""
+
+    time: np.ndarray
+    energy: np.ndarray
+    norm_defect: np.ndarray
+    magnetization: np.ndarray  # (sample, 3)
+
+
+@dataclass
+class Trajectory:
+    path: str
+    time: np.ndarray  # (frame,)
+    spins: np.ndarray  # (frame, nz, ny, nx, 3)
+    scalars: Series
+    precision: str
+    complete: bool
+
+    def sites(self):
+        return int(np.prod(self.spins.shape[1:4]))
+
+    def site(self, number):
+        """The path (frame, 3) of one spin, counted with x fastest."""
+        if not 0 <= number < self.sites():
+            raise SystemExit(f"{self.path}: there is no site {number}; there are {self.sites()}")
+        return self.spins.reshape(len(self.spins), -1, 3)[:, number]
+
+
+def _series(group, count=None):
+    columns = [group[name][:count] for name in ("time", "energy", "norm_defect", "magnetization")]
+    whole = min(len(column) for column in columns)
+    return Series(*(column[:whole] for column in columns))
+
+
+def read_trajectory(path):
+    """Whole frames only; a run that was killed or is unfinished has its complete flag at 0."""
+    if not os.path.isfile(path):
+        raise SystemExit(f"{path}: there is no such file")
+    try:
+        with h5py.File(path, "r") as file:
+            frames = _series(file)
+            count = min(len(file["spins"]), len(frames.time))
+            if count == 0:
+                raise SystemExit(f"{path}: it holds no frame")
+            samples = _series(file["scalars"])
+            return Trajectory(
+                path=str(path),
+                time=frames.time[:count],
+                spins=file["spins"][:count],
+                scalars=samples if len(samples.time) >= count else frames,
+                precision=file.attrs["precision"],
+                complete=bool(file.attrs["complete"]),
+            )
+    except (OSError, KeyError) as error:
+        raise SystemExit(f"{path}: cannot read the trajectory: {error.args[-1]}") from None

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Curves over time: energy, norm defect, magnetization."""
+
+import numpy as np
+
+from .style import BLUE, COMPONENTS
+
+# A defect of exactly 0 still has a place on a logarithmic axis.
+SMALLEST = 1e-17
+
+
+def draw_energy(axis, trajectory):
+    axis.plot(trajectory.scalars.time, trajectory.scalars.energy, color=BLUE)
+    axis.set_title("energy")
+    axis.set_xlabel("time")
+
+
+def draw_norm_defect(axis, trajectory, **line):
+    """max | |m| - 1 | over the sites, on a logarithmic axis."""
+    line.setdefault("color", BLUE)
+    defect = np.maximum(trajectory.scalars.norm_defect, SMALLEST)
+    axis.set_ylim(SMALLEST, max(1e-12, 30 * float(defect.max())))
+    axis.semilogy(trajectory.scalars.time, defect, **line)
+    axis.set_title(r"norm defect,  max $|\,|m| - 1\,|$")
+    axis.set_xlabel("time")
+
+
+def draw_magnetization(axis, trajectory):
+    for component, name in enumerate("xyz"):
+        axis.plot(
+            trajectory.scalars.time,
+            trajectory.scalars.magnetization[:, component],
+            color=COMPONENTS[component],
+            label=f"$\\langle m_{name} \\rangle$",
+        )
+    axis.set_ylim(-1.08, 1.08)
+    axis.legend(ncol=3, loc="lower right", bbox_to_anchor=(1, 0.98), borderaxespad=0)
+    axis.set_title("magnetization")
+    axis.set_xlabel("time")

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Draws a trajectory file: components along x, energy, norm defect, a spin's path."""
+
+import argparse
+import pathlib
+
+from cayspin_plots import components, hodograph, scalars, style
+from cayspin_plots.read import read_trajectory
+
+PANELS = ("components", "magnetization", "energy", "norm", "hodograph")
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PNG",
+                        help="the picture; its ending chooses the kind (default: FILE.png)")
+    parser.add_argument("-p", "--panels", nargs="+", choices=PANELS, metavar="PANEL",
+                        help="what to draw, of: " + ", ".join(PANELS) + " (default: all)")
+    parser.add_argument("-s", "--site", type=int,
+                        help="the spin of the hodograph, counted from 0 (default: in the middle)")
+    return parser.parse_args()
+
+
+def draw(trajectory, panels, site):
+    rows_of_components = 3 if "components" in panels else 0
+    narrow = [panel for panel in panels if panel != "components"]
+    heights = [1.9] * rows_of_components + [4.0] * ((len(narrow) + 1) // 2)
+    figure = style.plt.figure(figsize=(11, sum(heights) + 0.3), constrained_layout=True)
+    grid = figure.add_gridspec(len(heights), 2, height_ratios=heights)
+    if rows_of_components:
+        axes = [figure.add_subplot(grid[row, :]) for row in range(3)]
+        components.draw_components(axes, trajectory)
+    for place, panel in enumerate(narrow):
+        axis = figure.add_subplot(grid[rows_of_components + place // 2, place % 2])
+        if panel == "energy":
+            scalars.draw_energy(axis, trajectory)
+        elif panel == "norm":
+            scalars.draw_norm_defect(axis, trajectory)
+        elif panel == "magnetization":
+            scalars.draw_magnetization(axis, trajectory)
+        else:
+            axis.set_title(f"path of spin {site}", loc="center")
+            hodograph.draw_hodograph(axis, trajectory.site(site), style.BLUE)
+    return figure
+
+
+def main():
+    arguments = parse_arguments()
+    trajectory = read_trajectory(arguments.file)
+    panels = arguments.panels or list(PANELS)
+    if arguments.panels is None and trajectory.spins.shape[3] == 1:
+        panels.remove("components")
+    site = trajectory.sites() // 2 if arguments.site is None else arguments.site
+    figure = draw(trajectory, panels, site)
+    note = "" if trajectory.complete else ", not complete"
+    figure.suptitle(f"{arguments.file.name}  ({trajectory.precision}{note})", x=0.01, ha="left")
+    style.save(figure, arguments.output or arguments.file.with_suffix(".png"))
+
+
+if __name__ == "__main__":
+    main()
