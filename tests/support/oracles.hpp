@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cayspin::test {
+
+/// One of the lists in tests/data/oracles.json: inputs are doubles, results decimal strings of 32
+/// digits from 70-digit arithmetic.
+inline nlohmann::json oracles(std::string const& list) {
+  std::string const path = std::string(CAYSPIN_TEST_DATA) + "/oracles.json";
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("cannot read " + path);
+  auto const all = nlohmann::json::parse(file);
+  if (all.at(list).empty()) throw std::runtime_error(path + ": no cases in " + list);
+  return all.at(list);
+}
+
+inline long double decimal(nlohmann::json const& digits) {
+  if (digits.is_number()) return digits.get<double>();
+  return std::strtold(digits.get<std::string>().c_str(), nullptr);
+}
+
+/// Every number of an array, nested or not, in order.
+inline std::vector<double> decimals(nlohmann::json const& array) {
+  std::vector<double> numbers;
+  for (auto const& entry : array.is_array() ? array : nlohmann::json::array({array})) {
+    if (!entry.is_array()) {
+      numbers.push_back(static_cast<double>(decimal(entry)));
+      continue;
+    }
+    auto const inner = decimals(entry);
+    numbers.insert(numbers.end(), inner.begin(), inner.end());
+  }
+  return numbers;
+}
+
+}  // namespace cayspin::test
