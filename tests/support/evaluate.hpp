@@ -35,10 +35,9 @@ std::vector<double> evaluated(Exec const& exec, Source const& source, Spins cons
   using Real = typename Spins::value_type;
   auto prepared = detail::prepare_term(source, exec, spins, t);
   Spins const result("result", spins.lattice());
-  detail::for_each_site<Real>(
-      exec, "evaluate", spins.layout(),
-      Evaluate<decltype(prepared), Real>{std::move(prepared), spins.array(),
-                                         result.output(streaming)});
+  detail::for_each_site<Real>(exec, "evaluate", spins.layout(),
+                              Evaluate<decltype(prepared), Real>{std::move(prepared), spins.array(),
+                                                                 result.output(streaming)});
   exec.fence();
   return numbers_of(result);
 }

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The maps against 32-digit values, one number and one pack at a time. In float the inputs are
+// rounded (and brought into range) first, and the same formulas in long double are the reference.
+#include "../support/oracles.hpp"
+#include "reference.hpp"
+
+namespace cayspin::test {
+namespace {
+
+template <class Real>
+struct MapCase {
+  std::string tag;
+  Vec3<Real> f, x, y;
+  Long cayley, tangent, inverse_tangent, exponential;
+  bool has_exponential;
+};
+
+// Float holds 1e-45 .. 3e38.
+template <class Real>
+Long in_range(Long const& f) {
+  long double const size = largest(f);
+  if (sizeof(Real) == sizeof(double) || size == 0) return f;
+  if (size > 1e37L) return (1e37L / size) * f;
+  if (size < 1e-40L) return (1e-40L / size) * f;
+  return f;
+}
+
+Long read_long(nlohmann::json const& array) {
+  return {decimal(array.at(0)), decimal(array.at(1)), decimal(array.at(2))};
+}
+
+template <class Real>
+std::vector<MapCase<Real>> map_cases() {
+  std::vector<MapCase<Real>> cases;
+  for (auto const& entry : oracles("maps")) {
+    MapCase<Real> one;
+    one.tag = entry.at("tag");
+    one.f = narrow<Real>(in_range<Real>(read_long(entry.at("f"))));
+    one.x = narrow<Real>(read_long(entry.at("x")));
+    one.y = narrow<Real>(read_long(entry.at("y")));
+    one.has_exponential = entry.contains("exp_f_x");
+    if constexpr (std::is_same_v<Real, double>) {
+      one.cayley = read_long(entry.at("cay_f_x"));
+      one.tangent = read_long(entry.at("dcay_f_y"));
+      one.inverse_tangent = read_long(entry.at("dcayinv_f_y"));
+      if (one.has_exponential) one.exponential = read_long(entry.at("exp_f_x"));
+    } else {
+      Long const f = widen(one.f), x = widen(one.x), y = widen(one.y);
+      one.cayley = test::cayley(f, x);
+      one.tangent = cayley_tangent(f, y);
+      one.inverse_tangent = cayley_inverse_tangent(f, y);
+      one.exponential = test::exponential(f, x);
+    }
+    cases.push_back(one);
+  }
+  return cases;
+}
+
+// Value: Real, or a pack whose lanes all hold the case.
+template <class Value, class Real>
+Vec3<Value> spread(Vec3<Real> const& a) {
+  return {Value(a.x), Value(a.y), Value(a.z)};
+}
+
+template <class Value>
+std::vector<Long> lanes(Vec3<Value> const& a) {
+  constexpr int count = detail::lanes_of<Value>;
+  detail::scalar_t<Value> x[count], y[count], z[count];
+  detail::store(a.x, x), detail::store(a.y, y), detail::store(a.z, z);
+  std::vector<Long> values;
+  for (int i = 0; i < count; ++i) values.push_back({x[i], y[i], z[i]});
+  return values;
+}
+
+template <class Real>
+class Maps : public ::testing::Test {
+ protected:
+  static constexpr double tolerance = 1e-13 / epsilon<double> * epsilon<Real>;
+  static constexpr bool is_double = std::is_same_v<Real, double>;
+  static constexpr double cayley_limit = is_double ? 1e150 : 1e18;
+
+  template <class Value>
+  static void expect_near(Vec3<Value> const& found, Long const& expected, long double error,
+                          std::string const& what) {
+    for (Long const& lane : lanes(found)) EXPECT_LE(largest(lane - expected), error) << what;
+  }
+
+  template <class Rotation, class Value>
+  static void check_cayley(MapCase<Real> const& one) {
+    auto const f = spread<Value>(one.f);
+    expect_near<Value>(Rotation::rotate(f, spread<Value>(one.x)), one.cayley, tolerance,
+                       one.tag + ": cay");
+    expect_near<Value>(Rotation::tangent(f, spread<Value>(one.y)), one.tangent,
+                       tolerance * largest(one.tangent), one.tag + ": dcay");
+    if (largest(one.inverse_tangent) < 0.25L * std::numeric_limits<Real>::max())
+      expect_near<Value>(Rotation::inverse_tangent(f, spread<Value>(one.y)), one.inverse_tangent,
+                         tolerance * largest(one.inverse_tangent), one.tag + ": inverse dcay");
+  }
+
+  template <class Value>
+  static void check_exponential(MapCase<Real> const& one) {
+    long double const size = norm(widen(one.f));
+    auto const found = Exponential::rotate(spread<Value>(one.f), spread<Value>(one.x));
+    for (Long const& lane : lanes(found))
+      EXPECT_NEAR(norm(lane), norm(widen(one.x)), 8 * epsilon<Real>) << one.tag;
+    if (one.has_exponential && size < 0.1 / epsilon<Real>)
+      expect_near<Value>(found, one.exponential,
+                         std::max<long double>(tolerance, 8 * epsilon<Real> * size),
+                         one.tag + ": exp");
+  }
+};
+TYPED_TEST_SUITE(Maps, Precisions, PrecisionName);
+
+TYPED_TEST(Maps, CayleyUpToItsLimit) {
+  int checked = 0;
+  for (auto const& one : map_cases<TypeParam>()) {
+    if (largest(widen(one.f)) > TestFixture::cayley_limit) continue;
+    this->template check_cayley<Cayley, TypeParam>(one);
+    this->template check_cayley<Cayley, detail::Pack<TypeParam>>(one);
+    ++checked;
+  }
+  EXPECT_EQ(checked, TestFixture::is_double ? 14 : 13);
+}
+
+TYPED_TEST(Maps, OverflowSafeCayleyEverywhere) {
+  for (auto const& one : map_cases<TypeParam>()) {
+    this->template check_cayley<OverflowSafeCayley, TypeParam>(one);
+    this->template check_cayley<OverflowSafeCayley, detail::Pack<TypeParam>>(one);
+  }
+}
+
+TYPED_TEST(Maps, Exponential) {
+  for (auto const& one : map_cases<TypeParam>()) {
+    this->template check_exponential<TypeParam>(one);
+    this->template check_exponential<detail::Pack<TypeParam>>(one);
+  }
+}
+
+// The overflow guard of the tests above is the file's own mark.
+TEST(Maps, TheInverseTangentIsCheckedWhereItFits) {
+  for (auto const& entry : oracles("maps")) {
+    auto const value = read_long(entry.at("dcayinv_f_y"));
+    EXPECT_EQ(largest(value) > std::numeric_limits<double>::max(),
+              entry.at("dcayinv_overflows_double").get<bool>())
+        << entry.at("tag");
+  }
+}
+
+// The formulas that stand in for the file in float give the file's values in long double.
+TEST(Maps, TheReferenceAgreesWithTheFile) {
+  for (auto const& one : map_cases<double>()) {
+    Long const f = widen(one.f), x = widen(one.x), y = widen(one.y);
+    EXPECT_LE(largest(cayley(f, x) - one.cayley), 1e-17L) << one.tag;
+    EXPECT_LE(largest(cayley_tangent(f, y) - one.tangent), 1e-17L * largest(one.tangent))
+        << one.tag;
+    EXPECT_LE(largest(cayley_inverse_tangent(f, y) - one.inverse_tangent),
+              1e-17L * largest(one.inverse_tangent))
+        << one.tag;
+    if (one.has_exponential) {
+      EXPECT_LE(largest(exponential(f, x) - one.exponential), 1e-18L * (10 + norm(f))) << one.tag;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::test

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A lane of a pack gets the number that a plain number gets.
+#include "reference.hpp"
+
+namespace cayspin::test {
+namespace {
+
+template <class Real>
+class Packs : public ::testing::Test {
+ protected:
+  using Pack = detail::Pack<Real>;
+  static constexpr int lanes = detail::lanes_of<Pack>;
+
+  static Vec3<Pack> gather(std::vector<Vec3<Real>> const& values) {
+    Real x[lanes], y[lanes], z[lanes];
+    for (int i = 0; i < lanes; ++i) x[i] = values[i].x, y[i] = values[i].y, z[i] = values[i].z;
+    return {detail::load<Pack>(x), detail::load<Pack>(y), detail::load<Pack>(z)};
+  }
+
+  // Equal bits where the compiler may not contract what the packs leave apart.
+  static void expect_equal(Real pack, Real number, char const* what) {
+#if defined(CAYSPIN_TEST_SAME_BITS)
+    EXPECT_EQ(pack, number) << what;
+#else
+    EXPECT_NEAR(pack, number, 8 * epsilon<Real> * std::max(Real(1), std::abs(number))) << what;
+#endif
+  }
+
+  template <class Map>
+  static void compare(char const* what, Map const& map) {
+    for (int round = 0; round < 40; ++round) {
+      std::vector<Vec3<Real>> f, x;
+      for (int i = 0; i < lanes; ++i) {
+        // Sizes of all ranges side by side in a pack.
+        long double const size = std::pow(10.0L, (i * 7 + round) % 24 - 18);
+        f.push_back(narrow<Real>(size * direction(round * lanes + i)));
+        x.push_back(narrow<Real>(direction(5000 + round * lanes + i)));
+      }
+      auto const together = map(gather(f), gather(x));
+      Real px[lanes], py[lanes], pz[lanes];
+      detail::store(together.x, px), detail::store(together.y, py), detail::store(together.z, pz);
+      for (int i = 0; i < lanes; ++i) {
+        auto const alone = map(f[i], x[i]);
+        expect_equal(px[i], alone.x, what);
+        expect_equal(py[i], alone.y, what);
+        expect_equal(pz[i], alone.z, what);
+      }
+    }
+  }
+};
+TYPED_TEST_SUITE(Packs, Precisions, PrecisionName);
+
+TYPED_TEST(Packs, LanesEqualNumbers) {
+  this->compare("Cayley::rotate",
+                [](auto const& f, auto const& x) { return Cayley::rotate(f, x); });
+  this->compare("Cayley::tangent",
+                [](auto const& f, auto const& x) { return Cayley::tangent(f, x); });
+  this->compare("Cayley::inverse_tangent",
+                [](auto const& f, auto const& x) { return Cayley::inverse_tangent(f, x); });
+  this->compare("OverflowSafeCayley::rotate",
+                [](auto const& f, auto const& x) { return OverflowSafeCayley::rotate(f, x); });
+  this->compare("OverflowSafeCayley::tangent",
+                [](auto const& f, auto const& x) { return OverflowSafeCayley::tangent(f, x); });
+  this->compare("Exponential::rotate",
+                [](auto const& f, auto const& x) { return Exponential::rotate(f, x); });
+  this->compare("Exponential::inverse_tangent",
+                [](auto const& f, auto const& x) { return Exponential::inverse_tangent(f, x); });
+}
+
+}  // namespace
+}  // namespace cayspin::test
