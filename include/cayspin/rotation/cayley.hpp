@@ -6,7 +6,7 @@
 namespace cayspin {
 
 /// The Cayley map of so(3), in coordinates f whose rotation is about f by 2 atan(|f|/2).
-/// Lewis and Nigam 2002, Sec. 3; right-trivialised differential.
+/// Lewis and Nigam 2002, Sec. 2; right-trivialised differential.
 struct Cayley {
   /// cay(f) m. Right to a few ulp up to |f| about 1e150 (double), 1e18 (float).
   template <class Value>

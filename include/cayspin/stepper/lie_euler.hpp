@@ -10,7 +10,7 @@
 namespace cayspin {
 
 /// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
-/// Lewis and Nigam 2002, Sec. 4.1.
+/// Lewis and Nigam 2002, Sec. 4.2.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class LieEuler : public RungeKutta<Spins, tableau::Euler, update::Lie<Rotation>, Isotropy> {
  public:
