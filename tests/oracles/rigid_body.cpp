@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Single steps and a trajectory of rigid bodies against 70-digit arithmetic.
+#include "../support/evaluate.hpp"
+#include "steps.hpp"
+
+namespace cayspin::test {
+namespace {
+
+SymmetricTensor tensor(std::vector<double> const& matrix) {
+  return {matrix[0], matrix[4], matrix[8], matrix[1], matrix[2], matrix[5]};
+}
+
+// The inverse of a symmetric matrix by cofactors, rounded once.
+SymmetricTensor inverse(std::vector<double> const& m) {
+  long double const a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[8];
+  long double const determinant = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d);
+  auto const entry = [&](long double cofactor) {
+    return static_cast<double>(cofactor / determinant);
+  };
+  return {entry(d * f - e * e), entry(a * f - c * c), entry(a * d - b * b),
+          entry(c * e - b * f), entry(b * e - c * d), entry(b * c - a * e)};
+}
+
+std::vector<double> repeated(std::vector<double> const& m, std::int64_t count) {
+  std::vector<double> numbers;
+  for (std::int64_t i = 0; i < count; ++i) numbers.insert(numbers.end(), m.begin(), m.end());
+  return numbers;
+}
+
+template <class Backend>
+class RigidBodyOracles : public ::testing::Test {};
+TYPED_TEST_SUITE(RigidBodyOracles, Backends, BackendName);
+
+// Nineteen bodies alike: whole packs, the rest of one, and every lane.
+constexpr std::int64_t bodies = 19;
+
+TYPED_TEST(RigidBodyOracles, Steps) {
+  using Real = typename TypeParam::Real;
+  auto const lattice = Lattice::chain(bodies);
+  int checked = 0;
+  for (auto const& entry : oracles("rigid_body_step")) {
+    RigidBody const body(tensor(decimals(entry.at("Iinv"))));
+    auto const start = repeated(decimals(entry.at("m")), bodies);
+    for (auto const& [method, step] : entry.at("steps").items()) {
+      auto const expected = decimals(step.at("m1"));
+      auto const found = one_step<typename TypeParam::Exec, typename TypeParam::Spins>(
+          method, body, entry.at("sigma_const"), lattice, start, entry.at("h"));
+      for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i], expected[i % 3], step_tolerance<Real>)
+            << entry.at("tag") << ", " << method << ", number " << i;
+      ++checked;
+    }
+  }
+  EXPECT_EQ(checked, 77);
+}
+
+TYPED_TEST(RigidBodyOracles, GeneratorAndEnergy) {
+  using Real = typename TypeParam::Real;
+  typename TypeParam::Exec const exec;
+  auto const lattice = Lattice::chain(bodies);
+  for (auto const& entry : oracles("rigid_body_step")) {
+    RigidBody const body(tensor(decimals(entry.at("Iinv"))));
+    auto const spins =
+        spins_of<typename TypeParam::Spins>(lattice, repeated(decimals(entry.at("m")), bodies));
+    auto const expected = decimals(entry.at("A"));
+    auto const found = evaluated(exec, body, spins);
+    double const size =
+        std::max({1.0, std::abs(expected[0]), std::abs(expected[1]), std::abs(expected[2])});
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_NEAR(found[i], expected[i % 3], 4 * epsilon<Real> * size) << entry.at("tag");
+    double const one = static_cast<double>(decimal(entry.at("energy")));
+    EXPECT_NEAR(energy(exec, body, spins).value, bodies * one,
+                8 * epsilon<Real> * bodies * std::max(1.0, one))
+        << entry.at("tag");
+  }
+}
+
+// A motion over ten units of time, far from equilibria: errors of a step grow linearly.
+TYPED_TEST(RigidBodyOracles, Trajectories) {
+  using Real = typename TypeParam::Real;
+  using Spins = typename TypeParam::Spins;
+  typename TypeParam::Exec const exec;
+  for (auto const& entry : oracles("rigid_body_trajectory")) {
+    std::string const method = entry.at("method");
+    RigidBody const body(inverse(decimals(entry.at("inertia"))));
+    auto spins = spins_of<Spins>(Lattice::chain(1), decimals(entry.at("m0")));
+    std::vector<Sample> samples;
+    auto const run = [&](auto stepper, auto const& generator) {
+      integrate(exec, stepper, generator, spins, Times{0, entry.at("h"), entry.at("n")},
+                Record(body, samples));
+    };
+    if (method == "euler_def") run(LieEuler(spins), body);
+    if (method == "euler_orth") run(LieEuler(spins), orthogonal(body));
+    if (method == "rkmk4_def") run(Rkmk4(spins), body);
+    if (method == "rkmk4_orth") run(Rkmk4(spins), orthogonal(body));
+    ASSERT_EQ(samples.size(), entry.at("n").get<std::size_t>() + 1) << method;
+
+    auto const expected = decimals(entry.at("m_n")), found = numbers_of(spins);
+    double energy_error = 0;
+    for (auto const& sample : samples)
+      energy_error =
+          std::max(energy_error, std::abs(sample.energy.value - samples[0].energy.value));
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(found[c], expected[c], step_tolerance<Real>) << method << ", component " << c;
+    EXPECT_NEAR(energy_error, static_cast<double>(decimal(entry.at("max_abs_energy_error"))),
+                step_tolerance<Real>)
+        << method;
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::test
