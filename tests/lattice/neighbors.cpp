@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What a stencil sees, against an index calculation, for every row length around whole packs.
+#include "../support/evaluate.hpp"
+
+namespace cayspin::test {
+
+/// A generator that returns one neighbour.
+template <int Axis, bool Next>
+struct Neighbor {
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto operator()(Stencil const& stencil) const {
+    if constexpr (Next)
+      return stencil.template next<Axis>();
+    else
+      return stencil.template previous<Axis>();
+  }
+};
+
+/// A generator that returns the site's own index.
+struct Index {
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto operator()(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    using Scalar = detail::scalar_t<Value>;
+    auto const& site = stencil.site();
+    return Vec3<Value>{Value(static_cast<Scalar>(site.x())) + detail::lane_numbers<Value>(),
+                       Value(static_cast<Scalar>(site.y())), Value(static_cast<Scalar>(site.z()))};
+  }
+};
+
+namespace {
+
+/// Index numbers that float holds, none of them like another: x + 1, -(y + 1), 1000 + z.
+std::vector<double> numbered(Lattice const& lattice) {
+  std::vector<double> numbers;
+  for (std::int64_t z = 0; z < lattice.shape[2]; ++z)
+    for (std::int64_t y = 0; y < lattice.shape[1]; ++y)
+      for (std::int64_t x = 0; x < lattice.shape[0]; ++x)
+        for (std::int64_t const n : {x + 1, -(y + 1), 1000 + z})
+          numbers.push_back(static_cast<double>(n));
+  return numbers;
+}
+
+/// The site one step along an axis; itself where there is none.
+std::int64_t neighbor(Lattice const& lattice, std::int64_t site, int axis, int step) {
+  auto const& n = lattice.shape;
+  std::array<std::int64_t, 3> index{site % n[0], site / n[0] % n[1], site / (n[0] * n[1])};
+  index[axis] += step;
+  bool const outside = index[axis] < 0 || index[axis] >= n[axis];
+  if (outside && lattice.boundary[axis] == Boundary::open) return site;
+  index[axis] = (index[axis] + n[axis]) % n[axis];
+  return index[0] + n[0] * (index[1] + n[1] * index[2]);
+}
+
+template <class Backend>
+class Neighbors : public ::testing::Test {
+ protected:
+  template <int Axis, bool Next, class Spins>
+  static int wrong(Spins const& spins, std::vector<double> const& numbers) {
+    typename Backend::Exec const exec;
+    auto const found = evaluated(exec, Neighbor<Axis, Next>{}, spins);
+    int count = 0;
+    for (std::int64_t site = 0; site < spins.sites(); ++site) {
+      std::int64_t const from = neighbor(spins.lattice(), site, Axis, Next ? 1 : -1);
+      for (int c = 0; c < 3; ++c) count += found[3 * site + c] != numbers[3 * from + c];
+    }
+    return count;
+  }
+
+  static void expect_neighbors(Lattice const& lattice) {
+    auto const numbers = numbered(lattice);
+    auto const spins = spins_of<typename Backend::Spins>(lattice, numbers);
+    std::string const what = "shape " + std::to_string(lattice.shape[0]) + " " +
+                             std::to_string(lattice.shape[1]) + " " +
+                             std::to_string(lattice.shape[2]);
+    EXPECT_EQ((wrong<0, false>(spins, numbers)), 0) << what << ", previous along x";
+    EXPECT_EQ((wrong<0, true>(spins, numbers)), 0) << what << ", next along x";
+    EXPECT_EQ((wrong<1, false>(spins, numbers)), 0) << what << ", previous along y";
+    EXPECT_EQ((wrong<1, true>(spins, numbers)), 0) << what << ", next along y";
+    EXPECT_EQ((wrong<2, false>(spins, numbers)), 0) << what << ", previous along z";
+    EXPECT_EQ((wrong<2, true>(spins, numbers)), 0) << what << ", next along z";
+  }
+
+  static std::array<Boundary, 3> boundaries(int bits) {
+    auto const which = [&](int axis) {
+      return (bits >> axis & 1) != 0 ? Boundary::periodic : Boundary::open;
+    };
+    return {which(0), which(1), which(2)};
+  }
+};
+TYPED_TEST_SUITE(Neighbors, Backends, BackendName);
+
+TYPED_TEST(Neighbors, EveryRowLength) {
+  for (std::int64_t nx = 1; nx <= 40; ++nx)
+    for (int bits = 0; bits < 8; ++bits)
+      this->expect_neighbors({{nx, 3, 2}, {1, 1, 1}, this->boundaries(bits)});
+}
+
+TYPED_TEST(Neighbors, EveryExtentAlongYAndZ) {
+  for (std::int64_t n = 1; n <= 5; ++n)
+    for (int bits = 0; bits < 8; ++bits) {
+      this->expect_neighbors({{3, n, 1}, {1, 1, 1}, this->boundaries(bits)});
+      this->expect_neighbors({{1, 2, n}, {1, 1, 1}, this->boundaries(bits)});
+      this->expect_neighbors({{17, n, n}, {1, 1, 1}, this->boundaries(bits)});
+    }
+}
+
+// Rows that are shared out to several tasks, cut at a pack, in the middle of a pack, at the end.
+TYPED_TEST(Neighbors, LongRows) {
+  std::int64_t const task = detail::sites_per_task;
+  for (std::int64_t const nx : {2 * task, 2 * task + 1, 3 * task - 1, 3 * task + 13})
+    for (int const bits : {0, 7})
+      this->expect_neighbors({{nx, 2, 1}, {1, 1, 1}, this->boundaries(bits)});
+  EXPECT_EQ(detail::tasks_per_row(detail::RowLayout::of<float>(Lattice::chain(3 * task + 13))), 3);
+}
+
+// Each site is visited with its own index; writing past the caches changes nothing.
+TYPED_TEST(Neighbors, SitesKnowTheirPlace) {
+  typename TypeParam::Exec const exec;
+  for (std::int64_t const nx : {1, 7, 8, 9, 16, 17, 40, 9000}) {
+    Lattice const lattice = Lattice::cubic(nx, 3, 2);
+    typename TypeParam::Spins const spins("spins", lattice);
+    for (bool const streaming : {false, true}) {
+      auto const found = evaluated(exec, Index{}, spins, 0, streaming);
+      int wrong = 0;
+      for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+        auto const index = at(found, site);
+        wrong += index.x != static_cast<double>(site % nx) ||
+                 index.y != static_cast<double>(site / nx % 3) ||
+                 index.z != static_cast<double>(site / nx / 3);
+      }
+      EXPECT_EQ(wrong, 0) << nx;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::test
