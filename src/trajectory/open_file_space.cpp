@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "open_file_space.hpp"
 
-#include "hdf5_error.hpp"
+#include "hdf5/error.hpp"
 
 #include <fcntl.h>
 #include <sys/resource.h>

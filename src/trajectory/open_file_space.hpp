@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "hdf5_handle.hpp"
+#include "hdf5/handle.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scalar_series.hpp"
 
-#include "hdf5_dataset.hpp"
-#include "hdf5_error.hpp"
+#include "hdf5/dataset.hpp"
+#include "hdf5/error.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "format.hpp"
 #include "frame_chunk.hpp"
-#include "hdf5_attribute.hpp"
-#include "hdf5_dataset.hpp"
-#include "hdf5_error.hpp"
+#include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
+#include "hdf5/error.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "scalar_series.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "format.hpp"
-#include "hdf5_attribute.hpp"
-#include "hdf5_dataset.hpp"
-#include "hdf5_error.hpp"
+#include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
+#include "hdf5/error.hpp"
 #include "scalar_series.hpp"
 
 #include <cayspin/io/trajectory.hpp>

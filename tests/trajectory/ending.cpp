@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What a run leaves behind, however it ends.
-#include "hdf5_handle.hpp"
+#include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 
 #include <array>

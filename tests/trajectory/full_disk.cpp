@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The disk fills, or fails, under a run. All of it happens in child processes, whose exit status
 // also tells that HDF5 was left fit to close.
-#include "hdf5_handle.hpp"
+#include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 
 #include <fcntl.h>

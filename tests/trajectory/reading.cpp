@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "hdf5_handle.hpp"
+#include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 
 #include <fcntl.h>

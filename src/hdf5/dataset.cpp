@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "hdf5_dataset.hpp"
+#include "dataset.hpp"
 
-#include "hdf5_error.hpp"
+#include "error.hpp"
 
 #include <algorithm>
 #include <string>

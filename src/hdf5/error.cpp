@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "hdf5_error.hpp"
+#include "error.hpp"
 
 #include <algorithm>
 #include <stdexcept>
