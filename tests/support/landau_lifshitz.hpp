@@ -80,9 +80,13 @@ Field copy_of(Field const& from) {
 
 template <class Field>
 Vector spin(Field const& field, std::int64_t site) {
-  auto const numbers = copy_to_host(field);
-  return {static_cast<double>(numbers[3 * site]), static_cast<double>(numbers[3 * site + 1]),
-          static_cast<double>(numbers[3 * site + 2])};
+  if constexpr (requires { field.get(site); }) {
+    auto const m = field.get(site);
+    return {m.x, m.y, m.z};
+  } else {
+    auto const numbers = copy_to_host(field);
+    return {numbers[3 * site], numbers[3 * site + 1], numbers[3 * site + 2]};
+  }
 }
 
 /// Largest distance between two fields, over sites.
