@@ -27,8 +27,7 @@ std::vector<InertiaTensor> read_file(Scene const& scene, std::filesystem::path c
   std::vector<InertiaTensor> tensors(static_cast<std::size_t>(sites(scene)));
   double tolerance = 0;
   try {
-    detail::Hdf5Dataset const dataset(path, "/inertia");
-    detail::check_inertia(dataset, sites(scene));
+    auto const dataset = detail::open_inertia(path, sites(scene));
     auto const values = dataset.read();
     for (std::size_t body = 0; body < tensors.size(); ++body) {
       std::copy_n(values.data() + 9 * body, 9, tensors[body].begin());

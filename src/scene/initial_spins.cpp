@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "files.hpp"
 #include "normalise.hpp"
 #include "start_variables.hpp"
 
 #include <cayspin/io/expression.hpp>
 #include <cayspin/io/scene.hpp>
+#include <cayspin/io/trajectory.hpp>
 
 #include <fmt/format.h>
 
@@ -99,9 +99,7 @@ struct Start {
   void operator()(FileStart const& file) const {
     std::vector<double> values;
     try {
-      detail::Hdf5Dataset const dataset(file.path, "/spins");
-      detail::check_spins(dataset, scene.lattice.shape);
-      values = dataset.extents().size() == 5 ? dataset.read_last() : dataset.read();
+      values = read_spins(file.path, scene.lattice.shape);
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }

@@ -80,10 +80,10 @@ TEST(Inertia, WrongFilesAreRefusedInOneLine) {
     std::string message;
   };
   for (auto const& wrong : std::vector<Case>{
-           {"none.h5", "no such file"},
-           {"shape.h5", "dataset /inertia has the shape (5, 9); accepted: (5, 3, 3)"},
-           {"count.h5", "dataset /inertia has the shape (1, 3, 3); accepted: (5, 3, 3)"},
-           {"name.h5", "has no dataset /inertia"},
+           {"none.h5", "cannot open the file: No such file or directory"},
+           {"shape.h5", "dataset /inertia: its extents are (5, 9); accepted: (5, 3, 3)"},
+           {"count.h5", "dataset /inertia: its extents are (1, 3, 3); accepted: (5, 3, 3)"},
+           {"name.h5", "cannot read dataset /inertia: it is not there"},
            {"bent.h5", "body 3: the tensor is not symmetric"},
            {"negative.h5", "body 2: the tensor is not positive definite"},
            {"infinite.h5", "body 1: the tensor is not finite"}}) {

@@ -170,20 +170,20 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
     std::string message;
     bool seen_unread;  ///< by check_files
   };
-  for (auto const& wrong :
-       std::vector<Case>{{"none.h5", "no such file", true},
-                         {"text.h5", "cannot be opened as an HDF5 file", true},
-                         {"folder.h5", "not a regular file", true},
-                         {"other.h5", "has no dataset /spins", true},
-                         {"shape.h5",
-                          "dataset /spins has the shape (4, 3, 2, 3); accepted: (2, 3, 4, 3) or "
-                          "(frame, 2, 3, 4, 3)",
-                          true},
-                         {"flat.h5", "dataset /spins has the shape (72)", true},
-                         {"empty.h5", "dataset /spins has no frame", true},
-                         {"integer.h5", "dataset /spins is not of type float or double", true},
-                         {"zero.h5", "the spin of site (1, 1, 0) is (0, 0, 0)", false},
-                         {"nan.h5", "the spin of site (3, 2, 1) is (1, 1, nan)", false}}) {
+  for (auto const& wrong : std::vector<Case>{
+           {"none.h5", "cannot open the file: No such file or directory", true},
+           {"text.h5", "it is not an HDF5 file", true},
+           {"folder.h5", "it is not a regular file", true},
+           {"other.h5", "cannot read dataset /spins: it is not there", true},
+           {"shape.h5",
+            "dataset /spins: its extents are (4, 3, 2, 3); accepted: (2, 3, 4, 3) or "
+            "(frame, 2, 3, 4, 3)",
+            true},
+           {"flat.h5", "dataset /spins: its extents are (72)", true},
+           {"empty.h5", "dataset /spins: it holds no frame", true},
+           {"integer.h5", "dataset /spins: its type is neither float nor double", true},
+           {"zero.h5", "the spin of site (1, 1, 0) is (0, 0, 0)", false},
+           {"nan.h5", "the spin of site (3, 2, 1) is (1, 1, nan)", false}}) {
     auto const initial = "{file=\"" + wrong.file + "\"}";
     testing::internal::CaptureStderr();
     auto const message = start_refusal(folder, initial);

@@ -4,6 +4,8 @@
 #include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 
+#include <cayspin/io/scene.hpp>
+
 #include <fcntl.h>
 #include <sys/resource.h>
 
@@ -43,7 +45,7 @@ TEST_F(TrajectoryTest, FullDiskLeavesTheFramesThatFitted) {
   auto const info = read_info(path);
   EXPECT_FALSE(info.complete);
   ASSERT_GT(info.frames, 10);
-  EXPECT_EQ(read_spins(path).spins,
+  EXPECT_EQ(read_spins(path, small_header().shape),
             numbered_spins<double>(small_header(), static_cast<int>(info.frames) - 1));
 }
 
@@ -87,7 +89,9 @@ void make_read_only(fs::path const& path) {
   std::exit(9);
 }
 
-[[noreturn]] void write_to_broken_disk(fs::path const& path) {
+[[noreturn]] void write_to_broken_disk(
+    fs::path const& path, void (*first_use_of_hdf5)() = [] {}) {
+  first_use_of_hdf5();
   auto const spins = numbered_spins<double>(small_header(), 0);
   try {
     auto file = write_frames(path, 5);
@@ -107,6 +111,19 @@ TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {
   auto const info = read_info(path);
   EXPECT_FALSE(info.complete);
   EXPECT_EQ(info.frames, 5);
+}
+
+void look_for_a_start() {
+  Scene scene;
+  scene.initial = FileStart{"missing.h5"};
+  EXPECT_THROW(check_files(scene), SceneError);
+}
+
+TEST_F(TrajectoryTest, FailedWriteOfARunFromAFileIsReported) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  auto const path = folder_ / "a.h5";
+  EXPECT_EXIT(write_to_broken_disk(path, look_for_a_start), testing::ExitedWithCode(3),
+              "a.h5: cannot write .*: Bad file descriptor$");
 }
 
 }  // namespace

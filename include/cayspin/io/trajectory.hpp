@@ -95,23 +95,10 @@ struct TrajectoryInfo {
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 
-/// The spins of one frame.
-struct StoredSpins {
-  std::array<std::int64_t, 3> shape{};  ///< nx, ny, nz
-  std::vector<double> spins;            ///< packed as (nz, ny, nx, 3)
-};
-
-/// Reads dataset /spins of any HDF5 file, (nz, ny, nx, 3) or (frame, nz, ny, nx, 3) of
-/// floating-point numbers: the last frame (the last whole one of a trajectory file). Bits are kept.
-StoredSpins read_spins(std::filesystem::path const& path);
-
-/// A dataset of floating-point numbers, the last index fastest.
-struct StoredArray {
-  std::vector<std::int64_t> extents;
-  std::vector<double> values;
-};
-
-/// Reads one dataset of any HDF5 file as doubles, e.g. "/inertia".
-StoredArray read_array(std::filesystem::path const& path, std::string const& dataset);
+/// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last of
+/// (frame, nz, ny, nx, 3), of a trajectory file the last whole one. Float or double, bits are kept;
+/// the result is packed as (nz, ny, nx, 3).
+std::vector<double> read_spins(std::filesystem::path const& path,
+                               std::array<std::int64_t, 3> const& shape);
 
 }  // namespace cayspin::io

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "dataset.hpp"
+#include "handle.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cayspin::io {
+
+/// A dataset of type float or double in any HDF5 file, read as double.
+/// Its members throw std::runtime_error with one line that begins with the file.
+class RealDataset {
+ public:
+  RealDataset(std::filesystem::path path, std::string name);
+
+  hid_t file() const { return file_.get(); }
+  Extents const& extents() const { return extents_; }
+  /// Machine epsilon of the stored type.
+  double epsilon() const { return epsilon_; }
+
+  /// All of it, or the block of `extents` from `begin` on; the last index is the fastest.
+  std::vector<double> read() const;
+  std::vector<double> read(Extents const& begin, Extents const& extents) const;
+
+  [[noreturn]] void refuse(std::string const& reason) const;
+  [[noreturn]] void refuse_extents(std::string const& accepted) const;
+
+ private:
+  std::filesystem::path path_;
+  std::string name_;
+  FileHandle file_;
+  DatasetHandle dataset_;
+  Extents extents_;
+  double epsilon_ = 0;
+};
+
+}  // namespace cayspin::io
