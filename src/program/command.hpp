@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "plan.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cayspin::program {
+
+struct SceneOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;
+  Precision precision = Precision::double_precision;
+};
+
+struct RunOptions : SceneOptions {
+  std::optional<std::filesystem::path> output;
+  std::optional<std::string> space;
+  std::optional<int> threads, device;
+  bool overwrite = false, quiet = false;
+};
+
+struct CheckOptions : SceneOptions {
+  bool json = false;
+};
+
+/// The commands of the program. Each returns its exit status, or throws.
+int run(RunOptions const& options);
+int check(CheckOptions const& options);
+int methods();
+int info(std::filesystem::path const& file);
+
+}  // namespace cayspin::program

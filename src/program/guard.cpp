@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "guard.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace cayspin::program {
+
+std::optional<std::string> Guard::judge(Step const& step, Energy const& energy,
+                                        double norm_defect) {
+  if (!std::isfinite(norm_defect))
+    return fmt::format("step {}, t = {:.9g}: a spin is not finite any more", step.number,
+                       step.time);
+  if (!std::isfinite(energy.value))
+    return fmt::format("step {}, t = {:.9g}: the energy is not finite any more", step.number,
+                       step.time);
+  auto const before = last_;
+  last_ = {step.number, energy.value};
+  if (!first_) first_ = last_;
+  if (!energy_must_fall_ || !before) return std::nullopt;
+  double const rise = energy.value - before->energy;
+  if (!(rise > 64 * epsilon_ * energy.magnitude)) return std::nullopt;
+  return fmt::format(
+      "step {}, t = {:.9g}: the energy rose by {:.3g}, from {:.9g} at step {} to {:.9g}, where "
+      "damping lets it only fall",
+      step.number, step.time, rise, before->energy, before->step, energy.value);
+}
+
+}  // namespace cayspin::program

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "command.hpp"
+#include "failure.hpp"
+#include "text.hpp"
+
+#include <cayspin/io/trajectory.hpp>
+
+#include <fmt/format.h>
+
+namespace cayspin::program {
+namespace {
+
+void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t frame) {
+  auto const& scalars = info.frame_scalars[frame];
+  auto const& m = scalars.magnetization;
+  fmt::print(
+      "{:<12} step {}, t = {:.9g}: energy {:.9g}, norm defect {:.3g}, "
+      "magnetization ({:.6f}, {:.6f}, {:.6f})\n",
+      name, info.frame_steps[frame], info.frame_times[frame], scalars.energy, scalars.norm_defect,
+      m[0], m[1], m[2]);
+}
+
+}  // namespace
+
+int info(std::filesystem::path const& file) {
+  auto const info = io::read_info(file);
+  auto const& header = info.header;
+  fmt::print("{:<12} {} (format {})\n", "file", file.string(), info.format);
+  fmt::print("{:<12} {}\n", "complete",
+             info.complete ? "yes" : "no: interrupted, failed, or still being written");
+  fmt::print("{:<12} {} x {} x {} sites, {} precision\n", "lattice", header.shape[0],
+             header.shape[1], header.shape[2], header.precision);
+  fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);
+  if (info.frames > 0) print_frame("first frame", info, 0);
+  if (info.frames > 1) print_frame("last frame", info, static_cast<std::size_t>(info.frames) - 1);
+  fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
+             duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
+  fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
+  fmt::print("{:<12} cayspin {} ({}), Kokkos {}\n", "written by", header.cayspin_version,
+             header.git_commit, header.kokkos_version);
+  fmt::print("scene:\n{}{}", header.scene_text, header.scene_text.ends_with('\n') ? "" : "\n");
+  return Status::done;
+}
+
+}  // namespace cayspin::program

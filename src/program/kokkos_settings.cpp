@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "kokkos_settings.hpp"
+
+#include "failure.hpp"
+#include "simulation.hpp"
+
+#include <fmt/format.h>
+
+namespace cayspin::program {
+namespace {
+
+Kokkos::InitializationSettings settings(std::string const& space, std::optional<int> threads,
+                                        std::optional<int> device) {
+  Kokkos::InitializationSettings settings;
+  settings.set_disable_warnings(true);
+  // A pool of threads that never get work would only cost.
+  if (space == "serial") threads = 1;
+  if (threads) settings.set_num_threads(*threads);
+  if (!device) return settings;
+  int const devices = Kokkos::num_devices();
+  if (devices < 1)
+    throw UsageError("--device: there is no device, or no backend for one is compiled in");
+  if (*device >= devices)
+    throw UsageError(fmt::format("--device {}: accepted: 0 .. {}", *device, devices - 1));
+  settings.set_device_id(*device);
+  return settings;
+}
+
+}  // namespace
+
+std::string chosen_space(std::optional<std::string> const& asked) {
+  if (!asked) return space_name<Kokkos::DefaultExecutionSpace>();
+  std::string names;
+  bool known = false;
+  EnabledSpaces::for_each([&]<class Space>() {
+    auto const name = space_name<Space>();
+    known = known || name == *asked;
+    names += (names.empty() ? "" : ", ") + name;
+  });
+  if (!known)
+    throw UsageError(fmt::format("--space {}: not compiled in; accepted: {}", *asked, names));
+  return *asked;
+}
+
+KokkosSession::KokkosSession(std::string const& space, std::optional<int> threads,
+                             std::optional<int> device) {
+  Kokkos::initialize(settings(space, threads, device));
+}
+
+}  // namespace cayspin::program

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "command.hpp"
+#include "failure.hpp"
+#include "text.hpp"
+
+#include <cayspin/version.hpp>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace cayspin::program {
+namespace {
+
+Precision precision(std::string const& name) {
+  for (auto const known : {Precision::double_precision, Precision::single_precision})
+    if (to_string(known) == name) return known;
+  throw UsageError(fmt::format("--precision {}: accepted: double, single", name));
+}
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("SCENE", options.scene, "Scene file (TOML)")->required();
+  command.add_option("--set", options.overrides, "Override a key: key.path=VALUE, a TOML value")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command
+      .add_option_function<std::string>(
+          "--precision", [&](std::string const& name) { options.precision = precision(name); },
+          "double (default) or single")
+      ->type_name("NAME");
+}
+
+int perform(int argc, char** argv) {
+  CLI::App app("Lie-group time integration of spin fields", "cayspin");
+  app.set_version_flag("--version", CAYSPIN_VERSION_STRING);
+  app.require_subcommand(1);
+
+  RunOptions run_options;
+  std::string restart;
+  auto* run_command = app.add_subcommand("run", "Run a scene and write its trajectory (HDF5)");
+  add_scene_options(*run_command, run_options);
+  run_command->add_option("--output", run_options.output, "Trajectory file; wins over output.file");
+  run_command->add_flag("--overwrite", run_options.overwrite, "Replace a file that exists");
+  run_command->add_option("--space", run_options.space, "Kokkos execution space");
+  run_command->add_option("--threads", run_options.threads, "Threads of a host space")
+      ->check(CLI::Range(1, 65536));
+  run_command->add_option("--device", run_options.device, "Number of the device")
+      ->check(CLI::Range(0, 65536));
+  run_command->add_option("--restart", restart, "Go on from the last frame of a trajectory file");
+  run_command->add_flag("--quiet", run_options.quiet, "No progress");
+
+  CheckOptions check_options;
+  auto* check_command = app.add_subcommand(
+      "check", "Validate a scene and say what it models, the stable dt, memory and cost");
+  add_scene_options(*check_command, check_options);
+  check_command->add_flag("--json", check_options.json, "The numbers as JSON");
+
+  auto* methods_command = app.add_subcommand("methods", "List the integrators and their options");
+
+  std::filesystem::path info_file;
+  auto* info_command = app.add_subcommand("info", "Say what a trajectory file holds");
+  info_command->add_option("FILE", info_file, "Trajectory file (HDF5)")->required();
+
+  try {
+    app.parse(argc, argv);
+  } catch (CLI::ParseError const& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);
+    throw UsageError(fmt::format("{} (see cayspin --help)", error.what()));
+  }
+  if (*run_command && run_command->count("--restart") > 0)
+    throw UsageError("--restart: this version cannot restart from a trajectory file yet");
+  if (*run_command) return run(run_options);
+  if (*check_command) return check(check_options);
+  if (*methods_command) return methods();
+  return info(info_file);
+}
+
+int perform_and_report(int argc, char** argv) {
+  auto const report = [](std::string const& message, int status) {
+    std::fflush(stdout);
+    fmt::print(stderr, "cayspin: {}\n", one_line(message));
+    return status;
+  };
+  try {
+    return perform(argc, argv);
+  } catch (NumbersFailed const& error) {
+    return report(error.what(), Status::numbers_failed);
+  } catch (std::bad_alloc const&) {
+    return report("not enough memory", Status::wrong_usage);
+  } catch (std::exception const& error) {
+    return report(error.what(), Status::wrong_usage);
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::program
+
+int main(int argc, char** argv) { return cayspin::program::perform_and_report(argc, argv); }

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "plan.hpp"
+
+#include "applied_field.hpp"
+#include "failure.hpp"
+#include "text.hpp"
+
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/stability.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+namespace cayspin::program {
+namespace {
+
+Lattice make_lattice(io::Scene const& scene) {
+  Lattice lattice;
+  lattice.shape = scene.lattice.shape;
+  lattice.spacing = scene.lattice.spacing;
+  for (int axis = 0; axis < 3; ++axis)
+    lattice.boundary[axis] = scene.lattice.boundary[axis] == io::BoundaryKind::periodic
+                                 ? Boundary::periodic
+                                 : Boundary::open;
+  try {
+    lattice.validate();
+  } catch (std::invalid_argument const& error) {
+    throw io::scene_error(scene, "lattice.shape", error.what());
+  }
+  return lattice;
+}
+
+// The largest |mu0 applied| at 1001 equal times of the run.
+double largest_applied(io::Scene const& scene, Times const& times) {
+  AppliedField const applied(scene);
+  if (!applied.present()) return 0;
+  int const samples = applied.depends_on_time() ? 1000 : 0;
+  double const end = times.at(times.steps);
+  double largest = 0;
+  for (int i = 0; i <= samples; ++i) {
+    double const t = samples == 0 ? 0 : end * i / samples;
+    try {
+      auto const h = applied(t);
+      largest = std::max(largest, std::hypot(h.x, h.y, h.z));
+    } catch (NumbersFailed const& error) {
+      throw io::scene_error(scene, "field.applied", error.what());
+    }
+  }
+  return largest;
+}
+
+double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+  auto const& field = scene.field;
+  double bound =
+      exchange_bound(lattice, field.exchange.value_or(0)) + largest_applied(scene, times);
+  for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
+  if (field.slab_demag) bound += std::abs(field.mu0 * field.slab_demag->strength);
+  return bound;
+}
+
+template <class Real>
+std::int64_t field_bytes(Lattice const& lattice, int components) {
+  return static_cast<std::int64_t>(
+      cayspin::detail::RowLayout::of<Real>(lattice).allocation(components) * sizeof(Real));
+}
+
+template <class Real>
+Memory memory_of(io::Scene const& scene, Lattice const& lattice, MethodEntry const& method) {
+  Memory memory;
+  memory.spins = field_bytes<Real>(lattice, 3);
+  memory.work = method.work_fields * memory.spins;
+  if (auto const& slab = scene.field.slab_demag) {
+    if (slab->on_host) memory.field += memory.spins;
+    if (slab->average_layer) memory.field += 8 * std::ranges::max(lattice.shape);
+  }
+  std::int64_t const numbers = 3 * lattice.sites();
+  std::int64_t start = 8 * numbers;
+  if (std::holds_alternative<io::FileStart>(scene.initial)) start *= 2;
+  if (std::holds_alternative<io::InertiaFile>(scene.system.inertia) &&
+      scene.system.kind == io::SystemKind::rigid_body) {
+    memory.field += field_bytes<Real>(lattice, 6);
+    start += 8 * (9 + 6 + 6) * lattice.sites();
+  }
+  // A frame, and the copy of it that the file's filter takes.
+  std::int64_t const frame = 2 * static_cast<std::int64_t>(sizeof(Real)) * numbers;
+  memory.files = std::max(start - memory.work, frame);
+  return memory;
+}
+
+std::int64_t available_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("MemAvailable:")) return std::stoll(line.substr(13)) * 1024;
+  return std::numeric_limits<std::int64_t>::max();
+}
+
+}  // namespace
+
+std::string_view to_string(Precision precision) {
+  return precision == Precision::double_precision ? "double" : "single";
+}
+
+Plan make_plan(io::Scene const& scene, Precision precision) {
+  auto const lattice = make_lattice(scene);
+  auto const& integrator = scene.integrator;
+  Plan plan{lattice,
+            find_method(integrator.method),
+            {integrator.rotation, integrator.sigma},
+            {0, integrator.dt, integrator.steps},
+            std::numeric_limits<double>::infinity(),
+            {},
+            0,
+            0};
+  if (scene.system.kind == io::SystemKind::llg)
+    plan.stable_dt =
+        plan.method.stable_step(field_bound(scene, lattice, plan.times), scene.system.damping,
+                                scene.system.precession, plan.options);
+  bool const twice = precision == Precision::double_precision;
+  plan.memory = twice ? memory_of<double>(scene, lattice, plan.method)
+                      : memory_of<float>(scene, lattice, plan.method);
+  auto const count = [&](std::int64_t every) { return (integrator.steps + every - 1) / every + 1; };
+  plan.frames = count(scene.output.every);
+  std::int64_t const sample_bytes = 8 * 7;
+  plan.file_bytes = plan.frames * (lattice.sites() * 3 * (twice ? 8 : 4) + sample_bytes) +
+                    count(scene.output.scalars_every) * sample_bytes;
+  return plan;
+}
+
+void require_memory(io::Scene const& scene, Plan const& plan) {
+  std::int64_t const available = available_memory();
+  if (plan.memory.total() > available)
+    throw io::scene_error(scene, "lattice.shape",
+                          fmt::format("the run needs {} of memory, {} are available",
+                                      bytes_text(plan.memory.total()), bytes_text(available)));
+}
+
+}  // namespace cayspin::program

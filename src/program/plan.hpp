@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "method.hpp"
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/lattice/lattice.hpp>
+
+#include <cstdint>
+
+namespace cayspin::program {
+
+enum class Precision { double_precision, single_precision };
+
+std::string_view to_string(Precision precision);
+
+/// Bytes that a run takes, known before it allocates.
+struct Memory {
+  std::int64_t spins = 0;  // the state
+  std::int64_t work = 0;   // the method's
+  std::int64_t field = 0;  // of terms and inertia that are stored per site or layer
+  std::int64_t files = 0;  // the start as it is read, and frames on their way to the file
+
+  std::int64_t simulation() const { return spins + work + field; }
+  std::int64_t total() const { return simulation() + files; }
+};
+
+/// What a scene amounts to: everything that is known before it runs.
+struct Plan {
+  Lattice lattice;
+  MethodEntry const& method;
+  MethodOptions options;
+  Times times;
+  double stable_dt;  // infinity where there is no limit, 0 when every dt amplifies
+  Memory memory;
+  std::int64_t frames;
+  std::int64_t file_bytes;
+};
+
+/// Throws io::SceneError, among others for a lattice that cannot be.
+Plan make_plan(io::Scene const& scene, Precision precision);
+
+/// Throws io::SceneError when the run needs more memory than there is.
+void require_memory(io::Scene const& scene, Plan const& plan);
+
+}  // namespace cayspin::program

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "progress.hpp"
+
+#include "text.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+
+namespace cayspin::program {
+
+Progress::Progress(std::int64_t steps, std::int64_t sites, bool quiet)
+    : quiet_(quiet),
+      terminal_(::isatty(STDOUT_FILENO) == 1),
+      steps_(steps),
+      sites_(sites),
+      next_(quiet ? std::numeric_limits<std::int64_t>::max() : 1) {}
+
+void Progress::show(Step const& step) {
+  auto const now = Clock::now();
+  std::chrono::duration<double> const total = now - begin_, pause = now - shown_;
+  double const seconds = std::max(total.count(), 1e-9);
+  double const rate = static_cast<double>(step.number) / seconds;
+  // Looking at the clock costs as much as a small step, so it is done about ten times a second.
+  next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
+  if (pause.count() < (terminal_ ? 0.1 : 5)) return;
+  shown_ = now;
+  double const done = static_cast<double>(step.number) / static_cast<double>(steps_);
+  auto const text = fmt::format("{:5.1f} %  step {} of {}  {}spin updates/s  {} left", 100 * done,
+                                step.number, steps_, rate_text(rate * static_cast<double>(sites_)),
+                                duration_text(static_cast<double>(steps_ - step.number) / rate));
+  if (terminal_) {
+    constexpr int width = 24;
+    int const filled = static_cast<int>(done * width);
+    fmt::print("\r[{:#<{}}{:.<{}}] {}\x1b[K", "", filled, "", width - filled, text);
+    on_line_ = true;
+  } else {
+    fmt::print("{}\n", text);
+  }
+  std::fflush(stdout);
+}
+
+void Progress::close(Summary const& summary, std::int64_t frames, std::string const& file) {
+  if (quiet_) return;
+  if (on_line_) fmt::print("\r\x1b[K");
+  std::chrono::duration<double> const total = Clock::now() - begin_;
+  auto const updates = static_cast<double>(summary.steps) * static_cast<double>(sites_);
+  std::string rate;
+  if (summary.steps > 0)
+    rate = fmt::format(", stepping at {}spin updates/s",
+                       rate_text(updates / std::max(summary.step_seconds, 1e-9)));
+  fmt::print("{}: {} steps, {} frames in {}{}\n", file, summary.steps, frames,
+             duration_text(total.count()), rate);
+  std::fflush(stdout);
+}
+
+}  // namespace cayspin::program

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/integrate.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace cayspin::program {
+
+/// Tells on standard output how far a run is: a bar on a terminal, otherwise now and then a line.
+class Progress {
+ public:
+  Progress(std::int64_t steps, std::int64_t sites, bool quiet);
+
+  bool due(Step const& step) const { return step.number >= next_; }
+  void show(Step const& step);
+
+  /// One closing line: what was done, and into which file.
+  void close(Summary const& summary, std::int64_t frames, std::string const& file);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  bool quiet_, terminal_;
+  std::int64_t steps_, sites_, next_;
+  Clock::time_point begin_ = Clock::now(), shown_ = begin_;
+  bool on_line_ = false;
+};
+
+}  // namespace cayspin::program

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "cayspin_git_commit.hpp"
+#include "command.hpp"
+#include "failure.hpp"
+#include "kokkos_settings.hpp"
+#include "text.hpp"
+#include "watch.hpp"
+
+#include <cayspin/version.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace cayspin::program {
+namespace {
+
+std::filesystem::path output_file(io::Scene const& scene, RunOptions const& options) {
+  if (options.output) return *options.output;
+  if (scene.output.file) return *scene.output.file;
+  throw io::scene_error(scene, "output.file",
+                        "no file to write to; accepted: this key, or --output FILE.h5");
+}
+
+void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
+  if (!(plan.times.dt > plan.stable_dt) || plan.times.steps == 0) return;
+  auto const reason = plan.stable_dt > 0
+                          ? fmt::format("above the stable {:.6g}", plan.stable_dt)
+                          : std::string(
+                                "not stable: at this damping the method amplifies at every "
+                                "dt");
+  auto const line =
+      io::scene_error(scene, "integrator.dt", fmt::format("{:.6g} is {}", plan.times.dt, reason));
+  fmt::print(stderr, "cayspin: warning: {}\n", line.what());
+}
+
+template <class Space>
+io::TrajectoryHeader make_header(io::Scene const& scene, Precision precision, Space const& exec) {
+  io::TrajectoryHeader header;
+  header.scene_text = scene.text;
+  header.cayspin_version = CAYSPIN_VERSION_STRING;
+  header.git_commit = CAYSPIN_GIT_COMMIT;
+  header.kokkos_version = fmt::format("{}.{}.{}", KOKKOS_VERSION / 10000,
+                                      KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100);
+  header.space = space_name<Space>();
+  header.precision = to_string(precision);
+  header.threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
+  header.shape = scene.lattice.shape;
+  return header;
+}
+
+template <class Real, class Space>
+int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options) {
+  Kokkos::Timer const clock;
+  using Job = Simulation<Real, Space>;
+  typename Job::Spins const spins("spins", plan.lattice);
+  copy_from_host(io::initial_spins(scene), spins);
+  Job job{Space(), spins, SceneGenerator<typename Job::Spins>(scene, plan.lattice), plan.times};
+
+  auto const path = output_file(scene, options);
+  Watch<Real, Space> watch(
+      scene, job.generator, spins,
+      [&] {
+        return io::TrajectoryFile(path, make_header(scene, options.precision, job.exec),
+                                  options.overwrite);
+      },
+      options.quiet);
+  job.observer = &watch;
+
+  auto const kept = [&] {
+    if (!watch.file()) return std::string("no frame was written");
+    auto const& frame = watch.last_frame();
+    return fmt::format("the last good frame is {} in {} (step {}, t = {:.9g})",
+                       watch.file()->frames() - 1, path.string(), frame.step, frame.time);
+  };
+  Summary summary;
+  try {
+    summary = plan.method.advance(&job, plan.options);
+  } catch (NumbersFailed const& error) {
+    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
+  }
+  auto const frames = watch.file() ? watch.file()->frames() : 0;
+  io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
+  bool const whole = !watch.failure() && !watch.interrupted();
+  if (watch.file()) whole ? watch.file()->finish(cost) : watch.file()->close(cost);
+  watch.progress().close(summary, frames, path.string());
+  if (watch.failure())
+    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), *watch.failure(), kept()));
+  if (!watch.interrupted()) return Status::done;
+  fmt::print(stderr, "cayspin: interrupted after step {} of {}; {}\n", summary.steps,
+             plan.times.steps, kept());
+  return Status::interrupted;
+}
+
+}  // namespace
+
+int run(RunOptions const& options) {
+  auto const scene = io::read_scene(options.scene, options.overrides);
+  output_file(scene, options);
+  io::check_files(scene);
+  auto const plan = make_plan(scene, options.precision);
+  require_memory(scene, plan);
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  warn_above_stable_dt(scene, plan);
+  catch_signals();
+  int status = Status::wrong_usage;
+  EnabledSpaces::for_each([&]<class Space>() {
+    if (space_name<Space>() != space) return;
+    status = options.precision == Precision::double_precision
+                 ? run_on<double, Space>(scene, plan, options)
+                 : run_on<float, Space>(scene, plan, options);
+  });
+  return status;
+}
+
+}  // namespace cayspin::program

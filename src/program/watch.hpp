@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "guard.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "simulation.hpp"
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/io/trajectory.hpp>
+#include <cayspin/observer/record.hpp>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace cayspin::program {
+
+inline io::Scalars as_scalars(Sample const& sample) {
+  auto const& m = sample.magnetization;
+  return {sample.energy.value, sample.norm_defect, {m.x, m.y, m.z}};
+}
+
+/// Looks are cheap up to this many sites and taken at every step; beyond, at every tenth.
+inline std::int64_t guard_period(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
+
+inline bool energy_must_fall(io::Scene const& scene) {
+  return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
+         !io::depends_on_time(scene) && scene.integrator.energy_guard &&
+         !io::is_classical(scene.integrator.method);
+}
+
+/// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
+/// ends before the end, the progress.
+template <class Real, class Space>
+class Watch : public Observer<Space, SpinField<Real, typename Space::memory_space>> {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+  using Frame = Kokkos::View<Real* [3], Kokkos::LayoutRight, typename Space::memory_space>;
+
+ public:
+  using OpenFile = std::function<io::TrajectoryFile()>;
+
+  /// `open_file` is called at the first look, when all memory of the run has been allocated.
+  Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
+        OpenFile open_file, bool quiet)
+      : generator_(generator),
+        output_(scene.output),
+        until_torque_(scene.integrator.until_torque),
+        open_file_(std::move(open_file)),
+        guard_(energy_must_fall(scene), std::numeric_limits<Real>::epsilon(),
+               guard_period(spins.sites())),
+        progress_(scene.integrator.steps, spins.sites(), quiet),
+        frame_("cayspin::frame", static_cast<std::size_t>(spins.sites())),
+        host_frame_(Kokkos::create_mirror_view(frame_)) {
+    if (until_torque_) torque_.emplace(generator.precession_alone());
+  }
+
+  bool due(Step const& step) const override {
+    return guard_.due(step) || frame_due(step) || scalars_due(step) || progress_.due(step) ||
+           interrupt_requested();
+  }
+
+  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    if (progress_.due(step)) progress_.show(step);
+    bool const interrupt = interrupt_requested();
+    bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
+    if (!recorded && !guard_.due(step)) return Next::proceed;
+
+    Sample now{step.number,
+               step.time,
+               energy(exec, generator_, spins, step.time),
+               norm_defect(exec, spins),
+               {}};
+    failure_ = guard_.judge(step, now.energy, now.norm_defect);
+    if (failure_) return Next::stop;
+    at_rest_ = torque_ && step.number > 0 && now.energy.value < guard_.first_energy() &&
+               largest_rate(exec, *torque_, spins, step.time) < *until_torque_;
+    bool const ends = interrupt || at_rest_;
+    interrupted_ = interrupt && !at_rest_ && !step.last;
+    if (recorded || ends) {
+      now.magnetization = magnetization(exec, spins);
+      write(exec, now, spins, frame_due(step) || ends, scalars_due(step) || ends);
+    }
+    return ends ? Next::stop : Next::proceed;
+  }
+
+  /// Why the run failed, if it did.
+  std::optional<std::string> const& failure() const { return failure_; }
+  bool interrupted() const { return interrupted_; }
+  Sample const& last_frame() const { return last_frame_; }
+  std::optional<io::TrajectoryFile>& file() { return file_; }
+  Progress& progress() { return progress_; }
+
+ private:
+  static bool at(Step const& step, std::int64_t every) {
+    return step.last || step.number % every == 0;
+  }
+  bool frame_due(Step const& step) const { return at(step, output_.every); }
+  bool scalars_due(Step const& step) const { return at(step, output_.scalars_every); }
+
+  void write(Space const& exec, Sample const& now, Spins const& spins, bool frame, bool scalars) {
+    if (!file_) file_.emplace(open_file_());
+    if (scalars) file_->write_scalars(now.step, now.time, as_scalars(now));
+    if (!frame) return;
+    copy(exec, spins, frame_);
+    Kokkos::deep_copy(exec, host_frame_, frame_);
+    exec.fence("cayspin::Watch: frame copied");
+    file_->write_frame(now.step, now.time, as_scalars(now), host_frame_.data());
+    last_frame_ = now;
+  }
+
+  SceneGenerator<Spins> generator_;
+  std::optional<SceneGenerator<Spins>> torque_;
+  io::Output output_;
+  std::optional<double> until_torque_;
+  OpenFile open_file_;
+  std::optional<io::TrajectoryFile> file_;
+  Guard guard_;
+  Progress progress_;
+  Frame frame_;
+  typename Frame::HostMirror host_frame_;
+  Sample last_frame_;
+  std::optional<std::string> failure_;
+  bool interrupted_ = false, at_rest_ = false;
+};
+
+}  // namespace cayspin::program
