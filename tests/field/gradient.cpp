@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Every term: H = -dE/dm by differences of the total energy, and both against formulas by hand.
+#include "terms.hpp"
+
+namespace cayspin::test {
+namespace {
+
+// Rows across a pack, a periodic pair, a rest of a pack; spacings of their own.
+std::vector<Lattice> const lattices{
+    {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::open, Boundary::open, Boundary::open}},
+    {{9, 3, 2}, {0.5, 0.8, 1.25}, {Boundary::periodic, Boundary::open, Boundary::periodic}},
+    {{2, 1, 19}, {0.7, 1, 0.9}, {Boundary::periodic, Boundary::periodic, Boundary::open}}};
+
+template <class Backend>
+class Terms : public ::testing::Test {
+ protected:
+  using Real = typename Backend::Real;
+  using Spins = typename Backend::Spins;
+
+  /// `term`: a field term or EffectiveField. Lengths are not kept: E and H hold for all numbers.
+  /// `precision`: epsilon of the energy, which a field stored in float limits.
+  template <class Term>
+  static void check(std::string const& what, Lattice const& lattice, Term const& term,
+                    ByHand const& by_hand, double t = 0, double precision = epsilon<double>) {
+    typename Backend::Exec const exec;
+    // Rounded to the field's precision, so that both sides start from the same numbers.
+    auto const m = numbers_of(spins_of<Spins>(lattice, random_directions(lattice.sites(), 11)));
+    auto const spins = spins_of<Spins>(lattice, m);
+    auto const field = evaluated(exec, term, spins, t);
+    Energy const total = energy(exec, term, spins, t);
+    // All coefficients are below 8; exchange adds six differences, each divided by 1/4.
+    double const field_size = 64, energy_size = total.magnitude + 1;
+    EXPECT_NEAR(total.value, by_hand.energy(m), 16 * precision * energy_size) << what;
+
+    // E is quadratic at most, so a central difference has no error but rounding, at any step.
+    double const step = 0.5;
+    for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+      Vec3<double> const h = at(field, site), expected = by_hand.field(m, site);
+      double const found[3] = {h.x, h.y, h.z}, wanted[3] = {expected.x, expected.y, expected.z};
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(found[c], wanted[c], epsilon<Real> * field_size) << what << ", site " << site;
+        if (site % 5 != 0 && site + 1 != lattice.sites()) continue;
+        auto const energy_at = [&](double change) {
+          auto moved = m;
+          moved[3 * site + c] += change;
+          copy_from_host(moved, spins);
+          return energy(exec, term, spins, t).value;
+        };
+        double const slope = (energy_at(step) - energy_at(-step)) / (2 * step);
+        double const bound = epsilon<Real> * field_size + 16 * precision * energy_size / step;
+        EXPECT_NEAR(found[c], -slope, bound) << what << ", site " << site << ", component " << c;
+      }
+    }
+  }
+};
+TYPED_TEST_SUITE(Terms, Backends, BackendName);
+
+Vec3<double> turning(double t) { return {0.7 * std::cos(t), 0.7 * std::sin(t), 0.9}; }
+
+TYPED_TEST(Terms, Exchange) {
+  for (auto const& lattice : lattices)
+    this->check("exchange", lattice, EffectiveField(Exchange(lattice, 1.3)),
+                exchange_by_hand(lattice, 1.3));
+}
+
+TYPED_TEST(Terms, LocalTerms) {
+  auto const& lattice = lattices[0];
+  this->check("anisotropy", lattice, UniaxialAnisotropy(1.7, {1, -2, 2}),
+              anisotropy_by_hand(1.7, {1, -2, 2}));
+  this->check("a second anisotropy", lattice, UniaxialAnisotropy(-0.4, {0, 3, 1}),
+              anisotropy_by_hand(-0.4, {0, 3, 1}));
+  this->check("applied field", lattice, Zeeman{{0.3, -0.4, 5}}, zeeman_by_hand({0.3, -0.4, 5}));
+  this->check("field in time", lattice, TimeDependentZeeman(turning), zeeman_by_hand(turning(2.5)),
+              2.5);
+  this->check("slab", lattice, SlabDemag({1, 2, -2}, 1.2), slab_by_hand({1, 2, -2}, 1.2));
+}
+
+TYPED_TEST(Terms, LayeredSlab) {
+  for (auto const& lattice : lattices)
+    for (int axis = 0; axis < 3; ++axis) {
+      using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
+      this->check("layers along " + std::to_string(axis), lattice,
+                  EffectiveField(Layers(lattice, axis, 1.2)), layers_by_hand(lattice, axis, 1.2));
+    }
+}
+
+TYPED_TEST(Terms, SlabOnTheHost) {
+  using OnHost = HostField<typename TypeParam::Spins, SlabDemagOnHost>;
+  for (auto const& lattice : lattices) {
+    this->check("slab on the host", lattice,
+                EffectiveField(OnHost(lattice, SlabDemagOnHost({1, 2, -2}, 1.2))),
+                slab_by_hand({1, 2, -2}, 1.2), 0, epsilon<typename TypeParam::Real>);
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3<double> const normal{axis == 0 ? -2.0 : 0.0, axis == 1 ? 1.0 : 0.0,
+                                axis == 2 ? 1.0 : 0.0};
+      this->check("layers on the host along " + std::to_string(axis), lattice,
+                  EffectiveField(OnHost(lattice, SlabDemagOnHost(normal, 1.2, true))),
+                  layers_by_hand(lattice, axis, 1.2), 0, epsilon<typename TypeParam::Real>);
+    }
+  }
+}
+
+/// A host field that does not depend on the spins.
+struct Given {
+  static constexpr int degree = 1;
+  template <class HostSpins>
+  void operator()(HostSpins const&, HostSpins const& field, double t) const {
+    using Real = typename HostSpins::value_type;
+    auto const h = turning(t);
+    for (std::int64_t site = 0; site < field.sites(); ++site)
+      field.set(site, {static_cast<Real>(h.x), static_cast<Real>(h.y), static_cast<Real>(h.z)});
+  }
+};
+
+TYPED_TEST(Terms, HostFieldThatDoesNotDependOnSpins) {
+  using Spins = typename TypeParam::Spins;
+  auto const h = turning(2.5);
+  Vec3<double> const rounded{static_cast<typename TypeParam::Real>(h.x),
+                             static_cast<typename TypeParam::Real>(h.y),
+                             static_cast<typename TypeParam::Real>(h.z)};
+  this->check("given", lattices[0], EffectiveField(HostField<Spins, Given>(lattices[0], Given())),
+              zeeman_by_hand(rounded), 2.5);
+}
+
+TYPED_TEST(Terms, AllTogether) {
+  auto const& lattice = lattices[1];
+  using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
+  EffectiveField const field(Exchange(lattice, 1.3), UniaxialAnisotropy(1.7, {1, -2, 2}),
+                             UniaxialAnisotropy(-0.4, {0, 3, 1}), TimeDependentZeeman(turning),
+                             Layers(lattice, 1, 1.2));
+  std::vector<ByHand> const parts{exchange_by_hand(lattice, 1.3),
+                                  anisotropy_by_hand(1.7, {1, -2, 2}),
+                                  anisotropy_by_hand(-0.4, {0, 3, 1}), zeeman_by_hand(turning(0.5)),
+                                  layers_by_hand(lattice, 1, 1.2)};
+  this->check("sum of terms", lattice, field,
+              {[&](auto const& m, std::int64_t site) {
+                 Vec3<double> h{0, 0, 0};
+                 for (auto const& part : parts) h = h + part.field(m, site);
+                 return h;
+               },
+               [&](auto const& m) {
+                 double sum = 0;
+                 for (auto const& part : parts) sum += part.energy(m);
+                 return sum;
+               }},
+              0.5);
+}
+
+}  // namespace
+}  // namespace cayspin::test

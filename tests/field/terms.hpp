@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "../support/evaluate.hpp"
+
+#include <cayspin/cayspin.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace cayspin::test {
+
+inline Vec3<double> unit(Vec3<double> const& v) { return normalized(v, "a test's vector"); }
+
+/// Field and energy of a term, by hand, on the host: H of all sites from the numbers (sites, 3).
+struct ByHand {
+  std::function<Vec3<double>(std::vector<double> const&, std::int64_t site)> field;
+  std::function<double(std::vector<double> const&)> energy;
+};
+
+/// The pairs of neighbours along an axis; a periodic axis of extent 2 has its pair twice.
+struct Bond {
+  std::int64_t from, to;
+  double spacing;
+};
+
+inline std::vector<Bond> bonds(Lattice const& lattice) {
+  std::vector<Bond> all;
+  auto const& n = lattice.shape;
+  std::int64_t const stride[3] = {1, n[0], n[0] * n[1]};
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+      std::int64_t const index = site / stride[axis] % n[axis];
+      bool const end = index + 1 == n[axis];
+      if (n[axis] == 1 || (end && lattice.boundary[axis] == Boundary::open)) continue;
+      std::int64_t const next = end ? site - (n[axis] - 1) * stride[axis] : site + stride[axis];
+      all.push_back({site, next, lattice.spacing[axis]});
+    }
+  return all;
+}
+
+/// Terms that act site by site: H(m) and E(m).
+inline ByHand each_site(std::function<Vec3<double>(Vec3<double> const&)> field,
+                        std::function<double(Vec3<double> const&)> energy) {
+  return {[field](auto const& m, std::int64_t site) { return field(at(m, site)); },
+          [energy](auto const& m) {
+            double sum = 0;
+            for (std::size_t site = 0; site < m.size() / 3; ++site) sum += energy(at(m, site));
+            return sum;
+          }};
+}
+
+inline ByHand exchange_by_hand(Lattice const& lattice, double constant) {
+  return {[=](auto const& m, std::int64_t site) {
+            Vec3<double> h{0, 0, 0};
+            for (auto const& bond : bonds(lattice)) {
+              double const c = constant / (bond.spacing * bond.spacing);
+              if (bond.from == site) h = h + c * (at(m, bond.to) - at(m, site));
+              if (bond.to == site) h = h + c * (at(m, bond.from) - at(m, site));
+            }
+            return h;
+          },
+          [=](auto const& m) {
+            double sum = 0;
+            for (auto const& bond : bonds(lattice)) {
+              auto const d = at(m, bond.to) - at(m, bond.from);
+              sum += 0.5 * constant * dot(d, d) / (bond.spacing * bond.spacing);
+            }
+            return sum;
+          }};
+}
+
+inline ByHand anisotropy_by_hand(double k, Vec3<double> const& axis) {
+  auto const e = unit(axis);
+  return each_site([=](auto const& m) { return (k * dot(m, e)) * e; },
+                   [=](auto const& m) { return -0.5 * k * dot(m, e) * dot(m, e); });
+}
+
+inline ByHand zeeman_by_hand(Vec3<double> const& applied) {
+  return each_site([=](auto const&) { return applied; },
+                   [=](auto const& m) { return -dot(m, applied); });
+}
+
+inline ByHand slab_by_hand(Vec3<double> const& normal, double strength) {
+  return anisotropy_by_hand(-strength, normal);
+}
+
+inline ByHand layers_by_hand(Lattice const& lattice, int axis, double strength) {
+  auto const component = [axis](Vec3<double> const& m) {
+    return axis == 0 ? m.x : axis == 1 ? m.y : m.z;
+  };
+  auto const layer = [=](std::int64_t site) {
+    auto const& n = lattice.shape;
+    return axis == 0 ? site % n[0] : axis == 1 ? site / n[0] % n[1] : site / (n[0] * n[1]);
+  };
+  auto const average = [=](std::vector<double> const& m, std::int64_t which) {
+    double sum = 0;
+    int count = 0;
+    for (std::int64_t site = 0; site < lattice.sites(); ++site)
+      if (layer(site) == which) sum += component(at(m, site)), ++count;
+    return sum / count;
+  };
+  return {[=](auto const& m, std::int64_t site) {
+            double const h = -strength * average(m, layer(site));
+            return Vec3<double>{axis == 0 ? h : 0, axis == 1 ? h : 0, axis == 2 ? h : 0};
+          },
+          [=](auto const& m) {
+            double sum = 0;
+            for (std::int64_t site = 0; site < lattice.sites(); ++site)
+              sum += 0.5 * strength * average(m, layer(site)) * component(at(m, site));
+            return sum;
+          }};
+}
+
+}  // namespace cayspin::test
