@@ -26,11 +26,15 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(RowLayout const& layout, std::int
   auto const part = static_cast<std::int32_t>(task % per_row);
   auto const begin = static_cast<std::int32_t>(std::int64_t(packs) * part / per_row);
   auto const end = static_cast<std::int32_t>(std::int64_t(packs) * (part + 1) / per_row);
-  std::int32_t pack = begin;
-  if (pack == 0) functor(Site<Value, true>(row, 0)), ++pack;
-  for (std::int32_t const inner = std::min(end, packs - 1); pack < inner; ++pack)
+  // The ends of the row share one instance of the functor: kernels are large, and compile slowly.
+  std::int32_t const last = packs - 1;
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC unroll 1
+#endif
+  for (std::int32_t pack = 0; pack <= last; pack += std::max<std::int32_t>(last, 1))
+    if (begin <= pack && pack < end) functor(Site<Value, true>(row, pack * lanes));
+  for (std::int32_t pack = std::max<std::int32_t>(begin, 1); pack < std::min(end, last); ++pack)
     functor(Site<Value, false>(row, pack * lanes));
-  if (pack < end) functor(Site<Value, true>(row, pack * lanes));
 }
 
 #if defined(__GNUC__)
