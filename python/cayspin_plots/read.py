@@ -37,8 +37,19 @@ class Trajectory:
         return self.spins.reshape(len(self.spins), -1, 3)[:, number]
 
 
-def _series(group, count=None):
-    columns = [group[name][:count] for name in ("time", "energy", "norm_defect", "magnetization")]
+def _dataset(file, name, rank, columns=()):
+    """A dataset of numbers with `rank` extents, the last of them `columns` where it is given."""
+    dataset = file[name]
+    if (not isinstance(dataset, h5py.Dataset) or dataset.dtype.kind not in "fi"
+            or len(dataset.shape or ()) != rank or dataset.shape[rank - len(columns):] != columns):
+        raise ValueError(f"{name} is not the dataset of a trajectory")
+    return dataset
+
+
+def _series(file, group=""):
+    names = [group + name for name in ("time", "energy", "norm_defect")]
+    columns = [_dataset(file, name, 1)[:] for name in names]
+    columns.append(_dataset(file, group + "magnetization", 2, (3,))[:])
     whole = min(len(column) for column in columns)
     return Series(*(column[:whole] for column in columns))
 
@@ -50,17 +61,18 @@ def read_trajectory(path):
     try:
         with h5py.File(path, "r") as file:
             frames = _series(file)
-            count = min(len(file["spins"]), len(frames.time))
+            spins = _dataset(file, "spins", 5, (3,))
+            count = min(len(spins), len(frames.time))
             if count == 0:
                 raise SystemExit(f"{path}: it holds no frame")
-            samples = _series(file["scalars"])
+            samples = _series(file, "scalars/")
             return Trajectory(
                 path=str(path),
                 time=frames.time[:count],
-                spins=file["spins"][:count],
+                spins=spins[:count],
                 scalars=samples if len(samples.time) >= count else frames,
                 precision=file.attrs["precision"],
                 complete=bool(file.attrs["complete"]),
             )
-    except (OSError, KeyError) as error:
+    except (OSError, KeyError, ValueError) as error:
         raise SystemExit(f"{path}: cannot read the trajectory: {error.args[-1]}") from None

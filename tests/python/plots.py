@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Runs the scripts that draw, as a user does: plots.py FOLDER_OF_SCRIPTS WRITER_OF_TRAJECTORIES."""
+
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import matplotlib.image
+import numpy as np
+
+SCRIPTS, WRITER = map(pathlib.Path, sys.argv[1:3])
+sys.path.insert(0, str(SCRIPTS))
+
+from cayspin_plots.read import read_trajectory  # noqa: E402  the folder has to be known before
+
+BLUE, RED = (0x1B, 0x5F, 0xA7), (0xCF, 0x3F, 0x2B)
+PIXELS_PER_INCH = 160
+
+
+def write(path, sites=5, length=1.0):
+    subprocess.run([WRITER, path, str(sites), str(length)], check=True)
+    return path
+
+
+def dimensions(png):
+    content = png.read_bytes()
+    assert content[:8] == b"\x89PNG\r\n\x1a\n" and content[12:16] == b"IHDR", content[:16]
+    return struct.unpack(">II", content[16:24])
+
+
+class ScriptTest(unittest.TestCase):
+    fonts = tempfile.TemporaryDirectory()  # Matplotlib makes a list of them once
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_script(self, name, *arguments):
+        return subprocess.run([sys.executable, "-B", SCRIPTS / name, *map(str, arguments)],
+                              env=os.environ | {"MPLCONFIGDIR": self.fonts.name},
+                              capture_output=True, text=True)
+
+    def assert_drawn(self, png, inches, colors, result):
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.stdout, f"{png}\n")
+        self.assertEqual(dimensions(png), tuple(round(PIXELS_PER_INCH * side) for side in inches))
+        self.assertTrue(15_000 < png.stat().st_size < 3_000_000, png.stat().st_size)
+        pixels = np.round(255 * matplotlib.image.imread(png)[..., :3]).astype(int)
+        for color in colors:
+            count = int(np.all(abs(pixels - color) <= 2, axis=-1).sum())
+            self.assertGreater(count, 300, f"pixels of the color {color}")
+
+    def assert_refused(self, png, file, part, result):
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertTrue(result.stderr.startswith(f"{file}: "), result.stderr)
+        self.assertIn(part, result.stderr)
+        self.assertFalse(png.exists())
+
+
+class PlotTrajectory(ScriptTest):
+    def plot(self, *arguments):
+        return self.run_script("plot_trajectory.py", *arguments)
+
+    def test_everything(self):
+        file = write(self.folder / "chain.h5")
+        self.assert_drawn(file.with_suffix(".png"), (11, 14), (BLUE, RED), self.plot(file))
+
+    def test_single_spin_has_no_components_along_x(self):
+        file = write(self.folder / "spin.h5", sites=1)
+        self.assert_drawn(file.with_suffix(".png"), (11, 8.3), (BLUE, RED), self.plot(file))
+
+    def test_chosen_panel_under_another_name(self):
+        file = write(self.folder / "chain.h5")
+        png = self.folder / "energy.png"
+        result = self.plot(file, "--panels", "energy", "--output", png)
+        self.assert_drawn(png, (11, 4.3), (BLUE,), result)
+
+    def test_truncated_file(self):
+        file = write(self.folder / "chain.h5")
+        os.truncate(file, file.stat().st_size // 2)
+        self.assert_refused(file.with_suffix(".png"), file, "cannot read", self.plot(file))
+
+    def test_site_that_is_not_there(self):
+        file = write(self.folder / "chain.h5")
+        result = self.plot(file, "--site", 5)
+        self.assert_refused(file.with_suffix(".png"), file, "no site 5; there are 5", result)
+
+    def test_folder_that_is_not_there(self):
+        file = write(self.folder / "chain.h5")
+        png = self.folder / "none" / "chain.png"
+        self.assert_refused(png, png, "cannot write", self.plot(file, "--output", png))
+
+
+class PlotDemo(ScriptTest):
+    def setUp(self):
+        super().setUp()
+        self.geometric = write(self.folder / "geometric.h5")
+        self.classical = write(self.folder / "classical.h5", length=1.25)
+        self.png = self.folder / "demo.png"
+
+    def plot(self, *arguments):
+        return self.run_script("plot_demo.py", *arguments, "--site", 3, "--output", self.png)
+
+    def test_two_runs(self):
+        result = self.plot(self.geometric, self.classical)
+        self.assert_drawn(self.png, (11, 8), (BLUE, RED), result)
+
+    def test_reference_adds_to_the_picture(self):
+        self.plot(self.geometric, self.classical)
+        without = self.png.read_bytes()
+        result = self.plot(self.geometric, self.classical, "--reference", self.geometric)
+        self.assert_drawn(self.png, (11, 8), (BLUE, RED), result)
+        self.assertNotEqual(self.png.read_bytes(), without)
+
+    def test_corrupt_file_in_each_place(self):
+        text = self.folder / "text.h5"
+        text.write_text("not a trajectory\n")
+        for arguments in ((text, self.classical), (self.geometric, text),
+                          (self.geometric, self.classical, "--reference", text)):
+            with self.subTest(arguments):
+                self.assert_refused(self.png, text, "cannot read", self.plot(*arguments))
+
+
+class CorruptFile(ScriptTest):
+    def setUp(self):
+        super().setUp()
+        self.file = write(self.folder / "a.h5")
+
+    def assert_file_refused(self, part="cannot read the trajectory: "):
+        """In this process: starting Matplotlib for each of many files takes its time."""
+        with self.assertRaises(SystemExit) as caught:
+            read_trajectory(self.file)
+        self.assertNotIn("\n", caught.exception.code)
+        self.assertTrue(caught.exception.code.startswith(f"{self.file}: {part}"),
+                        caught.exception.code)
+
+    def change(self, change):
+        with h5py.File(self.file, "r+") as file:
+            change(file)
+
+    def test_no_file(self):
+        self.file.unlink()
+        self.assert_file_refused("there is no such file")
+
+    def test_truncated(self):
+        size = self.file.stat().st_size
+        for kept in (size - 1, size // 2, 600, 4, 0):
+            with self.subTest(kept=kept):
+                os.truncate(self.file, kept)
+                self.assert_file_refused()
+
+    def test_checksum(self):
+        with h5py.File(self.file) as file:
+            known = file["spins"][3].tobytes()
+        content = bytearray(self.file.read_bytes())
+        content[content.index(known)] ^= 1
+        self.file.write_bytes(content)
+        self.assert_file_refused()
+
+    def test_something_missing(self):
+        for name in ("spins", "time", "scalars/energy", "scalars"):
+            with self.subTest(name):
+                write(self.file)
+                self.change(lambda file: file.pop(name))
+                self.assert_file_refused()
+        for name in ("precision", "complete"):
+            with self.subTest(name):
+                write(self.file)
+                self.change(lambda file: file.attrs.pop(name))
+                self.assert_file_refused()
+
+    def test_no_frame(self):
+        self.change(lambda file: file["time"].resize(0, axis=0))
+        self.assert_file_refused("it holds no frame")
+
+    def test_wrong_extents(self):
+        for name, values in (("spins", np.zeros((20, 15))), ("spins", np.float64(1)),
+                             ("spins", np.zeros((20, 1, 1, 5, 2))), ("spins", np.bytes_("text")),
+                             ("magnetization", np.zeros(20)), ("time", np.zeros((20, 2))),
+                             ("scalars", np.zeros(20))):
+            with self.subTest(name, shape=values.shape):
+                write(self.file)
+
+                def replace(file):
+                    del file[name]
+                    file[name] = values
+
+                self.change(replace)
+                self.assert_file_refused()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
