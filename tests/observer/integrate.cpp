@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What integrate() does around a stepper: times, calls of observers, early ends, counts.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+
+#include <limits>
+#include <stdexcept>
+
+namespace cayspin::test {
+
+/// Counts how often its A is asked for, on one site in host memory.
+struct CountingGenerator {
+  std::int64_t* evaluations;
+  std::vector<double>* times;
+
+  struct Prepared {
+    std::int64_t* evaluations;
+    template <class Stencil>
+    KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {
+      ++*evaluations;
+      return stencil.center();
+    }
+  };
+  template <class Exec, class Spins>
+  Prepared prepare(Exec const&, Spins const&, double t) const {
+    times->push_back(t);
+    return {evaluations};
+  }
+};
+
+namespace {
+
+/// Steps nothing and remembers; cannot be copied.
+template <class Spins>
+struct Remembering {
+  using spins_type = Spins;
+  static constexpr int evaluations = 3;
+  std::vector<double> starts, steps;
+
+  Remembering() = default;
+  Remembering(Remembering const&) = delete;
+
+  template <class Exec, class Generator>
+  void step(Exec const&, Generator const&, Spins&, double t, double dt) {
+    starts.push_back(t);
+    steps.push_back(dt);
+  }
+};
+
+template <class Backend>
+class Integrate : public ::testing::Test {
+ protected:
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec exec;
+  RigidBody generator = RigidBody::principal(1, 2, 3);
+  Spins spins = Spins("spins", Lattice::chain(3));
+  Remembering<Spins> stepper;
+  std::vector<Step> seen;
+
+  auto remember() {
+    return [this](auto const&, Step const& step, auto const&) { seen.push_back(step); };
+  }
+  std::vector<std::int64_t> numbers() const {
+    std::vector<std::int64_t> all;
+    for (auto const& step : seen) all.push_back(step.number);
+    return all;
+  }
+};
+TYPED_TEST_SUITE(Integrate, Backends, BackendName);
+
+using Numbers = std::vector<std::int64_t>;
+
+// 0.1 is not a sum of itself: adding it up would show in the last digits.
+TYPED_TEST(Integrate, TimesAreProducts) {
+  Times const times{-1.5, 0.1, 1000};
+  Summary const summary =
+      integrate(this->exec, this->stepper, this->generator, this->spins, times, this->remember());
+  ASSERT_EQ(this->seen.size(), 1001U);
+  ASSERT_EQ(this->stepper.starts.size(), 1000U);
+  for (std::int64_t n = 0; n <= 1000; ++n) {
+    double const expected = -1.5 + static_cast<double>(n) * 0.1;
+    EXPECT_EQ(this->seen[n].number, n);
+    EXPECT_EQ(this->seen[n].time, expected);
+    EXPECT_EQ(this->seen[n].dt, 0.1);
+    EXPECT_EQ(this->seen[n].last, n == 1000);
+    if (n == 1000) break;
+    EXPECT_EQ(this->stepper.starts[n], expected);
+  }
+  for (double const dt : this->stepper.steps) EXPECT_EQ(dt, 0.1);
+  EXPECT_EQ(summary.steps, 1000);
+  EXPECT_EQ(summary.evaluations, 3000);
+  EXPECT_FALSE(summary.stopped);
+  EXPECT_GE(summary.step_seconds, 0);
+}
+
+TYPED_TEST(Integrate, EveryThinsOutAndNeverMissesTheEnds) {
+  integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 10},
+            Every(4, this->remember()));
+  EXPECT_EQ(this->numbers(), (Numbers{0, 4, 8, 10}));
+  this->seen.clear();
+  integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 9},
+            Every(3, this->remember()));
+  EXPECT_EQ(this->numbers(), (Numbers{0, 3, 6, 9}));
+  EXPECT_THROW(Every(0, this->remember()), std::invalid_argument);
+}
+
+TYPED_TEST(Integrate, ObserversAreCalledEachWhenDueAndInOrder) {
+  std::vector<int> who;
+  integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 4},
+            Every(2, [&](auto const&, Step const&, auto const&) { who.push_back(1); }),
+            [&](auto const&, Step const&, auto const&) { who.push_back(2); });
+  EXPECT_EQ(who, (std::vector<int>{1, 2, 2, 1, 2, 2, 1, 2}));
+}
+
+// The others are still called at the step where one says stop.
+TYPED_TEST(Integrate, AnObserverEndsIt) {
+  auto const stop_at = [](std::int64_t number) {
+    return [number](auto const&, Step const& step, auto const&) {
+      return step.number == number ? Next::stop : Next::proceed;
+    };
+  };
+  auto const run = [&](std::int64_t number) {
+    this->seen.clear();
+    return integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 5},
+                     stop_at(number), this->remember());
+  };
+  Summary const early = run(2);
+  EXPECT_EQ(this->numbers(), (Numbers{0, 1, 2}));
+  EXPECT_EQ(early.steps, 2);
+  EXPECT_TRUE(early.stopped);
+  EXPECT_EQ(run(0).steps, 0);
+  Summary const at_the_end = run(5);
+  EXPECT_EQ(at_the_end.steps, 5);
+  EXPECT_FALSE(at_the_end.stopped);
+  auto thinned = Every(3, stop_at(3));
+  Summary const by_every =
+      integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 9}, thinned);
+  EXPECT_EQ(by_every.steps, 3);
+  EXPECT_TRUE(by_every.stopped);
+}
+
+TYPED_TEST(Integrate, NoStepsIsOneLook) {
+  Summary const summary = integrate(this->exec, this->stepper, this->generator, this->spins,
+                                    {2, 0.1, 0}, this->remember());
+  ASSERT_EQ(this->numbers(), (Numbers{0}));
+  EXPECT_TRUE(this->seen[0].last);
+  EXPECT_EQ(this->seen[0].time, 2);
+  EXPECT_EQ(summary.steps, 0);
+  EXPECT_EQ(summary.evaluations, 0);
+  EXPECT_TRUE(this->stepper.starts.empty());
+  Summary const unseen =
+      integrate(this->exec, this->stepper, this->generator, this->spins, {2, 0.1, 3});
+  EXPECT_EQ(unseen.steps, 3);
+}
+
+TYPED_TEST(Integrate, WhatIsRefused) {
+  auto const run = [&](Times const& times) {
+    integrate(this->exec, this->stepper, this->generator, this->spins, times);
+  };
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(run({0, nan, 1}), std::invalid_argument);
+  EXPECT_THROW(run({nan, 0.1, 1}), std::invalid_argument);
+  EXPECT_THROW(run({0, std::numeric_limits<double>::infinity(), 1}), std::invalid_argument);
+  EXPECT_THROW(run({0, 0.1, -1}), std::invalid_argument);
+  EXPECT_TRUE(this->stepper.starts.empty());
+
+  LieEuler stepper(this->spins);
+  for (auto const& lattice : {Lattice::chain(4), Lattice::chain(3, 0.5)}) {
+    typename TypeParam::Spins other("other", lattice);
+    EXPECT_THROW(integrate(this->exec, stepper, this->generator, other, Times{0, 0.1, 1}),
+                 std::invalid_argument);
+  }
+}
+
+TYPED_TEST(Integrate, RecordKeepsWhatItSees) {
+  using Real = typename TypeParam::Real;
+  copy_from_host(random_directions(3, 9), this->spins);
+  LieEuler stepper(this->spins);
+  std::vector<Sample> samples;
+  integrate(this->exec, stepper, this->generator, this->spins, {1, 0.25, 4},
+            Every(2, Record(this->generator, samples)));
+  ASSERT_EQ(samples.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(samples[i].step, static_cast<std::int64_t>(2 * i));
+    EXPECT_EQ(samples[i].time, 1 + 0.5 * static_cast<double>(i));
+    EXPECT_LE(samples[i].norm_defect, 16 * epsilon<Real>);
+  }
+  EXPECT_EQ(samples[2].energy.value, energy(this->exec, this->generator, this->spins).value);
+  EXPECT_EQ(samples[2].magnetization.y, magnetization(this->exec, this->spins).y);
+  EXPECT_NE(samples[0].magnetization.y, samples[2].magnetization.y);
+}
+
+#if defined(KOKKOS_ENABLE_SERIAL)
+template <class Stepper, class Spins>
+void expect_counted(std::vector<double> const& stage_times) {
+  std::int64_t evaluations = 0;
+  std::vector<double> times;
+  Spins spins("spins", Lattice::chain(1));
+  Stepper stepper(spins);
+  Summary const summary = integrate(Kokkos::Serial(), stepper,
+                                    CountingGenerator{&evaluations, &times}, spins, {1, 0.5, 7});
+  EXPECT_EQ(summary.evaluations, 7 * static_cast<std::int64_t>(stage_times.size()));
+  EXPECT_EQ(evaluations, summary.evaluations);
+  ASSERT_EQ(times.size(), 7 * stage_times.size());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_EQ(times[i], 1 + 0.5 * (static_cast<double>(i / stage_times.size()) +
+                                   stage_times[i % stage_times.size()]));
+}
+
+template <class Real>
+class Evaluations : public ::testing::Test {};
+TYPED_TEST_SUITE(Evaluations, Precisions, PrecisionName);
+
+// One row of one site is one call: counted by the generator, at the stages' own times.
+TYPED_TEST(Evaluations, AreWhatTheGeneratorSees) {
+  using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
+  expect_counted<LieEuler<Spins>, Spins>({0});
+  expect_counted<Rkmk4<Spins>, Spins>({0, 0.5, 0.5, 1});
+  expect_counted<Rkmk4AsPrinted<Spins>, Spins>({0, 0.5, 0.5, 1});
+  expect_counted<ClassicalHeun<Spins>, Spins>({0, 1});
+}
+#endif
+
+}  // namespace
+}  // namespace cayspin::test
