@@ -31,7 +31,8 @@ macro(cayspin_register_test entry program threads)
   set_tests_properties(
     ${entry}
     PROPERTIES ENVIRONMENT
-               "OMP_NUM_THREADS=${threads};KOKKOS_NUM_THREADS=${threads};OMP_PROC_BIND=false"
+               "OMP_NUM_THREADS=${threads};KOKKOS_NUM_THREADS=${threads};OMP_PROC_BIND=false;\
+OMP_WAIT_POLICY=passive" # threads that spin starve tests that run beside them
                LABELS "${arg_LABELS}"
                TIMEOUT ${arg_TIMEOUT}
                PROCESSORS ${threads})
