@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "../support/landau_lifshitz.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+#include <string>
+
+namespace cayspin::test {
+
+using Threaded = Kokkos::DefaultHostExecutionSpace;
+
+inline std::string name_of(Lattice const& lattice) {
+  std::string name;
+  for (int a = 0; a < 3; ++a)
+    name += std::to_string(lattice.shape[a]) +
+            (lattice.boundary[a] == Boundary::periodic ? " periodic " : " open ");
+  return name;
+}
+
+/// Odd extents, rows shorter and longer than a pack and than a task, open and periodic.
+inline std::vector<Lattice> odd_lattices() {
+  std::vector<Lattice> lattices;
+  std::array<std::int64_t, 3> const shapes[] = {{1, 1, 1},   {2, 1, 1},    {7, 1, 1},
+                                                {100, 1, 1}, {5000, 1, 1}, {9001, 1, 1},
+                                                {13, 17, 1}, {9, 7, 5},    {33, 10, 6}};
+  for (auto const& shape : shapes)
+    for (Boundary const b : {Boundary::open, Boundary::periodic})
+      lattices.push_back({shape, {1, 0.9, 1.1}, {b, b, b}});
+  return lattices;
+}
+
+inline Slab every_term(Lattice const& lattice) {
+  return {.lattice = lattice,
+          .exchange = 0.7,
+          .anisotropy = 0.6,
+          .axis = {1, 2, 3},
+          .demag = 0.8,
+          .applied = {0.3, 0.1, 0.4},
+          .damping = 0.1};
+}
+
+template <class Real>
+void expect_equal_bits(std::vector<Real> const& a, std::vector<Real> const& b,
+                       std::string const& where) {
+  ASSERT_EQ(a.size(), b.size()) << where;
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(Real)), 0) << where;
+}
+
+inline void expect_equal_bits(double a, double b, std::string const& where) {
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(a), std::bit_cast<std::uint64_t>(b)) << where;
+}
+
+/// The state after some steps and its scalars, on one execution space.
+template <class Exec, class Stepper, class Generator>
+struct Outcome {
+  using Field = typename Stepper::spins_type;
+  using Real = typename Field::value_type;
+
+  Outcome(Generator const& generator, Field const& start) {
+    Exec const exec;
+    Field spins = copy_of(start);
+    Stepper stepper(spins);
+    for (int n = 0; n < 4; ++n) stepper.step(exec, generator, spins, n * 0.1, 0.1);
+    exec.fence();
+    numbers = copy_to_host(spins);
+    total = energy(exec, generator, spins);
+    defect = norm_defect(exec, spins);
+    mean = magnetization(exec, spins);
+    rate = largest_rate(exec, generator, spins);
+  }
+
+  std::vector<Real> numbers;
+  Energy total;
+  double defect, rate;
+  Vector mean;
+};
+
+/// Serial and the threaded space, step by step and scalar by scalar.
+template <class Stepper, class Choose>
+void expect_same_on_host_spaces(Choose const& choose) {
+  using Field = typename Stepper::spins_type;
+  for (Lattice const& lattice : odd_lattices()) {
+    auto const generator = choose(every_term(lattice));
+    using Generator = std::remove_const_t<decltype(generator)>;
+    auto const start = random_spins<Field>(lattice, 11);
+    Outcome<Kokkos::Serial, Stepper, Generator> const one(generator, start);
+    Outcome<Threaded, Stepper, Generator> const many(generator, start);
+    auto const where = name_of(lattice);
+    ASSERT_NE(one.numbers, copy_to_host(start)) << "nothing moved: " << where;
+    expect_equal_bits(one.numbers, many.numbers, where + "spins");
+    expect_equal_bits(one.total.value, many.total.value, where + "energy");
+    expect_equal_bits(one.total.magnitude, many.total.magnitude, where + "energy magnitude");
+    expect_equal_bits(one.defect, many.defect, where + "norm defect");
+    expect_equal_bits(one.rate, many.rate, where + "largest rate");
+    expect_equal_bits(one.mean.x, many.mean.x, where + "m_x");
+    expect_equal_bits(one.mean.y, many.mean.y, where + "m_y");
+    expect_equal_bits(one.mean.z, many.mean.z, where + "m_z");
+  }
+}
+
+}  // namespace cayspin::test

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What profilers see: every kernel, allocation and fence bears the library's prefix, and a step
+// neither allocates nor copies nor waits.
+#include "../support/landau_lifshitz.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+namespace tools = Kokkos::Tools::Experimental;
+
+struct Events {
+  std::vector<std::string> kernels, allocations, fences, copies, regions;
+};
+Events events;
+
+void begin_kernel(char const* name, std::uint32_t, std::uint64_t*) {
+  events.kernels.emplace_back(name);
+}
+void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const*, std::uint64_t) {
+  events.allocations.emplace_back(label);
+}
+void begin_fence(char const* name, std::uint32_t, std::uint64_t*) {
+  std::string const fence = name;
+  if (!fence.starts_with("Kokkos::Tools::")) events.fences.push_back(fence);  // a listener's own
+}
+void begin_copy(Kokkos_Profiling_SpaceHandle, char const* to, void const*,
+                Kokkos_Profiling_SpaceHandle, char const*, void const*, std::uint64_t) {
+  events.copies.emplace_back(to);
+}
+void push_region(char const* name) { events.regions.emplace_back(name); }
+
+/// The events of a call.
+template <class Call>
+Events events_of(Call const& call) {
+  Kokkos::fence();
+  events = {};
+  tools::set_begin_parallel_for_callback(begin_kernel);
+  tools::set_begin_parallel_reduce_callback(begin_kernel);
+  tools::set_begin_parallel_scan_callback(begin_kernel);
+  tools::set_allocate_data_callback(allocate);
+  tools::set_begin_fence_callback(begin_fence);
+  tools::set_begin_deep_copy_callback(begin_copy);
+  tools::set_push_region_callback(push_region);
+  call();
+  Events const seen = events;
+  tools::set_begin_parallel_for_callback(nullptr);
+  tools::set_begin_parallel_reduce_callback(nullptr);
+  tools::set_begin_parallel_scan_callback(nullptr);
+  tools::set_allocate_data_callback(nullptr);
+  tools::set_begin_fence_callback(nullptr);
+  tools::set_begin_deep_copy_callback(nullptr);
+  tools::set_push_region_callback(nullptr);
+  return seen;
+}
+
+void expect_prefix(std::vector<std::string> const& names) {
+  for (auto const& name : names) EXPECT_TRUE(name.starts_with("cayspin::")) << name;
+}
+
+using Exec = Kokkos::DefaultExecutionSpace;
+using Field = SpinField<double>;
+
+Slab const slab{.lattice = Lattice::cubic(9, 7, 5),
+                .exchange = 1,
+                .anisotropy = 0.5,
+                .demag = 1,
+                .applied = {0.1, 0.2, 0.3},
+                .damping = 0.1};
+
+template <class Stepper>
+void expect_quiet_step(std::string const& name) {
+  Exec const exec;
+  Field spins("spins", slab.lattice);
+  Stepper stepper(spins);
+  auto const generator = slab.natural();
+  Events const seen = events_of([&] {
+    for (int n = 0; n < 10; ++n) stepper.step(exec, generator, spins, n * 0.1, 0.1);
+  });
+  ASSERT_EQ(seen.kernels.size(), 10u * Stepper::evaluations) << name;
+  for (std::size_t i = 0; i < seen.kernels.size(); ++i)
+    EXPECT_EQ(seen.kernels[i],
+              "cayspin::" + name + "::stage_" + std::to_string(i % Stepper::evaluations + 1));
+  EXPECT_EQ(seen.regions, std::vector<std::string>(10, "cayspin::" + name));
+  EXPECT_TRUE(seen.allocations.empty()) << seen.allocations[0];
+  EXPECT_TRUE(seen.copies.empty()) << seen.copies[0];
+  EXPECT_TRUE(seen.fences.empty()) << seen.fences[0];
+}
+
+TEST(Labels, AStepIsItsStagesAndNothingElse) {
+  expect_quiet_step<LieEuler<Field>>("LieEuler");
+  expect_quiet_step<Rkmk4<Field>>("Rkmk4");
+  expect_quiet_step<ProjectedHeun<Field>>("Projected2");
+}
+
+TEST(Labels, Scalars) {
+  Exec const exec;
+  Field const spins("spins", slab.lattice);
+  auto const generator = slab.natural();
+  Events const seen = events_of([&] {
+    energy(exec, generator, spins);
+    norm_defect(exec, spins);
+    magnetization(exec, spins);
+    largest_rate(exec, generator, spins);
+  });
+  EXPECT_EQ(seen.kernels,
+            (std::vector<std::string>{"cayspin::energy", "cayspin::norm_defect",
+                                      "cayspin::magnetization", "cayspin::largest_rate"}));
+  EXPECT_EQ(seen.allocations.size(), 4u);
+  expect_prefix(seen.allocations);
+}
+
+TEST(Labels, Integrate) {
+  Exec const exec;
+  Field spins("spins", slab.lattice);
+  Rkmk4<Field> stepper(spins);
+  std::vector<Sample> samples;
+  Events const seen = events_of([&] {
+    integrate(exec, stepper, slab.natural(), spins, {0, 0.1, 6},
+              Every(3, Record(slab.field(), samples)));
+  });
+  EXPECT_EQ(samples.size(), 3u);
+  EXPECT_EQ(seen.kernels.size(), 6u * 4 + 3 * 3);
+  expect_prefix(seen.kernels);
+  expect_prefix(seen.allocations);
+}
+
+TEST(Labels, WorkMemory) {
+  Field const spins("spins", slab.lattice);
+  Events const seen = events_of([&] { Rkmk4<Field> const stepper(spins); });
+  ASSERT_EQ(seen.allocations.size(), 5u);
+  for (auto const& name : seen.allocations)
+    EXPECT_TRUE(name.starts_with("cayspin::Rkmk4::")) << name;
+}
+
+}  // namespace
