@@ -15,6 +15,32 @@ template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;
 
+/// Up to this many sites a host kernel runs on the calling thread: waking the others costs more.
+inline constexpr std::int64_t calling_thread_sites = 2048;
+
+/// Runs body(0) .. body(count - 1) on a host space: on its threads, or, when there is little to do
+/// for spaces that finish a kernel before they return, on the calling thread.
+template <class Exec, class Body>
+void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
+                   std::int64_t sites, Body const& body) {
+#if defined(KOKKOS_ENABLE_SERIAL)
+  bool synchronous = false;
+#if defined(KOKKOS_ENABLE_OPENMP)
+  synchronous = synchronous || std::is_same_v<Exec, Kokkos::OpenMP>;
+#endif
+#if defined(KOKKOS_ENABLE_THREADS)
+  synchronous = synchronous || std::is_same_v<Exec, Kokkos::Threads>;
+#endif
+  if (synchronous && sites <= calling_thread_sites) {
+    using Policy = Kokkos::RangePolicy<Kokkos::Serial, Kokkos::IndexType<std::int64_t>>;
+    Kokkos::parallel_for(label, Policy(0, count), body);
+    return;
+  }
+#endif
+  using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
+  Kokkos::parallel_for(label, Policy(exec, 0, count), body);
+}
+
 template <class Exec, class MemorySpace>
 constexpr void check_access() {
   static_assert(Kokkos::is_execution_space_v<Exec>,

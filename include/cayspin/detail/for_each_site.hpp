@@ -74,12 +74,12 @@ struct SiteLoop {
 template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
                    Functor const& functor) {
-  using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
   if constexpr (is_host_execution<Exec>) {
     std::int32_t const per_row = tasks_per_row(layout);
-    Kokkos::parallel_for(label, Policy(exec, 0, layout.rows() * per_row),
-                         RowLoop<Real, Functor>{functor, layout, per_row});
+    for_each_task(exec, label, layout.rows() * per_row, layout.sites(),
+                  RowLoop<Real, Functor>{functor, layout, per_row});
   } else {
+    using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
     Kokkos::parallel_for(label, Policy(exec, 0, layout.sites()),
                          SiteLoop<Real, Functor>{functor, layout});
   }

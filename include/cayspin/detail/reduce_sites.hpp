@@ -82,9 +82,13 @@ std::array<double, Count> reduce_sites(Exec const& exec, std::string const& labe
   std::int64_t const tasks = layout.rows() * per_row;
   Kokkos::View<double*, typename Exec::memory_space> const partial(
       Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label + "::partial"), tasks * Count);
-  Kokkos::parallel_for(
-      label, Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, tasks),
-      ReduceTask<Value, Combine, Count, Functor>{functor, layout, per_row, partial.data()});
+  ReduceTask<Value, Combine, Count, Functor> const body{functor, layout, per_row, partial.data()};
+  if constexpr (is_host_execution<Exec>) {
+    for_each_task(exec, label, tasks, layout.sites(), body);
+  } else {
+    using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
+    Kokkos::parallel_for(label, Policy(exec, 0, tasks), body);
+  }
   auto const host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), partial);
   exec.fence(label);
   std::array<double, Count> total{};
