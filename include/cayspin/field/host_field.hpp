@@ -47,9 +47,10 @@ class HostField {
   static constexpr bool on_host = std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>;
   static_assert(std::is_invocable_v<Solver const&, HostSpins const&, HostSpins const&, double>,
                 "HostField needs a solver callable as solver(host_spins, host_field, t) const.");
-  static_assert(Solver::degree == 1 || Solver::degree == 2,
-                "HostField's solver needs a static constexpr int degree: 1 for H independent of m, "
-                "2 for H linear in m.");
+  static_assert(
+      requires { requires Solver::degree == 1 || Solver::degree == 2; },
+      "HostField's solver needs a static constexpr int degree: 1 for H independent of m, "
+      "2 for H linear in m.");
 
  public:
   HostField(Lattice const& lattice, Solver solver)
