@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// One mistake for each CAYSPIN_TEST_MISTAKE; the compiler must answer with the library's sentence.
+#include <cayspin/cayspin.hpp>
+
+using namespace cayspin;
+
+struct Term {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    return stencil.center();
+  }
+  template <class Stencil>
+  KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
+    return dot(stencil.center(), stencil.center());
+  }
+};
+
+struct NoField {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
+    return dot(stencil.center(), stencil.center());
+  }
+};
+
+struct NoEnergy {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    return stencil.center();
+  }
+};
+
+struct FieldIsANumber : Term {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    return dot(stencil.center(), stencil.center());
+  }
+};
+
+struct NotAGenerator {};
+
+struct NoDegree {
+  template <class HostSpins>
+  void operator()(HostSpins const&, HostSpins const&, double) const {}
+};
+
+inline void refused() {
+  Kokkos::DefaultHostExecutionSpace const exec;
+  using Spins = SpinField<double, Kokkos::HostSpace>;
+  [[maybe_unused]] Spins spins("spins", Lattice::chain(3));
+  [[maybe_unused]] LieEuler stepper(spins);
+  [[maybe_unused]] Times const times{0, 0.1, 1};
+  [[maybe_unused]] RigidBody const body = RigidBody::principal(1, 2, 3);
+  [[maybe_unused]] auto const with = [&](auto const& term) {
+    stepper.step(exec, LandauLifshitz(EffectiveField(term), 0.1), spins, 0, 0.1);
+  };
+#if CAYSPIN_TEST_MISTAKE == 0  // none
+  with(Term());
+#elif CAYSPIN_TEST_MISTAKE == 1
+  with(NoField());
+#elif CAYSPIN_TEST_MISTAKE == 2
+  with(NoEnergy());
+#elif CAYSPIN_TEST_MISTAKE == 3
+  with(FieldIsANumber());
+#elif CAYSPIN_TEST_MISTAKE == 4
+  stepper.step(exec, NotAGenerator(), spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 5
+  integrate(exec, stepper, body, spins, times, [](Step const&) {});
+#elif CAYSPIN_TEST_MISTAKE == 6
+  integrate(exec, stepper, body, spins, times,
+            [](auto const&, Step const& step, auto const&) { return step.number > 3; });
+#elif CAYSPIN_TEST_MISTAKE == 7
+  norm_defect(Kokkos::HostSpace(), spins);
+#elif CAYSPIN_TEST_MISTAKE == 8
+  SpinField<float, Kokkos::HostSpace> other("other", Lattice::chain(3));
+  integrate(exec, stepper, body, other, times);
+#elif CAYSPIN_TEST_MISTAKE == 9
+  HostField<Spins, NoDegree> const field(Lattice::chain(3), NoDegree());
+#elif CAYSPIN_TEST_MISTAKE == 10
+  HostField<Spins, Term> const field(Lattice::chain(3), Term());
+#elif CAYSPIN_TEST_MISTAKE == 11
+  TimeDependentZeeman const field([](double t) { return t; });
+#elif CAYSPIN_TEST_MISTAKE == 12
+  SpinField<long double, Kokkos::HostSpace> const wide("wide", Lattice::chain(3));
+#elif CAYSPIN_TEST_MISTAKE == 13
+  copy(exec, Kokkos::View<double*, Kokkos::HostSpace>("flat", 9), spins);
+#endif
+}
