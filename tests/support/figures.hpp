@@ -30,7 +30,7 @@ struct Printed {
 inline void expect_figure(std::string const& what, double figure, std::string const& reference,
                           double relative = 0.01) {
   Printed const printed(reference);
-  std::printf("    %-58s %.6g  (%s)\n", what.c_str(), figure, reference.c_str());
+  std::printf("    %-58s %.8g  (%s)\n", what.c_str(), figure, reference.c_str());
   EXPECT_NEAR(figure, printed.value, relative * std::abs(printed.value) + printed.half_unit)
       << what;
 }

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The a-priori bound: the exchange's largest eigenvalue, and the step limit of every method.
+#include "../support/figures.hpp"
+#include "../support/landau_lifshitz.hpp"
+
+#include <Eigen/Dense>
+
+#include <limits>
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct FieldOfSites {
+  Exchange exchange;
+  detail::SiteArray<double, 3> spins;
+  detail::OutputArray<double, 3> fields;
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    site.store(exchange.field(Stencil<Site, double>(site, spins)), fields);
+  }
+};
+
+/// The largest eigenvalue of the exchange term's own matrix, built column by column.
+double largest_eigenvalue(Lattice const& lattice, double constant) {
+  std::int64_t const n = lattice.sites();
+  Eigen::MatrixXd matrix(n, n);
+  Spins spins("spins", lattice), fields("fields", lattice);
+  Space const exec;
+  for (std::int64_t column = 0; column < n; ++column) {
+    std::vector<double> numbers(3 * n, 0.0);
+    numbers[3 * column] = 1;
+    copy_from_host(numbers, spins);
+    detail::for_each_site<double>(
+        exec, "cayspin::test::exchange", spins.layout(),
+        FieldOfSites{Exchange{lattice, constant}, spins.array(), fields.output(false)});
+    exec.fence();
+    auto const column_numbers = copy_to_host(fields);
+    for (std::int64_t row = 0; row < n; ++row) matrix(row, column) = -column_numbers[3 * row];
+  }
+  EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm() + 1e-300);
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .maxCoeff();
+}
+
+TEST(ExchangeBound, IsTheLargestEigenvalue) {
+  std::array<std::int64_t, 3> const shapes[] = {{1, 1, 1}, {2, 1, 1}, {3, 1, 1}, {8, 1, 1},
+                                                {9, 1, 1}, {1, 5, 1}, {4, 3, 1}, {5, 7, 1},
+                                                {3, 4, 5}, {2, 3, 4}, {5, 5, 3}};
+  Boundary const open = Boundary::open, periodic = Boundary::periodic;
+  std::array<Boundary, 3> const boundaries[] = {{open, open, open},
+                                                {periodic, periodic, periodic},
+                                                {periodic, open, periodic},
+                                                {open, periodic, open}};
+  for (auto const& shape : shapes)
+    for (auto const& boundary : boundaries) {
+      Lattice const lattice{shape, {0.5, 0.7, 1.1}, boundary};
+      double const bound = exchange_bound(lattice, 1.3);
+      EXPECT_NEAR(bound, largest_eigenvalue(lattice, 1.3), 1e-12 * bound)
+          << shape[0] << ' ' << shape[1] << ' ' << shape[2] << " periodic "
+          << (boundary[0] == periodic) << (boundary[1] == periodic) << (boundary[2] == periodic);
+      EXPECT_EQ(exchange_bound(lattice, -1.3), bound);
+    }
+}
+
+/// y of largest_stable_step = y / field_bound, at a bound that is not 1.
+template <class Stepper>
+double scaled_limit(double damping, bool precession = true) {
+  return 7 * largest_stable_step<Stepper>(7, damping, precession);
+}
+
+// |R(y (-damping + i))| = 1, R the stability polynomial of order 1, 2, 4; roots found in 30 digits.
+struct Row {
+  double damping;
+  char const *euler, *heun, *rk4;
+};
+Row const table[] = {{.001, "0.001999998", "0.2013287", "2.8305393"},
+                     {.01, "0.019998", "0.44397331", "2.8484267"},
+                     {.02, "0.039984006", "0.56868657", "2.8660486"},
+                     {.05, "0.099750623", "0.79862022", "2.9060952"},
+                     {.1, "0.1980198", "1.0424614", "2.9359703"},
+                     {.2, "0.38461538", "1.3557833", "2.8853702"},
+                     {.5, "0.8000000", "1.7207289", "2.3730210"},
+                     {1, "1.0000000", "1.5436890", "1.9122667"},
+                     {2, "0.8000000", "0.96105118", "1.2750775"},
+                     {5, "0.38461538", "0.39940909", "0.55220962"},
+                     {10, "0.1980198", "0.1999804", "0.27802753"}};
+
+TEST(StepLimit, Table) {
+  for (Row const& row : table) {
+    auto const expect = [&](char const* method, double limit, char const* reference) {
+      expect_figure(std::string(method) + ", damping " + std::to_string(row.damping).substr(0, 6),
+                    limit, reference, 0);
+    };
+    expect("Euler", scaled_limit<ClassicalEuler<Spins>>(row.damping), row.euler);
+    expect("geometric Euler", scaled_limit<LieEuler<Spins>>(row.damping), row.euler);
+    expect("classical Heun", scaled_limit<ClassicalHeun<Spins>>(row.damping), row.heun);
+    expect("classical rk4", scaled_limit<ClassicalRk4<Spins>>(row.damping), row.rk4);
+    expect("rkmk4", scaled_limit<Rkmk4<Spins>>(row.damping), row.rk4);
+
+    double const l = row.damping, l2 = 1 + l * l, y = scaled_limit<ClassicalHeun<Spins>>(l);
+    EXPECT_NEAR(scaled_limit<LieEuler<Spins>>(l), 2 * l / l2, 1e-12);
+    EXPECT_NEAR(-2 * l + 2 * l * l * y - l * l2 * y * y + l2 * l2 * y * y * y / 4, 0,
+                1e-11 * l2 * l2);
+  }
+}
+
+TEST(StepLimit, GeometryAndRenormalisingDoNotMatter) {
+  for (Row const& row : table) {
+    double const rk4 = scaled_limit<ClassicalRk4<Spins>>(row.damping);
+    using Exponential4 = Rkmk4<Spins, isotropy::Zero, Exponential>;
+    EXPECT_NEAR(scaled_limit<Rkmk4<Spins>>(row.damping), rk4, 1e-9);
+    EXPECT_NEAR(scaled_limit<Exponential4>(row.damping), rk4, 1e-9);
+    EXPECT_NEAR(scaled_limit<ProjectedRk4<Spins>>(row.damping), rk4, 1e-9);
+  }
+}
+
+TEST(StepLimit, Overdamped) {
+  for (double const damping : {0.05, 1.0, 10.0}) {
+    EXPECT_NEAR(damping * scaled_limit<LieEuler<Spins>>(damping, false), 2, 1e-9);
+    EXPECT_NEAR(damping * scaled_limit<ClassicalHeun<Spins>>(damping, false), 2, 1e-9);
+    expect_figure("rkmk4, overdamped", damping * scaled_limit<Rkmk4<Spins>>(damping, false),
+                  "2.7853", 0);
+  }
+}
+
+TEST(StepLimit, ConstantSigma) {
+  using Stepper = LieEuler<Spins, isotropy::Constant>;
+  double const s = 7;
+  for (double const damping : {0.05, 1.0})
+    for (double const sigma : {-20.0, -3.0, -0.5, 0.5, 3.0, 6.9}) {
+      double const limit = 2 * damping / ((1 + damping * damping) * s - sigma);
+      EXPECT_NEAR(largest_stable_step<Stepper>(s, damping, true, sigma), limit, 1e-6 * limit)
+          << damping << ' ' << sigma;
+    }
+}
+
+TEST(StepLimit, NoneAndZero) {
+  // Past (1 + lambda^2) s the generator turns a spin faster than it moves: stable at any step.
+  using Stepper = LieEuler<Spins, isotropy::Constant>;
+  EXPECT_EQ(largest_stable_step<Stepper>(7, 0.05, true, 7.1), infinity);
+  EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(0, 0.05), infinity);
+  EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0, false), infinity);
+  // Undamped precession: Euler and Heun amplify at every step.
+  EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0), 0);
+  EXPECT_EQ(largest_stable_step<ClassicalHeun<Spins>>(7, 0), 0);
+  EXPECT_NEAR(7 * largest_stable_step<Rkmk4<Spins>>(7, 0), std::sqrt(8), 1e-9);
+}
+
+}  // namespace
