@@ -112,8 +112,8 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     if ((detail::is_due(observers, now) || ...) || now.last) {
       exec.fence("cayspin::integrate: observers");
       summary.step_seconds += clock.seconds();
-      bool const stop =
-          ((detail::observe(exec, observers, now, spins) == Next::stop) | ... | false);
+      bool stop = false;
+      ((stop = detail::observe(exec, observers, now, spins) == Next::stop || stop), ...);
       if (now.last || stop) {
         summary.stopped = stop && !now.last;
         break;
