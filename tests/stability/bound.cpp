@@ -139,6 +139,66 @@ TEST(StepLimit, ConstantSigma) {
     }
 }
 
+constexpr int modes = 400;
+
+/// Spins that do not see each other, each in a field of its own strength along z, up to `largest`.
+struct FieldOfModes {
+  double largest;
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto field(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const number = detail::lane_numbers<Value>() + Value(1.0 + stencil.site().x());
+    return Vec3<Value>{Value(0.0), Value(0.0), Value(largest / modes) * number};
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto energy_density(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(Value(0.0) - dot(stencil.center(), field(stencil)));
+  }
+};
+
+/// The largest |amplitude after a step / before| over modes, of small turns about the field.
+template <class Stepper>
+double amplification(double largest, double damping, double sigma, double dt) {
+  auto const generator = orthogonal(LandauLifshitz{EffectiveField{FieldOfModes{largest}}, damping});
+  auto const start = make_spins(Lattice::chain(modes), [](auto, auto, auto) {
+    return Vector{1e-6, 0, 1};
+  });
+  auto const numbers =
+      copy_to_host(run<Stepper>(generator, start, dt, 1, isotropy::Constant{sigma}));
+  double amplitude = 0;
+  for (int mode = 0; mode < modes; ++mode)
+    amplitude = std::max(amplitude, std::hypot(numbers[3 * mode], numbers[3 * mode + 1]));
+  return amplitude / 1e-6;
+}
+
+template <class Stepper>
+void expect_first_growth_at_the_limit(std::string const& method) {
+  double const s = 7;
+  for (double const damping : {0.05, 1.0})
+    for (double const sigma : {-20.0, -3.0, 5.0, 20.0}) {
+      double const limit = largest_stable_step<Stepper>(s, damping, true, sigma);
+      if (limit == infinity) {
+        std::printf("    %s damping %g sigma %g: no limit\n", method.c_str(), damping, sigma);
+        for (double dt = 1e-3; dt < 100; dt *= 1.05)
+          EXPECT_LT(amplification<Stepper>(s, damping, sigma, dt), 1 + 1e-8) << dt;
+        continue;
+      }
+      double const below = amplification<Stepper>(s, damping, sigma, 0.999 * limit);
+      double const above = amplification<Stepper>(s, damping, sigma, 1.001 * limit);
+      std::printf("    %s damping %g sigma %g: limit %.5g, |R| %.8f below, %.8f above\n",
+                  method.c_str(), damping, sigma, limit, below, above);
+      EXPECT_LT(below, 1);
+      EXPECT_GT(above, 1);
+    }
+}
+
+TEST(StepLimit, ConstantSigmaOfFourthOrderMethods) {
+  using isotropy::Constant;
+  expect_first_growth_at_the_limit<Rkmk4<Spins, Constant>>("rkmk4");
+  expect_first_growth_at_the_limit<Rkmk4<Spins, Constant, Exponential>>("rkmk4, exponential");
+}
+
 TEST(StepLimit, NoneAndZero) {
   // Past (1 + lambda^2) s the generator turns a spin faster than it moves: stable at any step.
   using Stepper = LieEuler<Spins, isotropy::Constant>;
