@@ -21,12 +21,13 @@ inline std::string name_of(Lattice const& lattice) {
   return name;
 }
 
-/// Odd extents, rows shorter and longer than a pack and than a task, open and periodic.
+/// Odd extents, rows shorter and longer than a pack and than a task, systems small enough for the
+/// calling thread and larger ones, open and periodic.
 inline std::vector<Lattice> odd_lattices() {
   std::vector<Lattice> lattices;
-  std::array<std::int64_t, 3> const shapes[] = {{1, 1, 1},   {2, 1, 1},    {7, 1, 1},
-                                                {100, 1, 1}, {5000, 1, 1}, {9001, 1, 1},
-                                                {13, 17, 1}, {9, 7, 5},    {33, 10, 6}};
+  std::array<std::int64_t, 3> const shapes[] = {
+      {1, 1, 1},   {2, 1, 1},   {7, 1, 1}, {100, 1, 1},  {9001, 1, 1}, {20011, 1, 1},
+      {53, 67, 1}, {3, 971, 1}, {9, 7, 5}, {15, 14, 13}, {33, 20, 7}};
   for (auto const& shape : shapes)
     for (Boundary const b : {Boundary::open, Boundary::periodic})
       lattices.push_back({shape, {1, 0.9, 1.1}, {b, b, b}});
