@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "describe.hpp"
 #include "failure.hpp"
 #include "text.hpp"
 
@@ -8,12 +9,88 @@
 #include <cmath>
 
 namespace cayspin::program {
+namespace {
+
+bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_dt); }
+
+double bytes_per_site(Plan const& plan) {
+  return static_cast<double>(plan.memory.simulation()) / static_cast<double>(plan.lattice.sites());
+}
+
+void print_json(Plan const& plan, Precision precision) {
+  auto const& memory = plan.memory;
+  auto const stable = has_stable_dt(plan) ? fmt::format("{}", plan.stable_dt) : "null";
+  fmt::print(
+      "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, \"sites\": {}, \"bytes_per_site\": {}, "
+      "\"spins_bytes\": {}, \"work_bytes\": {}, \"field_bytes\": {}, \"host_buffer_bytes\": {}, "
+      "\"memory_bytes\": {}, \"evaluations_per_step\": {}, \"order\": {}, \"frames\": {}, "
+      "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"}}\n",
+      stable, plan.times.dt, plan.times.steps, plan.lattice.sites(), bytes_per_site(plan),
+      memory.spins, memory.work, memory.field, memory.files, memory.total(),
+      plan.method.evaluations, plan.method.order, plan.frames, plan.file_bytes,
+      io::to_string(plan.method.method), to_string(precision));
+}
+
+std::string stability_text(Plan const& plan) {
+  if (!has_stable_dt(plan)) return "no limit known beforehand";
+  if (plan.stable_dt == 0) return "none: at this damping the method amplifies at every dt";
+  return fmt::format("{:.6g}; dt is {:.3g} of it{}", plan.stable_dt, plan.times.dt / plan.stable_dt,
+                     plan.times.dt > plan.stable_dt ? ", which is too large" : "");
+}
+
+// Every number of the start and of the inertia, where that is a matter of seconds.
+constexpr std::int64_t most_sites_checked = 10'000'000;
+
+bool is_start_checked(Plan const& plan) {
+  return plan.lattice.sites() <= most_sites_checked && fits(plan);
+}
+
+void check_start(io::Scene const& scene) {
+  if (scene.system.kind == io::SystemKind::rigid_body) io::inertia(scene);
+  io::initial_spins(scene);
+}
+
+void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
+  for (auto const& [name, text] : describe(scene)) fmt::print("{:<11} {}\n", name, text);
+  auto const print = [](char const* name, std::string const& text) {
+    fmt::print("{:<11} {}\n", name, text);
+  };
+  auto const& memory = plan.memory;
+  print("method", fmt::format("{}, order {}, {} of the field per step",
+                              describe_method(scene.integrator), plan.method.order,
+                              plan.method.evaluations == 1
+                                  ? "1 evaluation"
+                                  : fmt::format("{} evaluations", plan.method.evaluations)));
+  print("time", fmt::format("{} steps of {:.9g}, to t = {:.9g}", plan.times.steps, plan.times.dt,
+                            plan.times.at(plan.times.steps)));
+  print("stable dt", stability_text(plan));
+  print("cost",
+        fmt::format(
+            "{} evaluations per step, {:.4g} spin updates in all", plan.method.evaluations,
+            static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites())));
+  print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, method {}, fields "
+                              "{}; with {} of buffers on the host {}",
+                              bytes_per_site(plan), to_string(precision), bytes_text(memory.spins),
+                              bytes_text(memory.work), bytes_text(memory.field),
+                              bytes_text(memory.files), bytes_text(memory.total())));
+  if (!is_start_checked(plan)) print("", "the start's numbers are not checked: too many sites");
+  if (!fits(plan)) print("", "more memory than is available now");
+  print("output", fmt::format("{} frames, {}, to {}", plan.frames, bytes_text(plan.file_bytes),
+                              scene.output.file ? scene.output.file->string()
+                                                : std::string("the file that --output names")));
+}
+
+}  // namespace
 
 int check(CheckOptions const& options) {
   auto const scene = io::read_scene(options.scene, options.overrides);
   io::check_files(scene);
   auto const plan = make_plan(scene, options.precision);
-  fmt::print("{}\n", plan.stable_dt);
+  if (is_start_checked(plan)) check_start(scene);
+  if (options.json)
+    print_json(plan, options.precision);
+  else
+    print_text(scene, plan, options.precision);
   return Status::done;
 }
 

@@ -13,7 +13,7 @@ Kokkos::InitializationSettings settings(std::string const& space, std::optional<
                                         std::optional<int> device) {
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
-  // A pool of threads that never get work would only cost.
+  // Threads that never get work would only cost.
   if (space == "serial") threads = 1;
   if (threads) settings.set_num_threads(*threads);
   if (!device) return settings;

@@ -24,7 +24,7 @@ std::string chosen_space(std::optional<std::string> const& asked);
 /// Kokkos, from here to the end of the scope.
 class KokkosSession {
  public:
-  /// Throws UsageError for threads or a device that there are not.
+  /// Throws UsageError for a device that there is not.
   KokkosSession(std::string const& space, std::optional<int> threads, std::optional<int> device);
   ~KokkosSession() { Kokkos::finalize(); }
   KokkosSession(KokkosSession const&) = delete;

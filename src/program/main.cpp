@@ -31,6 +31,20 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       ->type_name("NAME");
 }
 
+// CLI11 would only say that there is none.
+void require_command(CLI::App const& app, int argc, char** argv) {
+  std::string_view const first = argc > 1 ? argv[1] : "";
+  if (first.starts_with('-')) return;
+  std::string names;
+  for (auto const* command : app.get_subcommands({})) {
+    if (command->get_name() == first) return;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw UsageError(fmt::format(
+      "{}: accepted: {} (see cayspin --help)",
+      first.empty() ? std::string("no command") : fmt::format("unknown command {}", first), names));
+}
+
 int perform(int argc, char** argv) {
   CLI::App app("Lie-group time integration of spin fields", "cayspin");
   app.set_version_flag("--version", CAYSPIN_VERSION_STRING);
@@ -62,6 +76,7 @@ int perform(int argc, char** argv) {
   auto* info_command = app.add_subcommand("info", "Say what a trajectory file holds");
   info_command->add_option("FILE", info_file, "Trajectory file (HDF5)")->required();
 
+  require_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (CLI::ParseError const& error) {
@@ -76,18 +91,21 @@ int perform(int argc, char** argv) {
   return info(info_file);
 }
 
+// Messages about a file begin with its name, those about the command line with the program's.
 int perform_and_report(int argc, char** argv) {
   auto const report = [](std::string const& message, int status) {
     std::fflush(stdout);
-    fmt::print(stderr, "cayspin: {}\n", one_line(message));
+    fmt::print(stderr, "{}\n", one_line(message));
     return status;
   };
   try {
     return perform(argc, argv);
   } catch (NumbersFailed const& error) {
     return report(error.what(), Status::numbers_failed);
+  } catch (UsageError const& error) {
+    return report(fmt::format("cayspin: {}", error.what()), Status::wrong_usage);
   } catch (std::bad_alloc const&) {
-    return report("not enough memory", Status::wrong_usage);
+    return report("cayspin: not enough memory", Status::wrong_usage);
   } catch (std::exception const& error) {
     return report(error.what(), Status::wrong_usage);
   }

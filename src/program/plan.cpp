@@ -28,7 +28,8 @@ Lattice make_lattice(io::Scene const& scene) {
   try {
     lattice.validate();
   } catch (std::invalid_argument const& error) {
-    throw io::scene_error(scene, "lattice.shape", error.what());
+    std::string_view const message = error.what();
+    throw io::scene_error(scene, "lattice.shape", message.substr(message.find(": ") + 2));
   }
   return lattice;
 }
@@ -128,6 +129,8 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
                     count(scene.output.scalars_every) * sample_bytes;
   return plan;
 }
+
+bool fits(Plan const& plan) { return plan.memory.total() <= available_memory(); }
 
 void require_memory(io::Scene const& scene, Plan const& plan) {
   std::int64_t const available = available_memory();

@@ -40,6 +40,9 @@ struct Plan {
 /// Throws io::SceneError, among others for a lattice that cannot be.
 Plan make_plan(io::Scene const& scene, Precision precision);
 
+/// Is there memory for the run?
+bool fits(Plan const& plan);
+
 /// Throws io::SceneError when the run needs more memory than there is.
 void require_memory(io::Scene const& scene, Plan const& plan);
 

@@ -32,7 +32,7 @@ void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
                                 "dt");
   auto const line =
       io::scene_error(scene, "integrator.dt", fmt::format("{:.6g} is {}", plan.times.dt, reason));
-  fmt::print(stderr, "cayspin: warning: {}\n", line.what());
+  fmt::print(stderr, "warning: {}\n", line.what());
 }
 
 template <class Space>
@@ -88,8 +88,8 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options) 
   if (watch.failure())
     throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), *watch.failure(), kept()));
   if (!watch.interrupted()) return Status::done;
-  fmt::print(stderr, "cayspin: interrupted after step {} of {}; {}\n", summary.steps,
-             plan.times.steps, kept());
+  fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
+             summary.steps, plan.times.steps, kept());
   return Status::interrupted;
 }
 

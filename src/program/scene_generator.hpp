@@ -1,73 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "scene_bodies.hpp"
 #include "scene_field.hpp"
 
 #include <cayspin/generator/landau_lifshitz.hpp>
-#include <cayspin/generator/rigid_body.hpp>
-
-#include <optional>
-#include <utility>
-#include <vector>
 
 namespace cayspin::program {
 
-/// Rigid bodies that share an inertia, or have one each: asked at run time.
-template <class Many>
-struct SceneBodiesNow {
-  RigidBody one;
-  Many many;
-  bool each;
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
-      Stencil const& stencil) const {
-    return each ? many(stencil) : one(stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
-    return each ? many.energy_density(stencil) : one.energy_density(stencil);
-  }
-};
-
-/// The bodies of a scene of kind rigid_body.
-template <class Spins>
-class SceneBodies {
-  using Ensemble = RigidBodyEnsemble<typename Spins::value_type, typename Spins::memory_space>;
-
- public:
-  /// `inverse_inertia`: one tensor for all bodies, or one per body.
-  SceneBodies(std::vector<SymmetricTensor> const& inverse_inertia, Lattice const& lattice)
-      : one_(inverse_inertia.front()) {
-    if (inverse_inertia.size() == 1) return;
-    typename Ensemble::Tensors const tensors("inverse_inertia", lattice);
-    std::vector<double> numbers;
-    numbers.reserve(6 * inverse_inertia.size());
-    for (auto const& tensor : inverse_inertia)
-      numbers.insert(numbers.end(), tensor.begin(), tensor.end());
-    copy_from_host(numbers, tensors);
-    each_.emplace(tensors);
-  }
-
-  template <class Exec>
-  auto prepare(Exec const& exec, Spins const& spins, double t) const {
-    using Many = decltype(each_->prepare(exec, spins, t));
-    return SceneBodiesNow<Many>{one_, each_ ? each_->prepare(exec, spins, t) : Many{},
-                                each_.has_value()};
-  }
-
- private:
-  RigidBody one_;
-  std::optional<Ensemble> each_;
-};
-
 /// The A of any scene at one instant, for kernels. One type for all scenes: which system it is, and
 /// whether the part along the spin is removed, is asked at run time.
-template <class Field, class Bodies>
+template <class Spins>
 struct SceneGeneratorNow {
-  LandauLifshitz<Field> llg;
-  Bodies bodies;
+  LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
+  SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
   bool is_llg, orthogonal;
 
   template <class Stencil>
@@ -95,27 +41,14 @@ template <class Spins>
 class SceneGenerator {
  public:
   /// Throws io::SceneError for an inertia that cannot be.
-  SceneGenerator(io::Scene const& scene, Lattice const& lattice)
-      : llg_(SceneField<Spins>(scene, lattice), scene.system.damping, scene.system.precession),
-        is_llg_(scene.system.kind == io::SystemKind::llg),
-        orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
-        bodies_(is_llg_ ? std::vector{SymmetricTensor{}} : io::inverse_inertia(scene), lattice) {}
+  SceneGenerator(io::Scene const& scene, Lattice const& lattice);
 
   /// The effective field alone, as the generator of a precession about it.
-  SceneGenerator precession_alone() const {
-    SceneGenerator other = *this;
-    other.llg_ = LandauLifshitz(llg_.field(), 0, true);
-    other.orthogonal_ = false;
-    return other;
-  }
+  SceneGenerator precession_alone() const;
 
+  /// Compiled in scene_generator.cpp alone, for the spaces of space.hpp.
   template <class Exec>
-  auto prepare(Exec const& exec, Spins const& spins, double t) const {
-    auto llg = llg_.prepare(exec, spins, t);
-    auto bodies = bodies_.prepare(exec, spins, t);
-    using Field = std::remove_cvref_t<decltype(llg.field())>;
-    return SceneGeneratorNow<Field, decltype(bodies)>{llg, bodies, is_llg_, orthogonal_};
-  }
+  SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
 
  private:
   LandauLifshitz<SceneField<Spins>> llg_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "scene_generator.hpp"
+#include "space.hpp"
 
 #include <cayspin/integrate.hpp>
 #include <cayspin/spin_field.hpp>
@@ -31,30 +32,21 @@ struct Simulation {
   Observer<Exec, Spins>* observer = nullptr;
 };
 
-template <class... Spaces>
-using SimulationsOn = std::variant<Simulation<double, Spaces>*..., Simulation<float, Spaces>*...>;
-
-/// Calls visit.template operator()<Space>() for every space compiled in.
-template <class... Spaces>
+/// The spaces compiled in, behind a first type that is none.
+template <class, class... Spaces>
 struct SpaceList {
-  using AnySimulation = SimulationsOn<Spaces...>;
+  using AnySimulation = std::variant<Simulation<double, Spaces>*..., Simulation<float, Spaces>*...>;
+
+  /// Calls visit.template operator()<Space>() for each.
   template <class Visitor>
   static void for_each(Visitor&& visit) {
     (visit.template operator()<Spaces>(), ...);
   }
 };
 
-using EnabledSpaces = SpaceList<Kokkos::DefaultHostExecutionSpace
-#if defined(KOKKOS_ENABLE_SERIAL) && \
-    (defined(KOKKOS_ENABLE_OPENMP) || defined(KOKKOS_ENABLE_THREADS))
-                                ,
-                                Kokkos::Serial
-#endif
-#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
-                                ,
-                                Kokkos::DefaultExecutionSpace
-#endif
-                                >;
+#define CAYSPIN_LISTED(Space, Unused) , Space
+using EnabledSpaces = SpaceList<void CAYSPIN_FOR_EACH_SPACE(CAYSPIN_LISTED, )>;
+#undef CAYSPIN_LISTED
 
 using AnySimulation = EnabledSpaces::AnySimulation;
 

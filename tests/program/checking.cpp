@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// cayspin check and cayspin methods.
+#include "program_test.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace cayspin::program::test {
+namespace {
+
+class Checking : public ProgramTest {
+ protected:
+  nlohmann::json check(std::string const& scene, Arguments const& arguments = {}) const {
+    write("scene.toml", scene);
+    Arguments all{"check", "scene.toml", "--json"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    auto const outcome = start(all);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.errors, "");
+    return nlohmann::json::parse(outcome.output);
+  }
+};
+
+// s = 1 for one spin in a field of 1, so that stable_dt is y*(lambda), known to the digits given.
+TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
+  struct Row {
+    char const* damping;
+    double euler, heun, rk4;
+  };
+  for (auto const& row : std::vector<Row>{{"0.001", .00200, .2013, 2.8305},
+                                          {"0.05", .0998, .7986, 2.9061},
+                                          {"0.5", .8000, 1.7207, 2.3730},
+                                          {"2.0", .8000, .9611, 1.2751},
+                                          {"10.0", .1980, .2000, .2780}}) {
+    auto const stable_dt = [&](std::string const& method) {
+      return check(macrospin_scene(), {"--set", "integrator.method='" + method + "'", "--set",
+                                       std::string("system.damping=") + row.damping})
+          .at("stable_dt")
+          .get<double>();
+    };
+    for (char const* method : {"euler", "classical_euler", "projected_euler"})
+      EXPECT_NEAR(stable_dt(method), row.euler, 6e-5) << method << " " << row.damping;
+    for (char const* method : {"classical_heun", "projected_heun"})
+      EXPECT_NEAR(stable_dt(method), row.heun, 6e-5) << method << " " << row.damping;
+    for (char const* method : {"rkmk4", "classical_rk4", "projected_rk4"})
+      EXPECT_NEAR(stable_dt(method), row.rk4, 6e-5) << method << " " << row.damping;
+  }
+}
+
+// The stiff chain and the 2D and 3D lattices: |H| = 5 and all constants 1.
+TEST_F(Checking, StableDtOfLattices) {
+  std::string const scene = R"([system]
+kind = "llg"
+damping = 0.05
+[lattice]
+shape = [100]
+spacing = 0.01
+[field]
+exchange = 1.0
+anisotropy = { constant = 1.0, axis = [0, 0, 1] }
+applied = [5.0, 0, 0]
+slab_demag = { normal = [1, 0, 0] }
+[initial]
+random = { seed = 1 }
+[integrator]
+method = "rkmk4"
+dt = 1e-5
+steps = 10
+)";
+  auto const stable_dt = [&](std::string const& shape, std::string const& spacing) {
+    return check(scene, {"--set", "lattice.shape=" + shape, "--set", "lattice.spacing=" + spacing})
+        .at("stable_dt")
+        .get<double>();
+  };
+  // Never above what was measured, and at most an eighth of it lower where the field's bound is
+  // above the exact one.
+  EXPECT_NEAR(stable_dt("[100]", "0.01"), 7.26586e-5, 4e-8);
+  EXPECT_LT(stable_dt("[100]", "1.0"), 3.88384e-1);
+  EXPECT_GT(stable_dt("[100]", "1.0"), 3.88384e-1 * 0.65);
+  EXPECT_LT(stable_dt("[16,12]", "[0.2,0.3]"), 1.98726e-2);
+  EXPECT_GT(stable_dt("[16,12]", "[0.2,0.3]"), 1.98726e-2 * 0.97);
+  EXPECT_LT(stable_dt("[8,7,6]", "[0.2,0.25,0.3]"), 1.43862e-2);
+  EXPECT_GT(stable_dt("[8,7,6]", "[0.2,0.25,0.3]"), 1.43862e-2 * 0.97);
+}
+
+TEST_F(Checking, StableDtIsZeroWhereEveryDtAmplifiesAndNullWhereThereIsNone) {
+  auto const undamped =
+      check(macrospin_scene(), {"--set", "system.damping=0", "--set", "integrator.method='euler'"});
+  EXPECT_EQ(undamped.at("stable_dt").get<double>(), 0);
+  EXPECT_TRUE(
+      check(macrospin_scene(), {"--set", "field.applied=[0,0,0]"}).at("stable_dt").is_null());
+  EXPECT_TRUE(check(R"([system]
+kind = "rigid_body"
+inertia = [1.0, 2.0, 3.0]
+[lattice]
+shape = [4]
+[initial]
+random = { seed = 2 }
+[integrator]
+method = "rkmk4"
+dt = 0.05
+steps = 40
+)")
+                  .at("stable_dt")
+                  .is_null());
+}
+
+TEST_F(Checking, StableDtOfAFieldInTimeIsThatOfItsLargest) {
+  auto const growing = check(macrospin_scene(), {"--set", "field.applied=['0','0','t*(10-t)/6.25']",
+                                                 "--set", "integrator.end=10.0"});
+  auto const four = check(macrospin_scene(), {"--set", "field.applied=[0,0,4]"});
+  EXPECT_NEAR(growing.at("stable_dt").get<double>(), four.at("stable_dt").get<double>(), 1e-9);
+}
+
+TEST_F(Checking, CountsCostAndFrames) {
+  auto const numbers = check(chain_scene());
+  EXPECT_EQ(numbers.at("evaluations_per_step"), 4);
+  EXPECT_EQ(numbers.at("steps"), 25);
+  EXPECT_EQ(numbers.at("frames"), 4);
+  EXPECT_EQ(numbers.at("sites"), 60);
+  run(chain_scene());
+  auto const size = static_cast<double>(std::filesystem::file_size(in_folder("out.h5")));
+  EXPECT_LT(numbers.at("file_bytes").get<double>(), size);
+}
+
+// rkmk4 holds the state, two fields of spins and three of increments; euler the state and one.
+TEST_F(Checking, CountsMemory) {
+  auto const bytes = [&](std::string const& method, std::string const& precision) {
+    return check(chain_scene(), {"--set", "lattice.shape=[64,64,64]", "--set",
+                                 "integrator.method='" + method + "'", "--precision", precision})
+        .at("bytes_per_site")
+        .get<double>();
+  };
+  EXPECT_NEAR(bytes("rkmk4", "double") / (6 * 24), 1, 0.15);
+  EXPECT_NEAR(bytes("rkmk4", "single") / (6 * 12), 1, 0.3);
+  EXPECT_NEAR(bytes("euler", "double") / bytes("rkmk4", "double"), 2. / 6, 1e-12);
+}
+
+TEST_F(Checking, HugeLatticesAreCheckedWithoutAllocating) {
+  auto const numbers = check(chain_scene(), {"--set", "lattice.shape=[100000,100000,1000]"});
+  EXPECT_GT(numbers.at("memory_bytes").get<double>(), 1e15);
+}
+
+TEST_F(Checking, TextNamesWhatIsModelled) {
+  write("chain.toml", chain_scene());
+  auto const outcome = start({"check", "chain.toml"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.errors, "");
+  for (char const* part :
+       {"damping 0.1", "20 x 3 x 1 = 60 sites", "H = 1 Lap(m)", "H = 0.5 (m.e) e",
+        "H = -0.2 (m.e) e", "(0.3, -0.2, 0.1)", "n = (1, 0, 0)", "seed 3", "order 4",
+        "25 steps of 0.02", "stable dt", "bytes per site", "4 frames"})
+    EXPECT_TRUE(contains(outcome.output, part));
+  EXPECT_FALSE(std::filesystem::exists(in_folder("chain.h5")));
+}
+
+TEST_F(Checking, MethodsListsWhatIsBuiltAndNothingElse) {
+  auto const outcome = start({"methods"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.errors, "");
+  write("chain.toml", chain_scene());
+  for (std::string const method :
+       {"euler", "implicit_euler", "heun", "rkmk4", "rkmk4_as_printed", "series4", "series4_paper",
+        "ab2", "implicit_midpoint", "classical_euler", "classical_heun", "classical_rk4",
+        "projected_euler", "projected_heun", "projected_rk4"}) {
+    auto const listed = outcome.output.find("\n" + method + " ") != std::string::npos;
+    auto const accepted =
+        start({"check", "chain.toml", "--set", "integrator.method='" + method + "'"}).status == 0;
+    EXPECT_EQ(listed, accepted) << method;
+  }
+}
+
+TEST_F(Checking, HelpAndVersion) {
+  for (Arguments const& arguments :
+       {Arguments{"--help"}, Arguments{"run", "--help"}, Arguments{"--version"}}) {
+    auto const outcome = start(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.errors, "");
+    EXPECT_NE(outcome.output, "");
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

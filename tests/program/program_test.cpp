@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "program_test.hpp"
+
+#include <fcntl.h>
+#include <hdf5.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace cayspin::program::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_file(fs::path const& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void limit(int resource, long value) {
+  if (value < 0) return;
+  auto const most = static_cast<rlim_t>(value);
+  rlimit const limit{most, most};
+  if (::setrlimit(static_cast<__rlimit_resource>(resource), &limit) != 0) ::_exit(120);
+}
+
+[[noreturn]] void become_program(fs::path const& folder, Arguments const& arguments,
+                                 Treatment const& treatment) {
+  auto const redirect = [&](char const* name, int to) {
+    ::dup2(::open((folder / name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), to);
+  };
+  redirect("stdout", STDOUT_FILENO);
+  redirect("stderr", STDERR_FILENO);
+  if (::chdir(folder.c_str()) != 0) ::_exit(121);
+  limit(RLIMIT_FSIZE, treatment.file_limit);
+  limit(RLIMIT_AS, treatment.memory_limit);
+  std::vector<char*> words{const_cast<char*>("cayspin")};
+  for (auto const& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  ::execv(CAYSPIN_PROGRAM, words.data());
+  ::_exit(122);
+}
+
+}  // namespace
+
+ProgramTest::ProgramTest() {
+  auto pattern = (fs::path(testing::TempDir()) / "cayspin_program_XXXXXX").string();
+  if (!::mkdtemp(pattern.data())) throw std::runtime_error("cannot create " + pattern);
+  folder_ = pattern;
+}
+
+ProgramTest::~ProgramTest() { fs::remove_all(folder_); }
+
+Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatment) const {
+  pid_t const child = ::fork();
+  if (child == 0) become_program(folder_, arguments, treatment);
+  if (!treatment.interrupt_when.empty()) {
+    auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!fs::exists(treatment.interrupt_when) && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::duration<double>(treatment.interrupt_after));
+    ::kill(child, SIGINT);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+          read_file(folder_ / "stdout"), read_file(folder_ / "stderr")};
+}
+
+io::TrajectoryInfo ProgramTest::run(std::string const& scene, Arguments const& arguments) const {
+  write("scene.toml", scene);
+  Arguments all{"run", "scene.toml", "--quiet", "--overwrite", "--output", "out.h5"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  auto const outcome = start(all);
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_EQ(outcome.output, "");
+  auto const info = io::read_info(in_folder("out.h5"));
+  EXPECT_TRUE(info.complete);
+  return info;
+}
+
+fs::path ProgramTest::write(std::string const& name, std::string const& text) const {
+  std::ofstream(folder_ / name) << text;
+  return folder_ / name;
+}
+
+Dataset ProgramTest::read_dataset(std::string const& name, std::string const& dataset) const {
+  hid_t const file = H5Fopen((folder_ / name).c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  hid_t const data = H5Dopen2(file, dataset.c_str(), H5P_DEFAULT);
+  hid_t const space = H5Dget_space(data);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+  H5Sget_simple_extent_dims(space, extents.data(), nullptr);
+  Dataset read{{extents.begin(), extents.end()},
+               std::vector<double>(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)))};
+  EXPECT_GE(H5Dread(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, read.values.data()), 0);
+  H5Sclose(space);
+  H5Dclose(data);
+  H5Fclose(file);
+  return read;
+}
+
+std::vector<double> ProgramTest::last_spins(std::string const& name) const {
+  auto const spins = read_dataset(name, "/spins");
+  auto const frame = static_cast<std::ptrdiff_t>(spins.values.size()) / spins.extents.at(0);
+  return {spins.values.end() - frame, spins.values.end()};
+}
+
+testing::AssertionResult is_one_line(std::string const& text) {
+  if (std::ranges::count(text, '\n') == 1 && text.size() > 1 && text.ends_with('\n'))
+    return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "not one line: \"" << text << '"';
+}
+
+testing::AssertionResult contains(std::string const& text, std::string const& part) {
+  if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << '"' << text << "\" lacks \"" << part << '"';
+}
+
+std::string chain_scene() {
+  return R"([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [20, 3]
+[field]
+exchange = 1.0
+anisotropy = [{ constant = 0.5, axis = [0, 0, 1] }, { constant = -0.2, axis = [0, 1, 1] }]
+applied = [0.3, -0.2, 0.1]
+slab_demag = { normal = [1, 0, 0] }
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "rkmk4"
+dt = 0.02
+steps = 25
+[output]
+file = "chain.h5"
+every = 10
+)";
+}
+
+std::string macrospin_scene() {
+  return R"([system]
+kind = "llg"
+damping = 0.5
+[lattice]
+shape = [1]
+[field]
+applied = [0, 0, 1]
+[initial]
+uniform = [1, 0, 0.2]
+[integrator]
+method = "rkmk4"
+dt = 0.1
+end = 5.0
+)";
+}
+
+}  // namespace cayspin::program::test

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/trajectory.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cayspin::program::test {
+
+using Arguments = std::vector<std::string>;
+
+/// What a run of the program left behind.
+struct Outcome {
+  int status = -1;  // 128 + signal when one killed it
+  std::string output, errors;
+};
+
+struct Dataset {
+  std::vector<std::int64_t> extents;
+  std::vector<double> values;
+};
+
+/// How a run is treated.
+struct Treatment {
+  long file_limit = -1;        // bytes a file may have
+  long memory_limit = -1;      // bytes of address space
+  double interrupt_after = 0;  // SIGINT, in seconds after its first frame is in the file
+  std::filesystem::path interrupt_when = {};  // ... of this file
+};
+
+/// Each test in a folder of its own, which is the program's working directory.
+class ProgramTest : public testing::Test {
+ protected:
+  ProgramTest();
+  ~ProgramTest() override;
+
+  /// Starts the program and waits.
+  Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
+
+  /// Runs a scene that has to succeed without a word on standard error.
+  io::TrajectoryInfo run(std::string const& scene, Arguments const& arguments = {}) const;
+
+  /// Writes FOLDER/name, returns its path.
+  std::filesystem::path write(std::string const& name, std::string const& text) const;
+  std::filesystem::path in_folder(std::string const& name) const { return folder_ / name; }
+
+  /// A dataset of a file in the folder.
+  Dataset read_dataset(std::string const& name, std::string const& dataset) const;
+
+  /// The last frame of a file in the folder.
+  std::vector<double> last_spins(std::string const& name) const;
+
+  std::filesystem::path folder_;
+};
+
+/// Exactly one line, with a line end.
+testing::AssertionResult is_one_line(std::string const& text);
+testing::AssertionResult contains(std::string const& text, std::string const& part);
+
+/// A short run of a damped chain, with every kind of term.
+std::string chain_scene();
+/// A single spin that turns and falls towards z.
+std::string macrospin_scene();
+
+}  // namespace cayspin::program::test

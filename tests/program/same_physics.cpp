@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The same scene by different ways has to give the same trajectory.
+#include "../scene/hdf5_file.hpp"
+#include "program_test.hpp"
+
+#include <cmath>
+
+namespace cayspin::program::test {
+namespace {
+
+class SamePhysics : public ProgramTest {
+ protected:
+  std::vector<double> spins(std::string const& scene, Arguments const& arguments) const {
+    run(scene, arguments);
+    return read_dataset("out.h5", "/spins").values;
+  }
+};
+
+double distance(std::vector<double> const& a, std::vector<double> const& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+TEST_F(SamePhysics, SpacesAndThreadsGiveTheSameBits) {
+  for (std::string const precision : {"double", "single"}) {
+    auto const serial = spins(chain_scene(), {"--space", "serial", "--precision", precision});
+    for (std::string const threads : {"1", "2", "3"})
+      EXPECT_EQ(spins(chain_scene(), {"--precision", precision, "--threads", threads}), serial);
+  }
+}
+
+TEST_F(SamePhysics, SingleFollowsDouble) {
+  auto const both =
+      distance(spins(chain_scene(), {}), spins(chain_scene(), {"--precision", "single"}));
+  EXPECT_LT(both, 1e-5);
+  EXPECT_GT(both, 1e-8);
+}
+
+TEST_F(SamePhysics, HostDemagIsTheDeviceOne) {
+  for (std::string const axis : {"[1,0,0]", "[0,1,0]", "[0,0,1]"})
+    for (std::string const average : {"", ",average='layer'"}) {
+      auto const demag = "field.slab_demag={normal=" + axis + average;
+      EXPECT_LT(distance(spins(chain_scene(), {"--set", demag + "}"}),
+                         spins(chain_scene(), {"--set", demag + ",where='host'}"})),
+                1e-13)
+          << demag;
+    }
+}
+
+TEST_F(SamePhysics, LayerAverageIsTheDemagOfUniformLayers) {
+  Arguments const start{"--set", "initial={expression=['0.3+x','0.5','cos(i)']}"};
+  auto const with = [&](std::string const& demag) {
+    return spins(chain_scene(), {start[0], start[1], "--set", "field.slab_demag=" + demag});
+  };
+  auto const layers = with("{normal=[1,0,0],average='layer'}");
+  EXPECT_LT(distance(layers, with("{normal=[1,0,0]}")), 1e-13);
+  EXPECT_GT(distance(layers, with("{normal=[1,0,0],strength=0.9}")), 1e-3);
+}
+
+TEST_F(SamePhysics, ExpressionInTimeThatIsConstantIsTheConstant) {
+  auto const expression = "field.applied=['0.3+0*t','-0.2','0.1']";
+  EXPECT_EQ(spins(chain_scene(), {"--set", expression}), spins(chain_scene(), {}));
+}
+
+TEST_F(SamePhysics, Mu0MultipliesAppliedAndDemag) {
+  auto const scaled = spins(chain_scene(), {"--set", "field.mu0=2.0"});
+  auto const spelled = spins(chain_scene(), {"--set", "field.applied=[0.6,-0.4,0.2]", "--set",
+                                             "field.slab_demag={normal=[1,0,0],strength=2.0}"});
+  EXPECT_LT(distance(scaled, spelled), 1e-14);
+}
+
+TEST_F(SamePhysics, StartFromFileGoesOn) {
+  auto const whole = spins(chain_scene(), {"--set", "integrator.steps=20"});
+  run(chain_scene(), {"--set", "integrator.steps=10"});
+  std::filesystem::rename(in_folder("out.h5"), in_folder("half.h5"));
+  auto const second =
+      spins(chain_scene(), {"--set", "integrator.steps=10", "--set", "initial={file='half.h5'}"});
+  std::vector<double> const end(whole.end() - 180, whole.end());
+  EXPECT_LT(distance({second.end() - 180, second.end()}, end), 1e-14);
+}
+
+// Exact: m turns about H by |H| t, right-handed. VALIDATION's rotating field is the library's test.
+TEST_F(SamePhysics, PrecessionIsRightHanded) {
+  auto const m =
+      spins(macrospin_scene(), {"--set", "system.damping=0", "--set", "initial.uniform=[1,0,0]",
+                                "--set", "integrator={method='rkmk4',dt=0.01,end=1.0}"});
+  EXPECT_NEAR(m[3], std::cos(1.0), 1e-9);
+  EXPECT_NEAR(m[4], std::sin(1.0), 1e-9);
+}
+
+std::string bodies_scene() {
+  return R"([system]
+kind = "rigid_body"
+inertia = [1.0, 2.0, 3.0]
+[lattice]
+shape = [5]
+[initial]
+random = { seed = 2 }
+[integrator]
+method = "rkmk4"
+dt = 0.05
+steps = 40
+)";
+}
+
+TEST_F(SamePhysics, InertiaFromFileIsTheInertia) {
+  std::vector<double> tensors;
+  for (int body = 0; body < 5; ++body)
+    tensors.insert(tensors.end(), {1, 0, 0, 0, 2, 0, 0, 0, body == 4 ? 2.5 : 3.0});
+  io::test::write_dataset(in_folder("inertia.h5"), "/inertia", {5, 3, 3}, tensors);
+  auto const one = spins(bodies_scene(), {});
+  auto const each = spins(bodies_scene(), {"--set", "system.inertia={file='inertia.h5'}"});
+  ASSERT_EQ(each.size(), 30u);
+  EXPECT_LT(distance({one.begin(), one.end() - 3}, {each.begin(), each.end() - 3}), 1e-15);
+  EXPECT_GT(distance({one.end() - 3, one.end()}, {each.end() - 3, each.end()}), 1e-3);
+  auto const info = io::read_info(in_folder("out.h5"));
+  EXPECT_NEAR(info.frame_scalars[0].energy, info.frame_scalars[1].energy, 1e-6);
+}
+
+TEST_F(SamePhysics, OrthogonalConstantAndExponentialAgreeToTheMethodsOrder) {
+  auto const reference = spins(chain_scene(), {});
+  for (std::string const other :
+       {"generator='orthogonal'", "isotropy={constant=0.7}", "rotation='exponential'"}) {
+    auto const difference =
+        distance(spins(chain_scene(), {"--set", "integrator." + other}), reference);
+    EXPECT_LT(difference, 1e-5) << other;
+    EXPECT_GT(difference, 1e-12) << other;
+  }
+}
+
+TEST_F(SamePhysics, MethodsAgreeToTheirOrder) {
+  auto const reference = spins(chain_scene(), {});
+  for (auto const& [method, tolerance] :
+       std::vector<std::pair<std::string, double>>{{"euler", 0.2},
+                                                   {"rkmk4_as_printed", 1e-4},
+                                                   {"classical_euler", 0.2},
+                                                   {"classical_heun", 5e-3},
+                                                   {"classical_rk4", 1e-5},
+                                                   {"projected_euler", 0.2},
+                                                   {"projected_heun", 5e-3},
+                                                   {"projected_rk4", 1e-5}}) {
+    auto const difference =
+        distance(spins(chain_scene(), {"--set", "integrator.method='" + method + "'", "--set",
+                                       "integrator.energy_guard=false"}),
+                 reference);
+    EXPECT_LT(difference, tolerance) << method;
+    EXPECT_GT(difference, 0) << method;
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

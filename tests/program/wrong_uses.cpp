@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Every wrong use and wrong scene: one line on standard error, status 2, no file.
+#include "../scene/hdf5_file.hpp"
+#include "program_test.hpp"
+
+namespace cayspin::program::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct WrongUse {
+  char const* name;
+  Arguments arguments;
+  char const* named;  // what the line has to name
+
+  friend std::ostream& operator<<(std::ostream& stream, WrongUse const& use) {
+    return stream << use.name;
+  }
+};
+
+// Each is put behind "run chain.toml".
+std::vector<WrongUse> wrong_scenes() {
+  auto const set = [](std::string const& text) { return Arguments{"--set", text}; };
+  return {
+      {"UnknownKey", set("lattice.spacng=1"), "spacing"},
+      {"UnknownTable", set("latice.spacing=1"), "lattice"},
+      {"WrongType", set("system.damping=true"), "system.damping"},
+      {"UnknownKind", set("system.kind='ising'"), "rigid_body"},
+      {"NegativeDamping", set("system.damping=-0.1"), "system.damping"},
+      {"ZeroSpin", set("initial={uniform=[0,0,0]}"), "initial.uniform"},
+      {"ZeroSpinSomewhere", set("initial={expression=['i-7','0','0']}"), "initial.expression"},
+      {"NanInStart", set("initial={expression=['sqrt(-x)','0','1']}"), "initial.expression"},
+      {"NanDamping", set("system.damping=nan"), "system.damping"},
+      {"InfiniteField", set("field.applied=[inf,0,0]"), "field.applied"},
+      {"TwoStarts", set("initial.uniform=[1,0,0]"), "initial"},
+      {"NegativeSpacing", set("lattice.spacing=-1.0"), "lattice.spacing"},
+      {"ShapeZero", set("lattice.shape=[0]"), "lattice.shape"},
+      {"ShapeOfFour", set("lattice.shape=[2,2,2,2]"), "lattice.shape"},
+      {"ShapeBeyondMemory", set("lattice.shape=[100000,100000,10]"), "memory"},
+      {"ShapeBeyondAddresses", set("lattice.shape=[4000000000,4000000000]"), "lattice.shape"},
+      {"UnknownBoundary", set("lattice.boundary='closed'"), "periodic"},
+      {"ZeroAxis", set("field.anisotropy={constant=1,axis=[0,0,0]}"), "field.anisotropy"},
+      {"BadExpression", set("field.applied=['sin(t',0,0]"), "field.applied"},
+      {"ExpressionWithPole", set("field.applied=['1/(t-0.25)',0,0]"), "field.applied"},
+      {"ObliqueLayers", set("field.slab_demag={normal=[1,1,0],average='layer'}"), "normal"},
+      {"UnknownMethod", set("integrator.method='rk5'"), "rkmk4"},
+      {"MethodWithoutMeaning", set("integrator.method='series4_paper'"), "integrator.method"},
+      {"BaselineWithRotation",
+       {"--set", "integrator.method='classical_rk4'", "--set", "integrator.rotation='cayley'"},
+       "rotation"},
+      {"PrintedStagesWithExponential",
+       {"--set", "integrator.method='rkmk4_as_printed'", "--set",
+        "integrator.rotation='exponential'"},
+       "integrator"},
+      {"ZeroDt", set("integrator.dt=0.0"), "integrator.dt"},
+      {"NegativeSteps", set("integrator.steps=-1"), "integrator.steps"},
+      {"StepsAndEnd", set("integrator.end=1.0"), "steps"},
+      {"EndBetweenSteps", set("integrator={method='euler',dt=0.3,end=1.0}"), "0.3333"},
+      {"EveryZero", set("output.every=0"), "output.every"},
+      {"NoSuchStartFile", set("initial={file='none.h5'}"), "none.h5"},
+      {"StartFileOfAnotherShape", set("initial={file='small.h5'}"), "small.h5"},
+      {"StartFileThatIsNone", set("initial={file='chain.toml'}"), "chain.toml"},
+      {"BadOverride", set("lattice"), "key.path=VALUE"},
+      {"BadTomlInOverride", set("lattice.shape=[1"), "lattice.shape"},
+      {"RigidBodyWithField",
+       {"--set", "system={kind='rigid_body',inertia=[1,2,3]}", "--set", "lattice={shape=[4]}"},
+       "rigid_body"},
+      {"UnknownSpace", {"--space", "abacus"}, "serial"},
+      {"UnknownPrecision", {"--precision", "half"}, "single"},
+      {"ZeroThreads", {"--threads", "0"}, "--threads"},
+      {"ThreadsNotANumber", {"--threads", "two"}, "--threads"},
+      {"UnknownOption", {"--fast"}, "--fast"},
+      {"TwoScenes", {"other.toml"}, "other.toml"},
+      {"Restart", {"--restart", "small.h5"}, "--restart"},
+      {"MissingFolder", {"--output", "none/out.h5"}, "none"},
+      {"OutputIsAFolder", {"--output", "."}, "."},
+  };
+}
+
+class WrongScene : public ProgramTest, public testing::WithParamInterface<WrongUse> {};
+
+TEST_P(WrongScene, IsOneLineAndStatusTwo) {
+  write("chain.toml", chain_scene());
+  io::test::write_dataset(in_folder("small.h5"), "/spins", {1, 1, 2, 3}, {1, 0, 0, 0, 1, 0});
+  Arguments arguments{"run", "chain.toml"};
+  arguments.insert(arguments.end(), GetParam().arguments.begin(), GetParam().arguments.end());
+  auto const outcome = start(arguments);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(is_one_line(outcome.errors));
+  EXPECT_TRUE(contains(outcome.errors, GetParam().named));
+  EXPECT_EQ(outcome.output, "");
+  EXPECT_FALSE(fs::exists(in_folder("chain.h5")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Program, WrongScene, testing::ValuesIn(wrong_scenes()),
+                         [](auto const& use) { return std::string(use.param.name); });
+
+std::vector<WrongUse> wrong_commands() {
+  return {
+      {"NoCommand", {}, "run"},
+      {"UnknownCommand", {"simulate", "chain.toml"}, "run"},
+      {"NoScene", {"run"}, "SCENE"},
+      {"SceneMissing", {"run", "none.toml"}, "none.toml"},
+      {"SceneIsAFolder", {"run", "."}, "."},
+      {"SceneIsNotToml", {"run", "broken.toml"}, "broken.toml:2"},
+      {"NoOutput", {"run", "no_output.toml"}, "--output"},
+      {"CheckOfWrongScene", {"check", "chain.toml", "--set", "system.damping=-1"}, "damping"},
+      {"CheckOfZeroSpin", {"check", "chain.toml", "--set", "initial={uniform=[0,0,0]}"}, "initial"},
+      {"CheckWithOutput", {"check", "chain.toml", "--output", "a.h5"}, "--output"},
+      {"InfoWithoutFile", {"info"}, "FILE"},
+      {"InfoOfMissingFile", {"info", "none.h5"}, "none.h5"},
+      {"InfoOfAnotherFile", {"info", "chain.toml"}, "chain.toml"},
+      {"InfoOfOtherHdf5", {"info", "small.h5"}, "small.h5"},
+      {"MethodsWithArgument", {"methods", "euler"}, "euler"},
+  };
+}
+
+class WrongCommand : public ProgramTest, public testing::WithParamInterface<WrongUse> {};
+
+TEST_P(WrongCommand, IsOneLineAndStatusTwo) {
+  write("chain.toml", chain_scene());
+  write("no_output.toml", macrospin_scene());
+  write("broken.toml", "[system]\nkind = \n");
+  io::test::write_dataset(in_folder("small.h5"), "/spins", {1, 1, 1, 3}, {1, 0, 0});
+  auto const outcome = start(GetParam().arguments);
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(is_one_line(outcome.errors));
+  EXPECT_TRUE(contains(outcome.errors, GetParam().named));
+  EXPECT_EQ(outcome.output, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Program, WrongCommand, testing::ValuesIn(wrong_commands()),
+                         [](auto const& use) { return std::string(use.param.name); });
+
+using ExistingOutput = ProgramTest;
+
+TEST_F(ExistingOutput, IsKeptUnlessOverwritten) {
+  write("chain.toml", chain_scene());
+  write("chain.h5", "precious");
+  auto const refused = start({"run", "chain.toml"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(is_one_line(refused.errors));
+  EXPECT_TRUE(contains(refused.errors, "--overwrite"));
+  EXPECT_EQ(fs::file_size(in_folder("chain.h5")), 8u);
+
+  EXPECT_EQ(start({"run", "chain.toml", "--overwrite"}).status, 0);
+  EXPECT_EQ(io::read_info(in_folder("chain.h5")).frames, 4);
+}
+
+}  // namespace
+}  // namespace cayspin::program::test
