@@ -72,9 +72,11 @@ Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatmen
     ::kill(child, SIGINT);
   }
   int status = 0;
-  ::waitpid(child, &status, 0);
+  rusage usage{};
+  ::wait4(child, &status, 0, &usage);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-          read_file(folder_ / "stdout"), read_file(folder_ / "stderr")};
+          read_file(folder_ / "stdout"), read_file(folder_ / "stderr"),
+          1024.0 * static_cast<double>(usage.ru_maxrss)};
 }
 
 io::TrajectoryInfo ProgramTest::run(std::string const& scene, Arguments const& arguments) const {

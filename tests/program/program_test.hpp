@@ -18,6 +18,7 @@ using Arguments = std::vector<std::string>;
 struct Outcome {
   int status = -1;  // 128 + signal when one killed it
   std::string output, errors;
+  double peak_bytes = 0;  // most memory in use at once
 };
 
 struct Dataset {
