@@ -60,6 +60,18 @@ TYPED_TEST(ExponentialMap, SmallAnglesToFullRelativePrecision) {
   for (Real const size : this->around(tiny)) this->expect_small_angle(size);
 }
 
+// Along a coordinate axis |f| is known exactly, and so is the angle: its reduction by multiples of
+// pi must not cost more digits the larger it is.
+TYPED_TEST(ExponentialMap, KnownAnglesToFullPrecision) {
+  using Real = TypeParam;
+  for (long double size = 1; size < 1e6L; size *= 1.01L) {
+    Vec3<Real> const f{0, static_cast<Real>(size), 0};
+    Long const expected = exponential(widen(f), {0.6L, 0, 0.8L});
+    auto const found = widen(Exponential::rotate(f, narrow<Real>({0.6L, 0, 0.8L})));
+    EXPECT_LE(largest(found - expected), 8 * this->eps) << size;
+  }
+}
+
 // Half of |f| is reduced by multiples of pi, to -pi/2 .. pi/2: odd multiples of pi switch branch.
 TYPED_TEST(ExponentialMap, ThroughMultiplesOfPi) {
   using Real = TypeParam;
