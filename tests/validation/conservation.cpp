@@ -49,7 +49,7 @@ void expect_drifts(std::string const& method, Choose const& choose,
     expect_figure(name + ", energy", std::abs(de) / sites, energies[i], 0.05);
     double const dm = magnetization(exec, drift(axial)).z - magnetization(exec, from).z;
     if (magnetizations.empty())
-      expect_below(name + ", magnetization", std::abs(dm), 1e-15);
+      expect_below(name + ", magnetization", std::abs(dm), 2e-16);
     else
       expect_figure(name + ", magnetization", std::abs(dm), magnetizations[i], 0.05);
   }

@@ -55,7 +55,7 @@ class SwitchingSlab : public ::testing::Test {
     Path result = path<Stepper>(generator, end_time_, dt, options...);
     expect_figure(what + ", distance", distance(result, reference_), distance_figure);
     if (norm_figure.empty())
-      expect_below(what + ", max ||m| - 1|", result.norm_defect, 2e-14);
+      expect_below(what + ", max ||m| - 1|", result.norm_defect, 1e-14);
     else
       expect_figure(what + ", max ||m| - 1|", result.norm_defect, norm_figure);
     return result;
