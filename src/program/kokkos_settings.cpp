@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "kokkos_settings.hpp"
 
+#include "denormals.hpp"
 #include "failure.hpp"
 #include "simulation.hpp"
 
@@ -44,6 +45,7 @@ std::string chosen_space(std::optional<std::string> const& asked) {
 
 KokkosSession::KokkosSession(std::string const& space, std::optional<int> threads,
                              std::optional<int> device) {
+  FlushDenormals const inherited_by_threads;
   Kokkos::initialize(settings(space, threads, device));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "denormals.hpp"
 #include "failure.hpp"
 #include "kokkos_settings.hpp"
 #include "text.hpp"
@@ -76,6 +77,7 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options) 
   };
   Summary summary;
   try {
+    FlushDenormals const while_stepping;
     summary = plan.method.advance(&job, plan.options);
   } catch (NumbersFailed const& error) {
     throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
