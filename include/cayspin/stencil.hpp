@@ -14,7 +14,7 @@ class Stencil {
   using vector_type = Vec3<value_type>;
 
   KOKKOS_FORCEINLINE_FUNCTION Stencil(Site const& site, detail::SiteArray<Real, 3> const& spins)
-      : site_(site), spins_(spins), center_(site.load(spins)) {}
+      : site_(site), spins_(spins), center_(site.load_center(spins)) {}
 
   KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return center_; }
 

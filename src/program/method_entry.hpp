@@ -10,14 +10,6 @@
 
 namespace cayspin::program {
 
-template <class Tableau, class Update>
-constexpr int runge_kutta_work_fields() {
-  int count = Tableau::stages < 3 ? 1 : 2;  // spins between stages
-  for (int stage = 0; stage + 1 < Tableau::stages; ++stage)
-    if (cayspin::detail::stores_increment<Tableau, Update>(stage)) ++count;
-  return count;
-}
-
 /// Calls work with the rotation as a type; Family::exponential says whether it may be that one.
 template <class Family, class Work>
 auto with_rotation(io::Rotation rotation, Work const& work) {
@@ -48,13 +40,8 @@ struct RungeKuttaEntry {
   }
 
   static MethodEntry make(io::Method method) {
-    return {
-        method,
-        Standard::order,
-        Standard::evaluations,
-        runge_kutta_work_fields<typename Standard::tableau_type, typename Standard::update_type>(),
-        stable_step,
-        advance};
+    return {method,      Standard::order, Standard::evaluations, Standard::work_fields,
+            stable_step, advance};
   }
 
  private:

@@ -28,12 +28,13 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(RowLayout const& layout, std::int
   auto const end = static_cast<std::int32_t>(std::int64_t(packs) * (part + 1) / per_row);
   // The ends of the row share one instance of the functor: kernels are large, and compile slowly.
   std::int32_t const last = packs - 1;
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
 #pragma GCC unroll 1
 #endif
-  for (std::int32_t pack = 0; pack <= last; pack += std::max<std::int32_t>(last, 1))
+  for (std::int32_t pack = 0; pack <= last; pack += Kokkos::max<std::int32_t>(last, 1))
     if (begin <= pack && pack < end) functor(Site<Value, true>(row, pack * lanes));
-  for (std::int32_t pack = std::max<std::int32_t>(begin, 1); pack < std::min(end, last); ++pack)
+  for (std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1); pack < Kokkos::min(end, last);
+       ++pack)
     functor(Site<Value, false>(row, pack * lanes));
 }
 

@@ -40,7 +40,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
 /// Writes past the caches. `to` is aligned to the pack.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Value>* to) {
-#if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_AVX512)
   if constexpr (std::is_same_v<Value, Pack<double>>) {
     _mm512_stream_pd(to, static_cast<__m512d>(value));
     return;
@@ -48,7 +48,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Va
     _mm512_stream_ps(to, static_cast<__m512>(value));
     return;
   }
-#elif defined(KOKKOS_ARCH_AVX2) && !defined(__CUDA_ARCH__)
+#elif defined(CAYSPIN_DETAIL_AVX2)
   if constexpr (std::is_same_v<Value, Pack<double>>) {
     _mm256_stream_pd(to, static_cast<__m256d>(value));
     return;
@@ -60,9 +60,16 @@ KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Va
   store(value, to);
 }
 
+/// Asks for a cache line that will be read about a row later; any address will do.
+KOKKOS_FORCEINLINE_FUNCTION void prefetch([[maybe_unused]] void const* address) {
+#if defined(__GNUC__) && !defined(__CUDA_ARCH__)
+  __builtin_prefetch(address);
+#endif
+}
+
 /// Orders this thread's streaming stores before what it does next.
 inline void streaming_fence() {
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(__CUDA_ARCH__)
   _mm_sfence();
 #endif
 }

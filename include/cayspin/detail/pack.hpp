@@ -13,14 +13,19 @@
 #endif
 
 // A Pack is what one iteration of a host loop works on: a register of Kokkos' SIMD types where the
-// configured architecture has one, otherwise one number. Device loops work on plain numbers. Every
-// operation the kernels need is overloaded here for both, so kernels are written once.
+// configured architecture has one, otherwise one number. Device loops work on plain numbers, and so
+// do host loops beside a device backend, whose compilers take no registers of the host in code they
+// share. Every operation the kernels need is overloaded here for both: kernels are written once.
 namespace cayspin::detail {
 
-#if defined(KOKKOS_ARCH_AVX512XEON)
+#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
+// no pack type
+#elif defined(KOKKOS_ARCH_AVX512XEON)
+#define CAYSPIN_DETAIL_AVX512
 #define CAYSPIN_DETAIL_SIMD_ABI avx512_fixed_size
 inline constexpr std::size_t register_bytes = 64;
 #elif defined(KOKKOS_ARCH_AVX2)
+#define CAYSPIN_DETAIL_AVX2
 #define CAYSPIN_DETAIL_SIMD_ABI avx2_fixed_size
 inline constexpr std::size_t register_bytes = 32;
 #elif defined(KOKKOS_ARCH_ARM_NEON)
@@ -88,7 +93,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, V
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const& b,
                                                     Value const& c) {
-#if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_AVX512)
   if constexpr (std::is_same_v<Value, Pack<double>>) {
     return Value(
         _mm512_fmsub_pd(static_cast<__m512d>(a), static_cast<__m512d>(b), static_cast<__m512d>(c)));
@@ -96,7 +101,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value multiply_subtract(Value const& a, Value const&
     return Value(
         _mm512_fmsub_ps(static_cast<__m512>(a), static_cast<__m512>(b), static_cast<__m512>(c)));
   }
-#elif defined(KOKKOS_ARCH_AVX2) && !defined(__CUDA_ARCH__)
+#elif defined(CAYSPIN_DETAIL_AVX2)
   if constexpr (std::is_same_v<Value, Pack<double>>) {
     return Value(
         _mm256_fmsub_pd(static_cast<__m256d>(a), static_cast<__m256d>(b), static_cast<__m256d>(c)));
@@ -123,7 +128,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value select(typename ValueTraits<Value>::mask const
 /// (Kokkos' pack of 512 bits takes a root through an intrinsic that g++ 12 calls uninitialised.)
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value square_root(Value const& a) {
-#if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_AVX512)
   if constexpr (std::is_same_v<Value, Pack<double>>) {
     return Value(_mm512_maskz_sqrt_pd(0xff, static_cast<__m512d>(a)));
   } else if constexpr (std::is_same_v<Value, Pack<float>>) {

@@ -14,13 +14,15 @@ struct Row {
   std::ptrdiff_t to_neighbor[2][2];  // [axis - 1][previous, next], relative to `offset`
   std::int32_t nx, y, z;
   bool periodic_x;
+  std::ptrdiff_t pitch;
 
   KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int64_t row)
       : offset(row * layout.pitch),
         nx(layout.nx),
         y(static_cast<std::int32_t>(row % layout.ny)),
         z(static_cast<std::int32_t>(row / layout.ny)),
-        periodic_x(layout.periodic[0]) {
+        periodic_x(layout.periodic[0]),
+        pitch(layout.pitch) {
     step(0, y, layout.ny, layout.pitch, layout.periodic[1]);
     step(1, z, layout.nz, layout.pitch * layout.ny, layout.periodic[2]);
   }
@@ -66,6 +68,14 @@ class Site {
   }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
+    prefetch(array, offset() + row_.pitch);
+    return load_at(array, offset());
+  }
+  /// The same, of an array whose neighbours are read too: the next row to come from memory is in
+  /// the plane behind.
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(SiteArray<Real, 3> const& array) const {
+    prefetch(array, offset() + row_.to_neighbor[1][1] + row_.pitch);
     return load_at(array, offset());
   }
   template <class Real>
@@ -117,6 +127,15 @@ class Site {
   }
 
  private:
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION static void prefetch(SiteArray<Real, 3> const& array,
+                                                   std::ptrdiff_t offset) {
+    if constexpr (lanes > 1) {
+      for (int component = 0; component < 3; ++component)
+        detail::prefetch(array.data + component * array.stride + offset);
+    }
+  }
+
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(SiteArray<Real, 3> const& array,
                                                   std::ptrdiff_t offset) const {

@@ -25,6 +25,8 @@ class RungeKutta {
   using Real = typename Spins::value_type;
   static constexpr int order = Tableau::order;
   static constexpr int evaluations = Tableau::stages;  // of the generator, per step
+  /// Fields of three numbers per site beside the spins.
+  static constexpr int work_fields = detail::work_fields<Tableau, Update>();
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
@@ -32,21 +34,22 @@ class RungeKutta {
     for (int i = 0; i < stages; ++i) labels_[i] = region_ + "::stage_" + std::to_string(i + 1);
     for (int i = 0; i < level_count; ++i)
       levels_[i] = Spins(name + "::level_" + std::to_string(i + 1), like.lattice());
-    for (int i = 0; i + 1 < stages; ++i)
-      if (detail::stores_increment<Tableau, Update>(i))
-        increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), like.lattice());
+    if constexpr (detail::keeps_sum<Tableau, Update>) {
+      sum_ = Spins(name + "::sum", like.lattice());
+      Spins const last_increment(name + "::increment", like.lattice());
+      for (int i = 0; i + 1 < stages; ++i) increments_[i] = last_increment;
+    } else {
+      for (int i = 0; i + 1 < stages; ++i)
+        if (detail::stores_increment<Tableau, Update>(i))
+          increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), like.lattice());
+    }
     using Exec = typename Spins::memory_space::execution_space;
     if constexpr (detail::is_host_execution<Exec>)
       streaming_ = like.bytes() + work_bytes() > detail::last_level_cache_bytes();
   }
 
   /// Bytes of work memory.
-  std::size_t work_bytes() const {
-    std::size_t bytes = 0;
-    for (auto const& level : levels_) bytes += level.bytes();
-    for (auto const& increment : increments_) bytes += increment.bytes();
-    return bytes;
-  }
+  std::size_t work_bytes() const { return work_fields * levels_[0].bytes(); }
 
   /// Advances `spins` from t to t + dt under `generator`. A one-stage method exchanges the memory
   /// of `spins` with its own, so take arrays of `spins` anew after a step.
@@ -75,11 +78,20 @@ class RungeKutta {
     auto prepared = detail::prepare_term(generator, exec, level, t + Tableau::c[Stage] * dt);
     using Kernel =
         detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, decltype(prepared), Real>;
-    Kernel kernel{std::move(prepared),  isotropy_, spins.array(), level.array(), {}, {}, {},
-                  static_cast<Real>(dt)};
+    constexpr bool keeps_sum = detail::keeps_sum<Tableau, Update>;
+    Kernel kernel{.generator = std::move(prepared),
+                  .isotropy = isotropy_,
+                  .start = spins.array(),
+                  .level = level.array(),
+                  .increments = {},
+                  .sum = {},
+                  .increment = {},
+                  .next = next.output(streaming_ && !in_place),
+                  .dt = static_cast<Real>(dt)};
     for (int i = 0; i < Stage; ++i) kernel.increments[i] = increments_[i].array();
-    if constexpr (!last) kernel.increment = increments_[Stage].output(streaming_);
-    kernel.next = next.output(streaming_ && !in_place);
+    if constexpr (!last)
+      kernel.increment = increments_[Stage].output(streaming_ && (Stage == 0 || !keeps_sum));
+    if constexpr (keeps_sum) kernel.sum = sum_.output(streaming_);
     detail::for_each_site<Real>(exec, labels_[Stage], spins.layout(), kernel);
     if constexpr (!last) stages_from<Stage + 1>(exec, generator, spins, t, dt);
   }
@@ -87,7 +99,8 @@ class RungeKutta {
   std::string region_;
   std::array<std::string, stages> labels_;
   std::array<Spins, level_count> levels_;
-  std::array<Spins, stages> increments_;
+  std::array<Spins, stages> increments_;  // one field in all places where keeps_sum
+  Spins sum_;
   Isotropy isotropy_;
   bool streaming_ = false;
 };

@@ -9,10 +9,27 @@
 
 namespace cayspin::detail {
 
+/// Every stage starts from the increment before it alone, as in the classical Runge-Kutta methods.
+template <class Tableau>
+constexpr bool is_chain() {
+  for (int i = 0; i < Tableau::stages; ++i)
+    for (int j = 0; j < i; ++j)
+      if ((Tableau::a[i][j] != 0) != (j == i - 1)) return false;
+  return true;
+}
+
+/// In a chain that needs its increments as arguments, one array holds the last increment and one
+/// the weighted sum, brought up to date at every second stage: the least that can be moved.
+template <class Tableau, class Update>
+inline constexpr bool keeps_sum = Tableau::stages > 2 &&
+                                  is_chain<Tableau>() && Update::increment_needs_argument &&
+                                  !Update::keeps_generators;
+
 /// Does stage `stage` (or the end of the step behind the last one) read the increment of `source`?
 template <class Tableau, class Update>
 constexpr bool reads_increment(int stage, int source) {
   if (source >= stage) return false;
+  if (keeps_sum<Tableau, Update>) return source == stage - 1;
   bool const last = stage == Tableau::stages - 1;
   if (last && (Tableau::b[source] != 0 || Update::keeps_generators)) return true;
   if (!last && Tableau::a[stage + 1][source] != 0) return true;
@@ -24,6 +41,27 @@ constexpr bool stores_increment(int source) {
   for (int stage = source + 1; stage < Tableau::stages; ++stage)
     if (reads_increment<Tableau, Update>(stage, source)) return true;
   return false;
+}
+
+template <class Tableau, class Update>
+constexpr bool writes_sum(int stage) {
+  return keeps_sum<Tableau, Update> && stage % 2 == 1 && stage + 1 < Tableau::stages;
+}
+template <class Tableau, class Update>
+constexpr bool reads_sum(int stage) {
+  return keeps_sum<Tableau, Update> && stage > 1 &&
+         (stage % 2 == 1 || stage + 1 == Tableau::stages);
+}
+
+/// Fields of three numbers per site that a method needs beside the spins.
+template <class Tableau, class Update>
+constexpr int work_fields() {
+  int const levels = Tableau::stages < 3 ? 1 : 2;
+  if (keeps_sum<Tableau, Update>) return levels + 2;
+  int increments = 0;
+  for (int stage = 0; stage + 1 < Tableau::stages; ++stage)
+    increments += stores_increment<Tableau, Update>(stage);
+  return levels + increments;
 }
 
 template <int... I, class Body>
@@ -50,8 +88,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
 
 template <class Tableau, int Row>
 struct StageWeights {
-  static constexpr double of(int j) { return Tableau::a[Row][j]; }
-  static constexpr bool first(int j) {
+  KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::a[Row][j]; }
+  KOKKOS_FUNCTION static constexpr bool first(int j) {
     for (int i = 0; i < j; ++i)
       if (of(i) != 0) return false;
     return true;
@@ -60,8 +98,8 @@ struct StageWeights {
 
 template <class Tableau>
 struct FinalWeights {
-  static constexpr double of(int j) { return Tableau::b[j]; }
-  static constexpr bool first(int j) {
+  KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::b[j]; }
+  KOKKOS_FUNCTION static constexpr bool first(int j) {
     for (int i = 0; i < j; ++i)
       if (of(i) != 0) return false;
     return true;
@@ -81,6 +119,7 @@ struct RungeKuttaStage {
   SiteArray<Real, 3> start;                                    // spins at the begin of the step
   SiteArray<Real, 3> level;                                    // spins of this stage
   SiteArray<Real, 3> increments[stages > 1 ? stages - 1 : 1];  // of earlier stages
+  OutputArray<Real, 3> sum;                                    // of weighted increments
   OutputArray<Real, 3> increment;                              // of this stage
   OutputArray<Real, 3> next;  // spins of the next stage, or of the end
   Real dt;
@@ -111,8 +150,14 @@ struct RungeKuttaStage {
 
     if constexpr (last) {
       if constexpr (Update::keeps_generators) increments_from_generators(f);
-      site.store(Update::finish(weighted_sum<FinalWeights<Tableau>, stages>(f), m0), next);
+      if constexpr (keeps_sum<Tableau, Update>) {
+        site.store(Update::finish(sum_up_to_here(site, f), m0), next);
+      } else {
+        site.store(Update::finish(weighted_sum<FinalWeights<Tableau>, stages>(f), m0), next);
+      }
     } else {
+      if constexpr (writes_sum<Tableau, Update>(StageIndex))
+        site.store(sum_up_to_here(site, f), sum);
       if constexpr (stores_increment<Tableau, Update>(StageIndex))
         site.store(f[StageIndex], increment);
       site.store(
@@ -122,6 +167,23 @@ struct RungeKuttaStage {
   }
 
  private:
+  template <class Value, int Of>
+  KOKKOS_FORCEINLINE_FUNCTION static Value weight() {
+    constexpr double b = Tableau::b[Of];
+    return Value(static_cast<scalar_t<Value>>(b));
+  }
+
+  // The stored sum, the increment before this one where an even stage left it out, and this one.
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site,
+                                                         Vec3<Value> const* f) const {
+    Vec3<Value> total = weight<Value, StageIndex>() * f[StageIndex];
+    if constexpr (StageIndex % 2 == 1)
+      total = multiply_add(weight<Value, StageIndex - 1>(), f[StageIndex - 1], total);
+    if constexpr (reads_sum<Tableau, Update>(StageIndex)) total = total + site.load(sum);
+    return total;
+  }
+
   // Later increments first: each needs the generators before it.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static void increments_from_generators(Vec3<Value>* f) {
