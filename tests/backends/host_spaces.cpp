@@ -15,8 +15,9 @@ constexpr auto natural = [](Slab const& slab) { return slab.natural(); };
 constexpr auto orthogonal_part = [](Slab const& slab) { return slab.orthogonal(); };
 
 TEST(HostSpacesSetting, ThreadsAsAskedFor) {
-  if (char const* const count = std::getenv("OMP_NUM_THREADS"))
+  if (char const* const count = std::getenv("OMP_NUM_THREADS")) {
     EXPECT_EQ(Threaded().concurrency(), std::atoi(count));
+  }
 }
 
 template <class Real>
