@@ -118,7 +118,7 @@ int create_without_permission(fs::path const& folder) {
 
 TEST_F(TrajectoryTest, NoPermission) {
   ASSERT_EQ(::chmod(folder_.c_str(), 0555), 0);
-  EXPECT_EXIT(std::exit(create_without_permission(folder_)), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(std::_Exit(create_without_permission(folder_)), testing::ExitedWithCode(0), "");
   EXPECT_TRUE(names_in(folder_).empty());
   ::chmod(folder_.c_str(), 0755);
 }
