@@ -134,7 +134,7 @@ TEST(Labels, Integrate) {
 TEST(Labels, WorkMemory) {
   Field const spins("spins", slab.lattice);
   Events const seen = events_of([&] { Rkmk4<Field> const stepper(spins); });
-  ASSERT_EQ(seen.allocations.size(), 5u);
+  ASSERT_EQ(seen.allocations.size(), 4u);
   for (auto const& name : seen.allocations)
     EXPECT_TRUE(name.starts_with("cayspin::Rkmk4::")) << name;
 }
