@@ -7,10 +7,17 @@ namespace cayspin::program {
 
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice)
+    : SceneGenerator(scene, lattice,
+                     scene.system.kind == io::SystemKind::llg ? std::vector{SymmetricTensor{}}
+                                                              : io::inverse_inertia(scene)) {}
+
+template <class Spins>
+SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
+                                      std::vector<SymmetricTensor> const& inverse_inertia)
     : llg_(SceneField<Spins>(scene, lattice), scene.system.damping, scene.system.precession),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
-      bodies_(is_llg_ ? std::vector{SymmetricTensor{}} : io::inverse_inertia(scene), lattice) {}
+      bodies_(inverse_inertia, lattice) {}
 
 template <class Spins>
 SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {

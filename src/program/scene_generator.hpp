@@ -43,6 +43,10 @@ class SceneGenerator {
   /// Throws io::SceneError for an inertia that cannot be.
   SceneGenerator(io::Scene const& scene, Lattice const& lattice);
 
+  /// For rigid bodies whose inverse inertia is in memory; the scene's own is not looked at.
+  SceneGenerator(io::Scene const& scene, Lattice const& lattice,
+                 std::vector<SymmetricTensor> const& inverse_inertia);
+
   /// The effective field alone, as the generator of a precession about it.
   SceneGenerator precession_alone() const;
 
