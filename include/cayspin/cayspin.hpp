@@ -14,7 +14,10 @@
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/integrate.hpp>
+#include <cayspin/isotropy/analytic.hpp>
 #include <cayspin/isotropy/constant.hpp>
+#include <cayspin/isotropy/energy.hpp>
+#include <cayspin/isotropy/finite_difference.hpp>
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/lattice/lattice.hpp>
 #include <cayspin/observer/record.hpp>
@@ -24,6 +27,9 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
 #include <cayspin/stepper/classical.hpp>
+#include <cayspin/stepper/lie_adams_bashforth2.hpp>
 #include <cayspin/stepper/lie_euler.hpp>
+#include <cayspin/stepper/lie_heun.hpp>
+#include <cayspin/stepper/rkmk.hpp>
 #include <cayspin/stepper/rkmk4.hpp>
 #include <cayspin/vec3.hpp>

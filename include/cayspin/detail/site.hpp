@@ -78,9 +78,15 @@ class Site {
     prefetch(array, offset() + row_.to_neighbor[1][1] + row_.pitch);
     return load_at(array, offset());
   }
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 6> const& array, int component) const {
+  template <class Real, int Components>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
+                                         int component) const {
     return detail::load<Value>(array.data + component * array.stride + offset());
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value,
+                                         OutputArray<Real, 1> const& array) const {
+    detail::store(value, array.data + offset());
   }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
@@ -107,20 +113,24 @@ class Site {
     } else {
       Vec3<Value> found = load_at(array, offset() + (Direction == 0 ? -1 : 1));
       if constexpr (AtEdge) {
-        std::int32_t const lane = Direction == 0 ? -x_ : row_.nx - 1 - x_;  // with no neighbour
-        if (lane >= 0 && lane < lanes) {
-          std::ptrdiff_t const other_end = row_.offset + (Direction == 0 ? row_.nx - 1 : 0);
-          auto const here = lane_numbers<Value>() == Value(static_cast<scalar_type>(lane));
-          auto const wrap = [&](Value const& value, Value const& own, int component) {
-            Value const beyond =
-                row_.periodic_x
-                    ? Value(scalar_type(array.data[component * array.stride + other_end]))
-                    : own;
-            return select<Value>(here, beyond, value);
-          };
-          found = {wrap(found.x, center.x, 0), wrap(found.y, center.y, 1),
-                   wrap(found.z, center.z, 2)};
+        if (holds_end<Direction>()) {
+          found = {past_end<Direction>(array, found.x, center.x, 0),
+                   past_end<Direction>(array, found.y, center.y, 1),
+                   past_end<Direction>(array, found.z, center.z, 2)};
         }
+      }
+      return found;
+    }
+  }
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value neighbor(SiteArray<Real, 1> const& array,
+                                             Value const& center) const {
+    if constexpr (Axis > 0) {
+      return detail::load<Value>(array.data + offset() + row_.to_neighbor[Axis - 1][Direction]);
+    } else {
+      Value const found = detail::load<Value>(array.data + offset() + (Direction == 0 ? -1 : 1));
+      if constexpr (AtEdge) {
+        if (holds_end<Direction>()) return past_end<Direction>(array, found, center, 0);
       }
       return found;
     }
@@ -134,6 +144,29 @@ class Site {
       for (int component = 0; component < 3; ++component)
         detail::prefetch(array.data + component * array.stride + offset);
     }
+  }
+
+  /// The lane at the end of the row, without a neighbour beside it; it may be none of the lanes.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t end_lane() const {
+    return Direction == 0 ? -x_ : row_.nx - 1 - x_;
+  }
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
+    return end_lane<Direction>() >= 0 && end_lane<Direction>() < lanes;
+  }
+  /// `found`, but on the lane at the end of the row the value of the other end, or `center`.
+  template <int Direction, class Real, int Components>
+  KOKKOS_FORCEINLINE_FUNCTION Value past_end(SiteArray<Real, Components> const& array,
+                                             Value const& found, Value const& center,
+                                             int component) const {
+    std::ptrdiff_t const other_end = row_.offset + (Direction == 0 ? row_.nx - 1 : 0);
+    Value const beyond = row_.periodic_x
+                             ? Value(scalar_type(array.data[component * array.stride + other_end]))
+                             : center;
+    return select<Value>(
+        lane_numbers<Value>() == Value(static_cast<scalar_type>(end_lane<Direction>())), beyond,
+        found);
   }
 
   template <class Real>

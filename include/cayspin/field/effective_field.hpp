@@ -17,6 +17,13 @@ namespace cayspin {
 /// has instead
 ///   auto prepare(exec, spins, t) const
 /// which is called on the host before each stage and returns such a struct.
+///
+/// For isotropy::Analytic a term also has the derivative of its H along rates X of the spins,
+///   Vec3<Value> linear_field(Stencil const& rates) const   where H is affine in the spins: its
+///                                                          linear part, applied to X; also makes
+///                                                          Series4 possible
+///   Vec3<Value> field_rate(Vec3<Value> const& m, Stencil const& rates) const   otherwise
+/// and, where H depends on t, prepare_rate(exec, rates, t, dt), which returns such a struct.
 template <class... Terms>
 class EffectiveField;
 
@@ -27,10 +34,22 @@ class EffectiveField<> {
   EffectiveField prepare(Exec const&, Spins const&, double) const {
     return {};
   }
+  template <class Exec, class Spins>
+  EffectiveField prepare_rate(Exec const&, Spins const&, double, double) const {
+    return {};
+  }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
-    using Value = typename Stencil::value_type;
-    return {Value(0), Value(0), Value(0)};
+    return zero<typename Stencil::value_type>();
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const&) const {
+    return zero<typename Stencil::value_type>();
+  }
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&, Stencil const&) const {
+    return zero<Value>();
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
@@ -40,11 +59,20 @@ class EffectiveField<> {
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Stencil const&) const {
     return typename Stencil::value_type(0);
   }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> zero() {
+    return {Value(0), Value(0), Value(0)};
+  }
 };
 
 template <class First, class... Rest>
 class EffectiveField<First, Rest...> {
  public:
+  static constexpr bool depends_on_time =
+      detail::depends_on_time<First> || (detail::depends_on_time<Rest> || ...);
+
   explicit EffectiveField(First first, Rest... rest)
       : first_(std::move(first)), rest_(std::move(rest)...) {}
 
@@ -52,6 +80,11 @@ class EffectiveField<First, Rest...> {
   template <class Exec, class Spins>
   auto prepare(Exec const& exec, Spins const& spins, double t) const {
     return join(detail::prepare_term(first_, exec, spins, t), rest_.prepare(exec, spins, t));
+  }
+  template <class Exec, class Spins>
+  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
+    return join(detail::prepare_rate(first_, exec, rates, t, dt),
+                rest_.prepare_rate(exec, rates, t, dt));
   }
 
   template <class Stencil>
@@ -62,6 +95,31 @@ class EffectiveField<First, Rest...> {
       return first_.field(stencil);
     } else {
       return first_.field(stencil) + rest_.field(stencil);
+    }
+  }
+
+  /// The linear part of H, applied to the stencil's array; every term has to be affine.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    static_assert(detail::has_linear_field<First, Stencil>,
+                  "This method needs fields affine in the spins: a const, device-callable template "
+                  "linear_field(stencil) that returns the linear part of H.");
+    return first_.linear_field(stencil) + rest_.linear_field(stencil);
+  }
+
+  /// The derivative of H at a spin m, along the rates of the stencil's array.
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
+                                                     Stencil const& rates) const {
+    static_assert(
+        detail::has_field_rate<First, Stencil> || detail::has_linear_field<First, Stencil>,
+        "isotropy::Analytic needs each field term's derivative: a const, device-callable "
+        "template linear_field(rates), or field_rate(m, rates) where H is not affine.");
+    if constexpr (detail::has_field_rate<First, Stencil>) {
+      return first_.field_rate(m, rates) + rest_.field_rate(m, rates);
+    } else {
+      return first_.linear_field(rates) + rest_.field_rate(m, rates);
     }
   }
 

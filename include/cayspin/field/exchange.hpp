@@ -29,6 +29,13 @@ class Exchange {
     return h;
   }
 
+  /// H is linear in the spins.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    return field(stencil);
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {

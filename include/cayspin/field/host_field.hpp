@@ -22,6 +22,13 @@ struct StoredField {
     return stencil.site().load(array);
   }
   template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    if (energy_factor == -0.5) return field(stencil);
+    return {Value(0), Value(0), Value(0)};
+  }
+  template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;

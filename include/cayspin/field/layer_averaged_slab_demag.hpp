@@ -56,6 +56,13 @@ struct LayerField {
     return {axis == 0 ? h : zero, axis == 1 ? h : zero, axis == 2 ? h : zero};
   }
 
+  /// H is linear in the spins.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    return field(stencil);
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {

@@ -21,6 +21,13 @@ class SlabDemag {
     return Value(strength<Value>(-1) * dot(stencil.center(), n)) * n;
   }
 
+  /// H is linear in the spins.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    return field(stencil);
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {

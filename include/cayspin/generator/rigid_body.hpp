@@ -25,19 +25,66 @@ struct SymmetricMatrix {
   }
 };
 
-template <class Matrix, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type half_quadratic_form(
-    Matrix const& b, Stencil const& stencil) {
-  using Value = typename Stencil::value_type;
-  return Value(0.5) * dot(stencil.center(), b * stencil.center());
-}
+/// A = -B m, E = <m, B m> / 2 of bodies whose B = I^-1 Bodies::inverse_inertia<Value>(site) gives.
+template <class Bodies>
+class BodyGenerator {
+ public:
+  static constexpr bool is_local = true;  // A at a site depends on the spin there alone
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(-1) * (inverse_inertia(stencil) * stencil.center());
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(0.5) * dot(stencil.center(), inverse_inertia(stencil) * stencil.center());
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    return Kokkos::abs(energy_density(stencil));
+  }
+
+  /// A' along the rates: A is linear.
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const&, Stencil const& rates) const {
+    return (*this)(rates);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
+      Stencil const& stencil) const {
+    return (*this)(stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
+      Stencil const& stencil) const {
+    return (*this)(stencil);
+  }
+  template <int K, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const*,
+                                                     Vec3<Value> const* a) const {
+    return a[K];
+  }
+  bool is_conservative() const { return true; }
+
+ private:
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto inverse_inertia(Stencil const& stencil) const {
+    return static_cast<Bodies const*>(this)->template inverse_inertia<typename Stencil::value_type>(
+        stencil.site());
+  }
+};
 
 }  // namespace detail
 
 /// Free rigid bodies of one inertia, by their body angular momentum m on the unit sphere:
 /// m' = m x I^-1 m, that is A = -I^-1 m (Lewis and Nigam 2002, Sec. 5, sign corrected);
 /// E = <m, I^-1 m> / 2 per body. Lattice::chain(count) holds count independent bodies.
-class RigidBody {
+class RigidBody : public detail::BodyGenerator<RigidBody> {
  public:
   explicit RigidBody(SymmetricTensor const& inverse_inertia)
       : xx_(inverse_inertia[0]),
@@ -56,32 +103,14 @@ class RigidBody {
     return RigidBody(SymmetricTensor{1 / i1, 1 / i2, 1 / i3, 0, 0, 0});
   }
 
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
-      Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    return Value(-1) * (matrix<Value>() * stencil.center());
-  }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
-    return detail::half_quadratic_form(matrix<typename Stencil::value_type>(), stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
-    return Kokkos::abs(energy_density(stencil));
-  }
-
- private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> matrix() const {
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> inverse_inertia(Site const&) const {
     using Scalar = detail::scalar_t<Value>;
     auto const value = [](double entry) { return Value(static_cast<Scalar>(entry)); };
     return {value(xx_), value(yy_), value(zz_), value(xy_), value(xz_), value(yz_)};
   }
 
+ private:
   double xx_, yy_, zz_, xy_, xz_, yz_;
 };
 
@@ -99,32 +128,16 @@ class RigidBodyEnsemble {
     if (spins.lattice().shape != tensors_.lattice().shape)
       throw std::invalid_argument(
           "cayspin::RigidBodyEnsemble: one inertia tensor per body is needed, on the same lattice");
-    return Prepared{tensors_.array()};
+    return Prepared{{}, tensors_.array()};
   }
 
  private:
-  struct Prepared {
+  struct Prepared : detail::BodyGenerator<Prepared> {
     detail::SiteArray<Real, 6> tensors;
 
-    template <class Stencil>
-    KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
-        Stencil const& stencil) const {
-      using Value = typename Stencil::value_type;
-      return Value(-1) * (matrix<Value>(stencil.site()) * stencil.center());
-    }
-    template <class Stencil>
-    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-        Stencil const& stencil) const {
-      using Value = typename Stencil::value_type;
-      return detail::half_quadratic_form(matrix<Value>(stencil.site()), stencil);
-    }
-    template <class Stencil>
-    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-        Stencil const& stencil) const {
-      return Kokkos::abs(energy_density(stencil));
-    }
     template <class Value, class Site>
-    KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> matrix(Site const& site) const {
+    KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> inverse_inertia(
+        Site const& site) const {
       return {site.load(tensors, 0), site.load(tensors, 1), site.load(tensors, 2),
               site.load(tensors, 3), site.load(tensors, 4), site.load(tensors, 5)};
     }

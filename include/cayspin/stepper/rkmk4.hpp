@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/isotropy/energy.hpp>
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stepper/runge_kutta.hpp>

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
+#include <cayspin/detail/unrolled.hpp>
+#include <cayspin/isotropy/energy.hpp>
+#include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
+#include <cayspin/stepper/tableau.hpp>
+#include <cayspin/stepper/update.hpp>
 
 #include <type_traits>
-#include <utility>
 
 namespace cayspin::detail {
 
@@ -64,16 +68,11 @@ constexpr int work_fields() {
   return levels + increments;
 }
 
-template <int... I, class Body>
-KOKKOS_FORCEINLINE_FUNCTION void unrolled(std::integer_sequence<int, I...>, Body const& body) {
-  (body(std::integral_constant<int, I>{}), ...);
-}
-
 /// sum of Weights<j> * v[j] over those j < Count with a weight.
 template <class Weights, int Count, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
-  unrolled(std::make_integer_sequence<int, Count>{}, [&](auto j) {
+  unrolled<Count>([&](auto j) {
     constexpr double weight = Weights::of(j());
     constexpr bool first = Weights::first(j());
     using Scalar = scalar_t<Value>;
@@ -106,6 +105,23 @@ struct FinalWeights {
   }
 };
 
+/// isotropy::Energy's formula for a method.
+template <class Tableau, class Update>
+struct EnergyCorrection {
+  static_assert(std::is_same_v<Tableau, void>,
+                "isotropy::Energy belongs to LieHeun, Rkmk4 and Series4 in Cayley coordinates.");
+};
+template <>
+struct EnergyCorrection<tableau::Heun, update::LieUncorrected<Cayley>> {
+  using type = HeunCorrection;
+};
+template <>
+struct EnergyCorrection<tableau::Classical4, update::Lie<Cayley>> {
+  using type = Rkmk4Correction;
+};
+template <class Tableau, class Update>
+using EnergyCorrectionOf = typename EnergyCorrection<Tableau, Update>::type;
+
 /// One stage of an explicit Runge-Kutta step on every site: evaluate the generator at the stage's
 /// spins, form the increment, and move the step's first spins to where the next stage looks, or to
 /// the end of the step.
@@ -129,10 +145,10 @@ struct RungeKuttaStage {
     using Value = typename Site::value_type;
     Stencil<Site, Real> const stencil(site, level);
     Vec3<Value> const m0 = StageIndex == 0 ? stencil.center() : site.load(start);
-    Vec3<Value> const a = Value(dt) * isotropy(stencil.center(), evaluate(generator, stencil));
+    Vec3<Value> const a = Value(dt) * xi(stencil.center(), evaluate(generator, stencil));
 
     Vec3<Value> f[stages];
-    unrolled(std::make_integer_sequence<int, StageIndex>{}, [&](auto j) {
+    unrolled<StageIndex>([&](auto j) {
       if constexpr (reads_increment<Tableau, Update>(StageIndex, j()))
         f[j()] = site.load(increments[j()]);
     });
@@ -145,16 +161,12 @@ struct RungeKuttaStage {
     } else if constexpr (Update::keeps_generators && !last) {
       f[StageIndex] = a;
     } else {
-      f[StageIndex] = Update::increment(argument, a, stencil.center());
+      f[StageIndex] = Update::increment(argument, a, stencil.center(), m0);
     }
 
     if constexpr (last) {
-      if constexpr (Update::keeps_generators) increments_from_generators(f);
-      if constexpr (keeps_sum<Tableau, Update>) {
-        site.store(Update::finish(sum_up_to_here(site, f), m0), next);
-      } else {
-        site.store(Update::finish(weighted_sum<FinalWeights<Tableau>, stages>(f), m0), next);
-      }
+      if constexpr (Update::keeps_generators) increments_from_generators(f, m0);
+      site.store(Update::finish(completed(site, total(site, f), m0), m0), next);
     } else {
       if constexpr (writes_sum<Tableau, Update>(StageIndex))
         site.store(sum_up_to_here(site, f), sum);
@@ -167,10 +179,42 @@ struct RungeKuttaStage {
   }
 
  private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> xi(Vec3<Value> const& m, Vec3<Value> const& a) const {
+    if constexpr (std::is_same_v<Isotropy, isotropy::Energy>) {
+      return a;  // completed at the end of the step
+    } else {
+      static_assert(
+          requires { isotropy(m, a); },
+          "This isotropy policy does not go with this stepper: Zero and Constant go with all on "
+          "the group, FiniteDifference, Analytic and Connection with LieEuler.");
+      return isotropy(m, a);
+    }
+  }
+
   template <class Value, int Of>
   KOKKOS_FORCEINLINE_FUNCTION static Value weight() {
     constexpr double b = Tableau::b[Of];
     return Value(static_cast<scalar_t<Value>>(b));
+  }
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, Vec3<Value> const* f) const {
+    if constexpr (keeps_sum<Tableau, Update>) {
+      return sum_up_to_here(site, f);
+    } else {
+      return weighted_sum<FinalWeights<Tableau>, stages>(f);
+    }
+  }
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> completed(Site const& site, Vec3<Value> const& f,
+                                                    Vec3<Value> const& m0) const {
+    if constexpr (std::is_same_v<Isotropy, isotropy::Energy>) {
+      return corrected<EnergyCorrectionOf<Tableau, Update>>(generator, site, f, m0, Value(dt));
+    } else {
+      return f;
+    }
   }
 
   // The stored sum, the increment before this one where an even stage left it out, and this one.
@@ -186,11 +230,12 @@ struct RungeKuttaStage {
 
   // Later increments first: each needs the generators before it.
   template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static void increments_from_generators(Vec3<Value>* f) {
-    unrolled(std::make_integer_sequence<int, stages - 2>{}, [&](auto j) {
+  KOKKOS_FORCEINLINE_FUNCTION static void increments_from_generators(Vec3<Value>* f,
+                                                                     Vec3<Value> const& m0) {
+    unrolled<stages - 2>([&](auto j) {
       constexpr int stage = stages - 2 - j();
       f[stage] =
-          Update::increment(weighted_sum<StageWeights<Tableau, stage>, stage>(f), f[stage], f[0]);
+          Update::increment(weighted_sum<StageWeights<Tableau, stage>, stage>(f), f[stage], m0, m0);
     });
   }
 };

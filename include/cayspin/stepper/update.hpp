@@ -6,7 +6,8 @@
 #include <type_traits>
 
 // How an increment moves a spin, and which increment a generator gives at a stage: the part of a
-// Runge-Kutta method that is geometry. Coordinates f are taken at the spin m0 of the step's begin.
+// Runge-Kutta method that is geometry. Coordinates f are taken at the spin m0 of the step's begin;
+// increment(f, dt A, m, m0) belongs to the stage's spin m, which f moves m0 to.
 namespace cayspin::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
@@ -18,7 +19,7 @@ struct Lie {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const& f,
                                                            Vec3<Value> const& step_times_a,
-                                                           Vec3<Value> const&) {
+                                                           Vec3<Value> const&, Vec3<Value> const&) {
     return Rotation::inverse_tangent(f, step_times_a);
   }
   template <class Value>
@@ -29,6 +30,20 @@ struct Lie {
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
     return Rotation::rotate(f, m0);
+  }
+};
+
+/// As Lie, with the generators themselves as increments: the inverse tangent is left out. Keeps the
+/// order of methods up to 2 alone. Lewis and Nigam 2002, Sec. 4.3.
+template <class Rotation>
+struct LieUncorrected : Lie<Rotation> {
+  static constexpr bool increment_needs_argument = false;
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
+                                                           Vec3<Value> const& step_times_a,
+                                                           Vec3<Value> const&, Vec3<Value> const&) {
+    return step_times_a;
   }
 };
 
@@ -49,7 +64,8 @@ struct Classical {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
                                                            Vec3<Value> const& step_times_a,
-                                                           Vec3<Value> const& m) {
+                                                           Vec3<Value> const& m,
+                                                           Vec3<Value> const&) {
     return cross(step_times_a, m);
   }
   template <class Value>
@@ -65,6 +81,37 @@ struct Classical {
     } else {
       return m;
     }
+  }
+};
+
+/// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
+/// rotation cay(2 m0 x f), every stage's coordinates staying orthogonal to m0. Not in the paper.
+/// Breaks down only where a stage's spin reaches -m0.
+struct Stereographic {
+  static constexpr bool increment_needs_argument = false;
+  static constexpr bool keeps_generators = false;
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
+                                                           Vec3<Value> const& step_times_a,
+                                                           Vec3<Value> const& m,
+                                                           Vec3<Value> const& m0) {
+    Vec3<Value> const u = cross(step_times_a, m);
+    Vec3<Value> const e = m + m0;
+    Value const scale = Value(1) / dot(e, e);
+    Value const along = Value(-2) * scale * dot(u, m0);
+    return Value(Value(2) * scale) * multiply_add(along, e, u);
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> move(Vec3<Value> const& f, Vec3<Value> const& m0) {
+    Value const s = dot(f, f);
+    return multiply_add(Value(Value(2) / (Value(1) + s)), multiply_add(Value(Value(0) - s), m0, f),
+                        m0);
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
+                                                        Vec3<Value> const& m0) {
+    return move(f, m0);
   }
 };
 

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/vec3.hpp>
+
+#include <limits>
+
+namespace cayspin::detail {
+
+/// Squares below this are no longer resolved: what is divided by them is taken as zero.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
+  using Scalar = scalar_t<Value>;
+  return sizeof(Scalar) == sizeof(double) ? static_cast<Scalar>(0x1p-970)
+                                          : static_cast<Scalar>(0x1p-103);
+}
+
+/// numerator / square; zero where the square is.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value guarded_quotient(Value const& numerator, Value const& square) {
+  auto const large_enough = Value(smallest_square<Value>()) < square;
+  return select<Value>(large_enough, numerator, Value(0)) /
+         select<Value>(large_enough, square, Value(1));
+}
+
+/// Within [-cap, cap]; NaN stays.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value clamp(Value const& a, Value const& cap) {
+  Value const below = select<Value>(cap < a, cap, a);
+  return select<Value>(below < Value(-cap), Value(-cap), below);
+}
+
+/// dt sigma = -<dt w', w x m> / |w|^2, from dt w'.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value turn_from_difference(Vec3<Value> const& dt_times_rate,
+                                                       Vec3<Value> const& w, Vec3<Value> const& m,
+                                                       Value const& cap) {
+  Value const numerator = Value(0) - dot(dt_times_rate, cross(w, m));
+  return clamp(guarded_quotient(numerator, dot(w, w)), cap);
+}
+
+}  // namespace cayspin::detail

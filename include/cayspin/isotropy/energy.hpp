@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/sigma.hpp>
+#include <cayspin/generator/rigid_body.hpp>
+#include <cayspin/vec3.hpp>
+
+namespace cayspin::isotropy {
+
+/// Rigid bodies: adds dt^p s m to a step's coordinates F, with the s that cancels the leading
+/// energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4). Lewis and Nigam 2002, Sec. 5.2,
+/// coordinate free and for any symmetric inertia. Zero where the body rests.
+struct Energy {};
+
+}  // namespace cayspin::isotropy
+
+namespace cayspin::detail {
+
+/// The invariants of B = I^-1 and m that the corrections are made of.
+template <class Value>
+struct BodyInvariants {
+  Vec3<Value> bm, v;                 // B m, m x B m
+  Value b, b2, v2;                   // <m, B m>, |B m|^2, |v|^2
+  Value trace, second, det;          // of B
+  Value mixed;                       // <m, B m x B^2 m>
+  Value trace_c, second_c, cubic_c;  // of C = B - b; <C m, C C m> / |C m|^2
+
+  KOKKOS_FORCEINLINE_FUNCTION BodyInvariants(SymmetricMatrix<Value> const& matrix,
+                                             Vec3<Value> const& m) {
+    bm = matrix * m;
+    v = cross(m, bm);
+    b = dot(m, bm);
+    b2 = dot(bm, bm);
+    v2 = dot(v, v);
+    trace = matrix.xx + matrix.yy + matrix.zz;
+    second = matrix.xx * matrix.yy + matrix.yy * matrix.zz + matrix.zz * matrix.xx -
+             matrix.xy * matrix.xy - matrix.yz * matrix.yz - matrix.xz * matrix.xz;
+    det = matrix.xx * (matrix.yy * matrix.zz - matrix.yz * matrix.yz) -
+          matrix.xy * (matrix.xy * matrix.zz - matrix.yz * matrix.xz) +
+          matrix.xz * (matrix.xy * matrix.yz - matrix.yy * matrix.xz);
+    mixed = dot(m, cross(bm, matrix * bm));
+    trace_c = trace - Value(3) * b;
+    second_c = second - Value(2) * b * trace + Value(3) * b * b;
+    Vec3<Value> const cm = bm - b * m;
+    cubic_c = guarded_quotient(dot(cm, matrix * cm), v2) - b;
+  }
+};
+
+struct HeunCorrection {
+  static constexpr int power = 3;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
+                                                 Vec3<Value> const& m, bool orthogonal) {
+    BodyInvariants<Value> const of(matrix, m);
+    if (orthogonal)
+      return Value(0.25) * (Value(3) * of.v2 + of.second_c) * (of.trace_c - of.cubic_c);
+    Vec3<Value> const bv = matrix * of.v;
+    return guarded_quotient(Value(Value(0.25) * dot(bv, of.trace * bv - matrix * bv)), of.v2);
+  }
+};
+
+struct Rkmk4Correction {
+  static constexpr int power = 4;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
+                                                 Vec3<Value> const& m, bool orthogonal) {
+    BodyInvariants<Value> const of(matrix, m);
+    if (orthogonal) return Value(-1. / 16) * of.mixed * (of.trace_c - of.cubic_c);
+    Value const form = Value(3) * of.second * of.b + Value(5) * of.b * of.b2 - of.det -
+                       Value(4) * of.trace * of.b * of.b;
+    return guarded_quotient(Value(Value(1. / 48) * of.mixed * form), of.v2);
+  }
+};
+
+struct Series4Correction {
+  static constexpr int power = 4;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
+                                                 Vec3<Value> const& m, bool orthogonal) {
+    BodyInvariants<Value> const of(matrix, m);
+    if (orthogonal) return Value(-1. / 24) * of.mixed * (of.trace_c - of.cubic_c);
+    Value const form = of.det + Value(3) * of.trace * of.b * of.b - Value(2) * of.second * of.b -
+                       Value(3) * of.b * of.b2;
+    return guarded_quotient(Value(Value(1. / 24) * of.mixed * form), of.v2);
+  }
+};
+
+struct Series4PaperCorrection {
+  static constexpr int power = 4;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
+                                                 Vec3<Value> const& m, bool) {
+    BodyInvariants<Value> const of(matrix, m);
+    return Value(-0.125) * of.mixed * (of.trace_c - of.cubic_c);
+  }
+};
+
+/// F + dt^p s m.
+template <class Correction, class Generator, class Site, class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Site const& site,
+                                                  Vec3<Value> const& f, Vec3<Value> const& m,
+                                                  Value const& dt) {
+  static_assert(
+      requires { generator.template inverse_inertia<Value>(site); },
+      "isotropy::Energy knows rigid bodies alone; for other generators there is EnergyProjection.");
+  Value scale = dt;
+  for (int i = 1; i < Correction::power; ++i) scale = scale * dt;
+  bool orthogonal = false;
+  if constexpr (requires { generator.is_orthogonal; }) orthogonal = generator.is_orthogonal;
+  Value const sigma =
+      Correction::sigma(generator.template inverse_inertia<Value>(site), m, orthogonal);
+  return multiply_add(Value(scale * sigma), m, f);
+}
+
+}  // namespace cayspin::detail

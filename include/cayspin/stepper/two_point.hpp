@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+#include <cayspin/stepper/two_point_stage.hpp>
+
+#include <limits>
+
+namespace cayspin {
+
+/// A step that keeps A between its two evaluations, or from one step to the next: Method says what
+/// it does with them (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
+template <class Spins, class Method, class Isotropy, class Rotation>
+class TwoPoint : public detail::StepperBase<Spins> {
+  using Base = detail::StepperBase<Spins>;
+
+ public:
+  using typename Base::Real;
+  static constexpr int order = Method::order;
+  static constexpr int evaluations = Method::remembers ? 1 : 2;  // of the generator, per step
+  static constexpr int work_fields = 2;
+
+  explicit TwoPoint(std::string const& name, Spins const& like, Method method,
+                    Isotropy isotropy = {})
+      : Base(name),
+        method_(method),
+        isotropy_(isotropy),
+        next_(name + "::next", like.lattice()),
+        kept_(name + "::kept_generator", like.lattice()) {}
+
+  std::size_t work_bytes() const { return work_fields * next_.bytes(); }
+
+  /// Advances `spins` from t to t + dt under `generator`. A method that remembers the step before
+  /// takes `spins` for where that step ended; it exchanges the memory of `spins` with its own, so
+  /// take arrays of `spins` anew after a step.
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    auto const region = this->begin_step(exec, spins, next_);
+    if constexpr (Method::remembers) {
+      if (last_dt_ != 0) {
+        stage(exec, generator, "::step", method_.next(dt / last_dt_), spins, spins, next_, t, dt);
+        swap(spins, next_);
+        last_dt_ = dt;
+        return;
+      }
+      last_dt_ = dt;
+    }
+    stage(exec, generator, "::predict", method_.predict(), spins, spins, next_, t, dt);
+    stage(exec, generator, "::correct", method_.correct(), spins, next_, spins, t + dt, dt);
+  }
+
+  /// Forgets the step before: the next one starts anew. cayspin::integrate does it for each run.
+  void reset() { last_dt_ = 0; }
+
+  /// Takes `spins` as the state at t, one step of dt before the next one.
+  template <class Exec, class Generator>
+  void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                double dt) requires(Method::remembers) {
+    auto const region = this->begin_step(exec, spins, next_);
+    stage(exec, generator, "::remember", method_.predict(), spins, spins, next_, t, dt);
+    last_dt_ = dt;
+  }
+
+ private:
+  template <class Exec, class Generator, class Rule>
+  void stage(Exec const& exec, Generator const& generator, char const* name, Rule rule,
+             Spins const& start, Spins const& level, Spins const& next, double t, double dt) {
+    auto prepared = detail::prepare_term(generator, exec, level, t);
+    using Kernel = detail::TwoPointStage<Rule, Isotropy, Rotation, decltype(prepared), Real>;
+    Kernel const kernel{std::move(prepared),
+                        isotropy_,
+                        rule,
+                        start.array(),
+                        level.array(),
+                        kept_.output(false),
+                        next.output(false),
+                        static_cast<Real>(dt)};
+    detail::for_each_site<Real>(exec, this->label(name), start.layout(), kernel);
+  }
+
+  Method method_;
+  Isotropy isotropy_;
+  Spins next_, kept_;
+  double last_dt_ = 0;
+};
+
+namespace detail {
+
+struct ForwardDifferenceMethod {
+  static constexpr int order = 1;
+  static constexpr bool remembers = false;
+  double cap = std::numeric_limits<double>::infinity();
+  PredictOrthogonal predict() const { return {}; }
+  ForwardDifference correct() const { return {cap}; }
+};
+
+struct BackwardDifferenceMethod : ForwardDifferenceMethod {
+  static constexpr bool remembers = true;
+  BackwardDifference next(double ratio) const { return {cap, ratio}; }
+};
+
+struct AdamsBashforthMethod {
+  static constexpr int order = 2;
+  static constexpr bool remembers = true;
+  PredictFull predict() const { return {}; }
+  Average correct() const { return {}; }
+  Extrapolate next(double ratio) const { return {ratio}; }
+};
+
+}  // namespace detail
+}  // namespace cayspin
