@@ -4,8 +4,11 @@
 // scene -> lattice + field -> generator -> stepper (rotation, isotropy) -> observer -> files
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
+#include <cayspin/field/field_with_vacancies.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/field/site_dependent_exchange.hpp>
+#include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slab_demag.hpp>
 #include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/field/uniaxial_anisotropy.hpp>
@@ -27,9 +30,11 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
 #include <cayspin/stepper/classical.hpp>
+#include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/lie_adams_bashforth2.hpp>
 #include <cayspin/stepper/lie_euler.hpp>
 #include <cayspin/stepper/lie_heun.hpp>
 #include <cayspin/stepper/rkmk.hpp>
 #include <cayspin/stepper/rkmk4.hpp>
+#include <cayspin/stepper/series4.hpp>
 #include <cayspin/vec3.hpp>

@@ -62,6 +62,12 @@ class Every {
 
 namespace detail {
 
+/// A stepper whose number of evaluations depends on the numbers counts them itself.
+template <class Stepper>
+concept counts_evaluations = requires(Stepper const& stepper) {
+  stepper.evaluations_done();
+};
+
 template <class Observer>
 bool is_due(Observer const& observer, Step const& step) {
   if constexpr (requires {
@@ -90,7 +96,8 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
 
 }  // namespace detail
 
-/// Advances `spins` over `times`. Observers see the state before the first step and after each one.
+/// Advances `spins` over `times`; a stepper that remembers steps forgets those of runs before.
+/// Observers see the state before the first step and after each one.
 /// Returns what was done; `spins` holds the state at the end, and the work has finished.
 /// Throws std::invalid_argument when dt is not finite or steps is negative.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
@@ -105,6 +112,10 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
 
   Summary summary;
   Kokkos::Timer clock;
+  if constexpr (requires { stepper.reset(); }) stepper.reset();
+  std::int64_t evaluations_before = 0;
+  if constexpr (detail::counts_evaluations<Stepper>)
+    evaluations_before = stepper.evaluations_done();
   exec.fence("cayspin::integrate: begin");
   clock.reset();
   for (std::int64_t number = 0;; ++number) {
@@ -124,6 +135,8 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     ++summary.steps;
     summary.evaluations += Stepper::evaluations;
   }
+  if constexpr (detail::counts_evaluations<Stepper>)
+    summary.evaluations = stepper.evaluations_done() - evaluations_before;
   return summary;
 }
 

@@ -82,8 +82,12 @@ class Orthogonal {
     return detail::orthogonal_derivative<K>(generator_, m, source);
   }
 
+  static constexpr bool is_local = [] {
+    if constexpr (requires { Generator::is_local; }) return Generator::is_local;
+    return false;
+  }();
   bool is_conservative() const { return generator_.is_conservative(); }
-  static constexpr bool is_orthogonal = true;
+  KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }
 
   /// Of rigid bodies.
   template <class Value, class Site>

@@ -106,7 +106,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Si
   Value scale = dt;
   for (int i = 1; i < Correction::power; ++i) scale = scale * dt;
   bool orthogonal = false;
-  if constexpr (requires { generator.is_orthogonal; }) orthogonal = generator.is_orthogonal;
+  if constexpr (requires { generator.is_orthogonal(); }) orthogonal = generator.is_orthogonal();
   Value const sigma =
       Correction::sigma(generator.template inverse_inertia<Value>(site), m, orthogonal);
   return multiply_add(Value(scale * sigma), m, f);

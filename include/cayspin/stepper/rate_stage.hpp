@@ -84,6 +84,7 @@ class Rates {
   Spins const& field() const { return rates_; }
   SiteArray<Real, 3> array() const { return rates_.array(); }
   SiteArray<Real, 1> along() const { return along_.array(); }
+  OutputArray<Real, 1> along_output() const { return along_.output(false); }
 
   template <class Exec, class Generator>
   void compute(Exec const& exec, std::string const& label, Generator const& generator,

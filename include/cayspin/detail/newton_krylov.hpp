@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/field_algebra.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace cayspin::detail {
+
+/// Solves v = g(v) on a field by Newton's method with halved steps; the linear systems by GMRES,
+/// with g' times a vector from a difference of g. Work memory, 16 fields, is taken when first used.
+template <class Spins>
+class NewtonKrylov {
+  using Real = typename Spins::value_type;
+  static constexpr int krylov_dimension = 12;
+  static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+
+ public:
+  /// `g(v, to)` fills `to`. From `v`, which moves to the solution; `image` then holds g(v).
+  /// Returns whether |g(v) - v| came below `tolerance` within `iterations`.
+  template <class Exec, class Map>
+  bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
+             int iterations) {
+    allocate(v.lattice());
+    g(v, image);
+    double norm = residual(exec, v, image);
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+      double const largest = largest_difference(exec, v, image);
+      if (largest <= tolerance) return true;
+      if (!std::isfinite(norm)) return false;
+      solve_linear(exec, g, v, image, norm);
+      double scale = 1, before = norm;
+      for (;; scale /= 2) {
+        if (scale < 1e-3) return false;
+        combine(exec, scale, correction_, 1, v, point_);
+        g(point_, image);
+        norm = residual(exec, point_, image);
+        if (norm < (1 - 1e-4 * scale) * before) break;
+        // Round-off is all that is left.
+        if (largest <= 512 * tolerance) {
+          g(v, image);
+          return true;
+        }
+      }
+      combine(exec, 1, point_, 0, point_, v);
+    }
+    return false;
+  }
+
+ private:
+  void allocate(Lattice const& lattice) {
+    if (!basis_.empty()) return;
+    for (int i = 0; i <= krylov_dimension; ++i)
+      basis_.emplace_back("NewtonKrylov::basis_" + std::to_string(i), lattice);
+    correction_ = Spins("NewtonKrylov::correction", lattice);
+    point_ = Spins("NewtonKrylov::point", lattice);
+    image_ = Spins("NewtonKrylov::image", lattice);
+  }
+
+  template <class Exec>
+  double residual(Exec const& exec, Spins const& v, Spins const& image) {
+    combine(exec, 1, image, -1, v, basis_[0]);
+    return length(exec, basis_[0]);
+  }
+
+  // (1 - g') correction = basis_[0], of length norm, to a thousandth.
+  template <class Exec, class Map>
+  void solve_linear(Exec const& exec, Map const& g, Spins const& v, Spins const& image,
+                    double norm) {
+    constexpr int m = krylov_dimension;
+    std::array<std::array<double, m + 1>, m> h{};  // columns
+    std::array<double, m> cosine{}, sine{};
+    std::array<double, m + 1> rest{norm};
+    double const small = std::sqrt(epsilon * static_cast<double>(v.sites()));
+    combine(exec, 1 / norm, basis_[0], 0, basis_[0], basis_[0]);
+    int size = 0;
+    while (size < m && std::abs(rest[size]) > 1e-3 * norm) {
+      auto& column = h[size];
+      auto const &q = basis_[size], &next = basis_[size + 1];
+      combine(exec, small, q, 1, v, point_);
+      g(point_, image_);
+      combine(exec, 1, image, -1, image_, image_);
+      combine(exec, 1, q, 1 / small, image_, next);
+      for (int i = 0; i <= size; ++i) {
+        column[i] = inner_product(exec, basis_[i], next);
+        combine(exec, -column[i], basis_[i], 1, next, next);
+      }
+      double const left = length(exec, next);
+      if (left > 0) combine(exec, 1 / left, next, 0, next, next);
+      for (int i = 0; i < size; ++i) rotate(cosine[i], sine[i], column[i], column[i + 1]);
+      double const radius = std::hypot(column[size], left);
+      cosine[size] = radius > 0 ? column[size] / radius : 1;
+      sine[size] = radius > 0 ? left / radius : 0;
+      column[size] = radius;
+      rest[size + 1] = 0;
+      rotate(cosine[size], sine[size], rest[size], rest[size + 1]);
+      ++size;
+      if (!(left > epsilon * radius)) break;
+    }
+    Kokkos::deep_copy(exec, correction_.allocation(), Real(0));
+    for (int i = size - 1; i >= 0; --i) {
+      for (int j = i + 1; j < size; ++j) rest[i] -= h[j][i] * rest[j];
+      rest[i] = h[i][i] != 0 ? rest[i] / h[i][i] : 0;
+      combine(exec, rest[i], basis_[i], 1, correction_, correction_);
+    }
+  }
+
+  static void rotate(double c, double s, double& a, double& b) {
+    double const rotated = c * a + s * b;
+    b = c * b - s * a;
+    a = rotated;
+  }
+
+  std::vector<Spins> basis_;
+  Spins correction_, point_, image_;
+};
+
+}  // namespace cayspin::detail

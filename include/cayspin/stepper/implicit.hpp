@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/newton_krylov.hpp>
+#include <cayspin/isotropy/analytic.hpp>
+#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/stepper/implicit_stage.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <limits>
+#include <stdexcept>
+
+namespace cayspin {
+
+/// An implicit step whose equation was not solved. The spins are those before the step.
+class NotConverged : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How an implicit step's equation is solved.
+struct ImplicitOptions {
+  double tolerance = 8;  ///< of the last change of any component, in epsilons of the precision
+  int fixed_point = 50;  ///< iterations before Newton's method takes over
+  int newton = 30;       ///< its iterations; 0 leaves it out
+};
+
+namespace detail {
+
+/// m1 = R(dt xi(p)) m0 with p = m1, or half way between both.
+template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
+class Implicit : public StepperBase<Spins> {
+ public:
+  using typename StepperBase<Spins>::Real;
+  static constexpr int evaluations = 0;  // as many as the iteration takes
+  static constexpr bool is_corrected = std::is_same_v<Isotropy, isotropy::Analytic>;
+  static constexpr int work_fields = is_corrected ? 4 : 2;
+
+  Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
+      : StepperBase<Spins>(name),
+        isotropy_(isotropy),
+        options_(options),
+        level_(name + "::level", like.lattice()),
+        next_(name + "::next", like.lattice()) {
+    if constexpr (is_corrected) rates_ = Rates<Spins>(name, like.lattice());
+  }
+
+  /// Without what Newton's method takes when it is first needed: 16 fields.
+  std::size_t work_bytes() const {
+    return level_.bytes() + next_.bytes() + (is_corrected ? rates_.bytes() : 0);
+  }
+
+  /// Evaluations of the generator so far.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+
+  /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
+  /// take arrays of `spins` anew after a step. Waits.
+  /// Throws NotConverged when no solution was found, std::invalid_argument when `spins` is not of
+  /// the lattice given at construction.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    auto const region = this->begin_step(exec, spins, level_);
+    double const when = AtMiddle ? t + 0.5 * dt : t + dt;
+    bool corrected = false;
+    auto const map = [&](Spins const& from, Spins const& to, bool to_middle) {
+      evaluate_map(exec, generator, spins, from, to, when, dt, to_middle, corrected);
+    };
+    if (!solve(
+            exec, [&](Spins const& from, Spins const& to) { map(from, to, AtMiddle); }, spins))
+      throw NotConverged(this->label("::step: the equation of the step from t = ") +
+                         std::to_string(t) + " is not solved: dt = " + std::to_string(dt) +
+                         " is too large");
+    if constexpr (is_corrected) {
+      compute_sigma(exec, generator, spins, t, dt);
+      corrected = true;
+    }
+    if constexpr (AtMiddle || is_corrected) {
+      swap(level_, next_);
+      map(level_, next_, false);
+    }
+    swap(spins, next_);
+  }
+
+ private:
+  // Leaves the solution in next_, and what it was made from in level_.
+  template <class Exec, class Map>
+  bool solve(Exec const& exec, Map const& map, Spins const& spins) {
+    double const epsilon = std::numeric_limits<Real>::epsilon();
+    double const tolerance = options_.tolerance * epsilon;
+    double change = std::numeric_limits<double>::infinity(), smallest = change;
+    for (int i = 0; i < options_.fixed_point; ++i) {
+      map(i == 0 ? spins : level_, next_);
+      double const before = change;
+      change = largest_difference(exec, i == 0 ? spins : level_, next_);
+      if (change <= tolerance) return true;
+      // At a few hundred epsilons a change that no longer falls is round-off.
+      if (change <= 512 * tolerance && !(change < before)) return true;
+      if (!(change < 100 * smallest)) break;
+      smallest = std::min(smallest, change);
+      swap(level_, next_);
+    }
+    if (options_.newton == 0) return false;
+    map(spins, level_);
+    return newton_.solve(exec, map, level_, next_, tolerance, options_.newton);
+  }
+
+  template <class Exec, class Generator>
+  void evaluate_map(Exec const& exec, Generator const& generator, Spins const& start,
+                    Spins const& from, Spins const& to, double when, double dt, bool to_middle,
+                    bool corrected) {
+    auto prepared = prepare_term(generator, exec, from, when);
+    using Policy = std::conditional_t<is_corrected, isotropy::Zero, Isotropy>;
+    using Kernel = ImplicitStage<Policy, Rotation, decltype(prepared), Real>;
+    Kernel kernel{std::move(prepared),   {},       start.array(),
+                  from.array(),          {},       to.output(false),
+                  static_cast<Real>(dt), to_middle};
+    if constexpr (!is_corrected) kernel.isotropy = isotropy_;
+    if (corrected) kernel.sigma = rates_.along();
+    for_each_site<Real>(exec, this->label("::iterate"), start.layout(), kernel);
+    ++evaluations_done_;
+  }
+
+  template <class Exec, class Generator>
+  void compute_sigma(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                     double dt) {
+    auto const plain = bare(generator);
+    bool orthogonal = false;
+    if constexpr (requires { generator.is_orthogonal(); }) orthogonal = generator.is_orthogonal();
+    rates_.compute(exec, this->label("::rates"), plain, spins, t);
+    auto prepared = prepare_rate(plain, exec, rates_.field(), t, dt);
+    for_each_site<Real>(
+        exec, this->label("::sigma"), spins.layout(),
+        ImplicitSigmaStage<decltype(prepared), Real>{
+            std::move(prepared), rates_.array(), spins.array(), rates_.along_output(), orthogonal});
+    evaluations_done_ += 2;
+  }
+
+  Isotropy isotropy_;
+  ImplicitOptions options_;
+  Spins level_, next_;
+  Rates<Spins> rates_;
+  NewtonKrylov<Spins> newton_;
+  std::int64_t evaluations_done_ = 0;
+};
+
+}  // namespace detail
+
+/// Implicit Euler, order 1: m1 = cay(dt xi(m1)) m0, xi = A + sigma m, solved as a fixed point and,
+/// where that fails, by Newton's method. isotropy::Analytic: sigma = +<A', X> / |X|^2 at m0, of the
+/// sign opposite to LieEuler's; energy error of order 2. Lewis and Nigam 2002, Sec. 4.2.
+template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
+class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, false> {
+ public:
+  static constexpr int order = 1;
+  explicit ImplicitLieEuler(Spins const& like, Isotropy isotropy = {}, Rotation = {},
+                            ImplicitOptions options = {})
+      : ImplicitLieEuler::Implicit("ImplicitLieEuler", like, isotropy, options) {}
+};
+
+/// Implicit midpoint in Cayley form, order 2: m1 = cay(dt A((m0 + m1) / 2)) m0. Conserves quadratic
+/// energies and |m|; sigma drops out. Not in the paper.
+template <class Spins>
+class ImplicitMidpoint : public detail::Implicit<Spins, isotropy::Zero, Cayley, true> {
+ public:
+  static constexpr int order = 2;
+  explicit ImplicitMidpoint(Spins const& like, ImplicitOptions options = {})
+      : ImplicitMidpoint::Implicit("ImplicitMidpoint", like, {}, options) {}
+};
+
+}  // namespace cayspin

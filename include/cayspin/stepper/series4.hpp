@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/stepper/series4_stage.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <array>
+
+namespace cayspin {
+
+/// The symbolic series of order 4 in Cayley coordinates:
+/// F = dt a + dt^2 a_1/2 + dt^3 (2 a_2 + |a|^2 a + a_1 x a)/12
+///   + dt^4 (a_3 + |a|^2 a_1 + a_2 x a + 2 <a_1, a> a)/24, a_k = d^k A / dt^k on the exact flow,
+/// by recurrence: rigid bodies in one kernel, Landau-Lifshitz with a field affine in the spins and
+/// without t in four. isotropy::Energy for rigid bodies. Lewis and Nigam 2002, Sec. 4.4 and 5.3.
+template <class Spins, class Isotropy = isotropy::Zero, class Series = detail::DirectSeries>
+class Series4 : public detail::StepperBase<Spins> {
+  static_assert(std::is_same_v<Isotropy, isotropy::Zero> ||
+                    std::is_same_v<Isotropy, isotropy::Energy>,
+                "Series4 takes isotropy::Zero, or Energy for rigid bodies.");
+
+ public:
+  using typename detail::StepperBase<Spins>::Real;
+  static constexpr int order = 4;
+  static constexpr int evaluations = 4;
+  static constexpr int work_fields = 7;  // 1 for rigid bodies: the others are made when first used
+
+  explicit Series4(Spins const& like, Isotropy = {})
+      : Series4::StepperBase("Series4"), next_("Series4::next", like.lattice()) {}
+
+  std::size_t work_bytes() const {
+    return next_.bytes() * (derivatives_[0].sites() == 0 ? 1 : work_fields);
+  }
+
+  /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
+  /// take arrays of `spins` anew after a step.
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
+    auto const region = this->begin_step(exec, spins, next_);
+    auto const prepared = detail::prepare_term(generator, exec, spins, t);
+    if constexpr (is_local<decltype(prepared)>()) {
+      using Kernel =
+          detail::LocalSeriesStage<Series, Isotropy, std::remove_const_t<decltype(prepared)>, Real>;
+      detail::for_each_site<Real>(
+          exec, this->label("::step"), spins.layout(),
+          Kernel{prepared, spins.array(), next_.output(false), static_cast<Real>(dt)});
+    } else {
+      static_assert(std::is_same_v<Isotropy, isotropy::Zero>,
+                    "isotropy::Energy knows rigid bodies alone; for other generators there is "
+                    "EnergyProjection.");
+      allocate(spins.lattice());
+      stage<0>(exec, generator, spins, t, dt);
+    }
+    swap(spins, next_);
+  }
+
+ private:
+  template <class Generator>
+  static constexpr bool is_local() {
+    if constexpr (requires { Generator::is_local; }) return Generator::is_local;
+    return false;
+  }
+
+  void allocate(Lattice const& lattice) {
+    if (derivatives_[0].sites() != 0) return;
+    for (int k = 0; k < 3; ++k) {
+      derivatives_[k] = Spins("Series4::spins_" + std::to_string(k + 1), lattice);
+      sources_[k] = Spins("Series4::source_" + std::to_string(k), lattice);
+    }
+  }
+
+  template <int K, class Exec, class Generator>
+  void stage(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+             double dt) {
+    auto prepared = detail::prepare_term(generator, exec, K == 0 ? spins : derivatives_[K - 1], t);
+    detail::SeriesStage<Series, K, decltype(prepared), Real> kernel{
+        std::move(prepared), {}, {}, next_.output(false), static_cast<Real>(dt)};
+    for (int k = 0; k <= K; ++k) kernel.spins[k] = (k == 0 ? spins : derivatives_[k - 1]).array();
+    for (int k = 0; k <= K && k < 3; ++k) kernel.sources[k] = sources_[k].output(false);
+    if constexpr (K < 3) kernel.next = derivatives_[K].output(false);
+    detail::for_each_site<Real>(exec, this->label(names[K]), spins.layout(), kernel);
+    if constexpr (K < 3) stage<K + 1>(exec, generator, spins, t, dt);
+  }
+
+  static constexpr char const* names[] = {"::derivative_1", "::derivative_2", "::derivative_3",
+                                          "::rotate"};
+  Spins next_;
+  std::array<Spins, 3> derivatives_, sources_;
+};
+
+/// The orthogonal series as the paper prints it, from the derivatives of A_o whatever part along m
+/// the generator has. Another valid member of the family, of larger error in the energy.
+template <class Spins, class Isotropy = isotropy::Zero>
+class Series4Paper : public Series4<Spins, Isotropy, detail::PaperSeries> {
+ public:
+  explicit Series4Paper(Spins const& like, Isotropy isotropy = {})
+      : Series4Paper::Series4(like, isotropy) {}
+};
+
+}  // namespace cayspin
