@@ -51,24 +51,31 @@ inline ByHand each_site(std::function<Vec3<double>(Vec3<double> const&)> field,
           }};
 }
 
-inline ByHand exchange_by_hand(Lattice const& lattice, double constant) {
-  return {[=](auto const& m, std::int64_t site) {
+/// `constant`: of each bond.
+inline ByHand exchange_by_hand(Lattice const& lattice,
+                               std::function<double(Bond const&)> constant) {
+  return {[=, all = bonds(lattice)](auto const& m, std::int64_t site) {
             Vec3<double> h{0, 0, 0};
-            for (auto const& bond : bonds(lattice)) {
-              double const c = constant / (bond.spacing * bond.spacing);
+            for (auto const& bond : all) {
+              if (bond.from != site && bond.to != site) continue;
+              double const c = constant(bond) / (bond.spacing * bond.spacing);
               if (bond.from == site) h = h + c * (at(m, bond.to) - at(m, site));
               if (bond.to == site) h = h + c * (at(m, bond.from) - at(m, site));
             }
             return h;
           },
-          [=](auto const& m) {
+          [=, all = bonds(lattice)](auto const& m) {
             double sum = 0;
-            for (auto const& bond : bonds(lattice)) {
+            for (auto const& bond : all) {
               auto const d = at(m, bond.to) - at(m, bond.from);
-              sum += 0.5 * constant * dot(d, d) / (bond.spacing * bond.spacing);
+              sum += 0.5 * constant(bond) * dot(d, d) / (bond.spacing * bond.spacing);
             }
             return sum;
           }};
+}
+
+inline ByHand exchange_by_hand(Lattice const& lattice, double constant) {
+  return exchange_by_hand(lattice, [=](Bond const&) { return constant; });
 }
 
 inline ByHand anisotropy_by_hand(double k, Vec3<double> const& axis) {

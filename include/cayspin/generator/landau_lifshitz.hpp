@@ -2,54 +2,59 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
+#include <cayspin/detail/coefficient.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace cayspin {
 
 /// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; overdamped, without
 /// precession, A = damping m x H. Reduced units.
-template <class Field>
+/// Damping is double, or a ScalarField with a number for each site. This is the form of Landau and
+/// Lifshitz: Gilbert's has A / (1 + damping^2), which a unit of time takes up where the damping is
+/// one for all sites, but not where it differs.
+template <class Field, class Damping = double>
 class LandauLifshitz {
  public:
   static constexpr bool depends_on_time = detail::depends_on_time<Field>;
 
   /// Throws std::invalid_argument when damping is negative or not finite.
-  LandauLifshitz(Field field, double damping, bool precession = true)
-      : field_(std::move(field)), damping_(damping), precession_(precession ? 1.0 : 0.0) {
-    if (!(damping >= 0) || !std::isfinite(damping))
-      throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 and finite");
+  LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
+      : field_(std::move(field)),
+        damping_(std::move(damping)),
+        precession_(precession ? 1.0 : 0.0) {
+    check(damping_);
   }
 
   Field const& field() const { return field_; }
 
   template <class Exec, class Spins>
   auto prepare(Exec const& exec, Spins const& spins, double t) const {
-    auto prepared = detail::prepare_term(field_, exec, spins, t);
-    return LandauLifshitz<decltype(prepared)>(std::move(prepared), damping_, precession_ != 0);
+    detail::require_lattice_of(spins, damping_, "cayspin::LandauLifshitz");
+    return of(detail::prepare_term(field_, exec, spins, t));
   }
 
   template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
-    auto prepared = detail::prepare_rate(field_, exec, rates, t, dt);
-    return LandauLifshitz<decltype(prepared)>(std::move(prepared), damping_, precession_ != 0);
+    return of(detail::prepare_rate(field_, exec, rates, t, dt));
   }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
-    return generator(stencil.center(), field_.field(stencil));
+    return generator(stencil.site(), stencil.center(), field_.field(stencil));
   }
 
   /// A' at a spin m along the rates X, less damping X x H, which is normal to X and to what sigma
   /// is made of.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
-    return generator(m, field_.field_rate(m, rates));
+    return generator(rates.site(), m, field_.field_rate(m, rates));
   }
 
   /// What Series4 differentiates: H, of which the generator is made, and its linear part.
@@ -67,6 +72,7 @@ class LandauLifshitz {
   template <int K, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
                                                      Vec3<Value> const* h) const {
+    static_assert(uniform, "Series4 needs a damping that is one number for all sites.");
     Vec3<Value> a = value<Value>(precession_) * h[K];
     detail::leibniz<K>([&](auto weight, auto j, auto rest) {
       a = multiply_add(value<Value>(damping_ * weight), cross(m[j], h[rest]), a);
@@ -75,7 +81,13 @@ class LandauLifshitz {
   }
 
   /// True where the motion conserves the energy, with A = -dE/dm up to a multiple of m.
-  bool is_conservative() const { return damping_ == 0 && precession_ != 0; }
+  /// Not looked for where the damping is a field.
+  bool is_conservative() const {
+    if constexpr (uniform)
+      return damping_ == 0 && precession_ != 0;
+    else
+      return false;
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
@@ -89,18 +101,45 @@ class LandauLifshitz {
   }
 
  private:
+  static constexpr bool uniform = std::is_same_v<Damping, double>;
+
+  static void check(double damping) {
+    if (!(damping >= 0) || !std::isfinite(damping))
+      throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 and finite");
+  }
+  template <class Real, class MemorySpace>
+  static void check(SiteField<Real, 1, MemorySpace> const& damping) {
+    if (detail::signs_of(damping, "cayspin::LandauLifshitz: the damping").negative)
+      throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 on every site");
+  }
+  template <class Real>
+  static void check(detail::SiteArray<Real, 1> const&) {}  // of a field that was checked
+
+  template <class Prepared>
+  auto of(Prepared prepared) const {
+    auto damping = detail::array_of(damping_);
+    return LandauLifshitz<Prepared, decltype(damping)>(std::move(prepared), damping,
+                                                       precession_ != 0);
+  }
+
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value value(double number) {
     return Value(static_cast<detail::scalar_t<Value>>(number));
   }
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Vec3<Value> const& m,
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,
                                                     Vec3<Value> const& h) const {
-    return multiply_add(value<Value>(damping_), cross(m, h), value<Value>(precession_) * h);
+    return multiply_add(detail::coefficient<Value>(damping_, site), cross(m, h),
+                        value<Value>(precession_) * h);
   }
 
   Field field_;
-  double damping_, precession_;
+  Damping damping_;
+  double precession_;
 };
+
+template <class Field, class Real, class MemorySpace>
+LandauLifshitz(Field, SiteField<Real, 1, MemorySpace>, bool = true)
+    -> LandauLifshitz<Field, SiteField<Real, 1, MemorySpace>>;
 
 }  // namespace cayspin

@@ -2,9 +2,14 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
+#include <cayspin/detail/coefficient.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
+
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
 
 namespace cayspin {
 
@@ -47,6 +52,19 @@ struct SpinOfSites {
     values[0] = m.x;
     values[1] = m.y;
     values[2] = m.z;
+  }
+};
+
+template <class Real>
+struct WeightedSpinOfSites {
+  SiteArray<Real, 3> spins;
+  SiteArray<Real, 1> weights;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    SpinOfSites<Real>{spins}(site, values);
+    values[3] = site.load(weights);
+    for (int i = 0; i < 3; ++i) values[i] = values[3] * values[i];
   }
 };
 
@@ -101,6 +119,22 @@ Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const&
       exec, "cayspin::magnetization", spins.layout(), detail::SpinOfSites<Real>{spins.array()});
   auto const sites = static_cast<double>(spins.sites());
   return {total[0] / sites, total[1] / sites, total[2] / sites};
+}
+
+/// The mean of m with a weight for each site: with an occupation of 0 and 1 as weights, the mean
+/// over the occupied sites. Throws std::invalid_argument when the weights are on another lattice or
+/// their sum is zero.
+template <class Exec, class Real, class MemorySpace>
+Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
+                           std::type_identity_t<ScalarField<Real, MemorySpace>> const& weights) {
+  detail::check_access<Exec, MemorySpace>();
+  detail::require_lattice_of(spins, weights, "cayspin::magnetization");
+  auto const total = detail::reduce_sites<detail::Sum, 4>(
+      exec, "cayspin::magnetization", spins.layout(),
+      detail::WeightedSpinOfSites<Real>{spins.array(), weights.array()});
+  if (!(std::abs(total[3]) > 0))
+    throw std::invalid_argument("cayspin::magnetization: the weights add up to zero");
+  return {total[0] / total[3], total[1] / total[3], total[2] / total[3]};
 }
 
 /// max |A x m|: how fast the fastest spin moves at time t. Zero at rest.

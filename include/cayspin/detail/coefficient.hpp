@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+// A coefficient of a term: one number for all sites, or a field with a number on each site.
+namespace cayspin::detail {
+
+/// What kernels hold of a coefficient.
+inline double array_of(double number) { return number; }
+template <class Real, int Components, class MemorySpace>
+SiteArray<Real, Components> array_of(SiteField<Real, Components, MemorySpace> const& field) {
+  return field.array();
+}
+
+/// A coefficient at a site, as value of a kernel.
+template <class Value, class Site>
+KOKKOS_FORCEINLINE_FUNCTION Value coefficient(double number, Site const&) {
+  return Value(static_cast<scalar_t<Value>>(number));
+}
+template <class Value, class Site, class Real>
+KOKKOS_FORCEINLINE_FUNCTION Value coefficient(SiteArray<Real, 1> const& numbers, Site const& site) {
+  return site.load(numbers);
+}
+
+/// Kernels address a coefficient as they do the spins, by rows whose pitch depends on the type.
+template <class Spins, class Real, int Components, class MemorySpace>
+constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) {
+  static_assert(std::is_same_v<typename Spins::value_type, Real> &&
+                    std::is_same_v<typename Spins::memory_space, MemorySpace>,
+                "A field of coefficients has the precision and the memory space of the spins.");
+}
+
+template <class Spins>
+void require_lattice_of(Spins const&, double, char const*) {}
+/// Throws std::invalid_argument when a coefficient is for another lattice.
+template <class Spins, class Real, int Components, class MemorySpace>
+void require_lattice_of(Spins const& spins, SiteField<Real, Components, MemorySpace> const& field,
+                        char const* who) {
+  require_type_of<Spins>(field);
+  if (!(spins.lattice() == field.lattice()))
+    throw std::invalid_argument(std::string(who) +
+                                ": the coefficients and the spins are on different lattices");
+}
+
+/// Counts sites whose number is not finite, below zero, above zero, and one.
+template <class Real>
+struct SignsOfSites {
+  SiteArray<Real, 1> numbers;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* counts) const {
+    Value const number = site.load(numbers), zero(0.0), one(1.0);
+    Value const infinity(std::numeric_limits<double>::infinity());
+    counts[0] = select<Value>(Kokkos::abs(number) < infinity, zero, one);
+    counts[1] = select<Value>(number < zero, one, zero);
+    counts[2] = select<Value>(zero < number, one, zero);
+    counts[3] = select<Value>(number == one, one, zero);
+  }
+};
+
+struct Signs {
+  bool negative, positive;
+  bool zero_or_one;  // everywhere
+};
+
+/// Throws std::invalid_argument when a number is not finite; waits.
+template <class Real, class MemorySpace>
+Signs signs_of(ScalarField<Real, MemorySpace> const& numbers, char const* what) {
+  typename MemorySpace::execution_space const exec;
+  auto const count = reduce_sites<Sum, 4>(exec, "cayspin::signs_of", numbers.layout(),
+                                          SignsOfSites<Real>{numbers.array()});
+  if (count[0] != 0)
+    throw std::invalid_argument(std::string(what) + " must be finite on every site");
+  return {count[1] != 0, count[2] != 0, count[1] == 0 && count[2] == count[3]};
+}
+
+}  // namespace cayspin::detail

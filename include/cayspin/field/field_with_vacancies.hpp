@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/concepts.hpp>
+#include <cayspin/detail/coefficient.hpp>
+#include <cayspin/field/effective_field.hpp>
+#include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <stdexcept>
+#include <utility>
+
+namespace cayspin {
+
+namespace detail {
+
+template <class Field>
+inline constexpr bool averages_layers = false;
+template <class MemorySpace>
+inline constexpr bool averages_layers<LayerAveragedSlabDemag<MemorySpace>> = true;
+template <class... Terms>
+inline constexpr bool averages_layers<EffectiveField<Terms...>> = (averages_layers<Terms> || ...);
+
+/// A stencil in which a vacant neighbour is a missing one: the spin itself stands for it.
+template <class Stencil, class Real>
+class StencilAmongVacancies {
+ public:
+  using value_type = typename Stencil::value_type;
+  using vector_type = typename Stencil::vector_type;
+
+  KOKKOS_FORCEINLINE_FUNCTION StencilAmongVacancies(Stencil const& stencil,
+                                                    SiteArray<Real, 1> const& occupation)
+      : stencil_(stencil), occupation_(occupation) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return stencil_.center(); }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type previous() const {
+    return unless_vacant<Axis, 0>(stencil_.template previous<Axis>());
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
+    return unless_vacant<Axis, 1>(stencil_.template next<Axis>());
+  }
+  KOKKOS_FORCEINLINE_FUNCTION auto const& site() const { return stencil_.site(); }
+
+ private:
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor) const {
+    value_type const zero(0);  // past an open end too, where the neighbour is the spin itself
+    auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
+    return {select<value_type>(vacant, center().x, neighbor.x),
+            select<value_type>(vacant, center().y, neighbor.y),
+            select<value_type>(vacant, center().z, neighbor.z)};
+  }
+
+  Stencil const& stencil_;
+  SiteArray<Real, 1> const& occupation_;
+};
+
+/// What FieldWithVacancies is at one time.
+template <class Field, class Real>
+class FieldAmongVacancies {
+  template <class Stencil>
+  using Inner = StencilAmongVacancies<Stencil, Real>;
+
+ public:
+  FieldAmongVacancies(Field field, SiteArray<Real, 1> const& occupation)
+      : field_(std::move(field)), occupation_(occupation) {}
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    return unless_vacant(stencil, field_.field(Inner<Stencil>(stencil, occupation_)));
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const requires
+      requires(Field const& field, Inner<Stencil> const& inner) {
+    field.linear_field(inner);
+  }
+  { return unless_vacant(stencil, field_.linear_field(Inner<Stencil>(stencil, occupation_))); }
+
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
+                                                     Stencil const& rates) const requires
+      requires(Field const& field, Inner<Stencil> const& inner) {
+    field.field_rate(m, inner);
+  }
+  { return unless_vacant(rates, field_.field_rate(m, Inner<Stencil>(rates, occupation_))); }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    return unless_vacant(stencil, field_.energy_density(Inner<Stencil>(stencil, occupation_)));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    Inner<Stencil> const inner(stencil, occupation_);
+    if constexpr (requires { field_.energy_magnitude(inner); }) {
+      return unless_vacant(stencil, field_.energy_magnitude(inner));
+    } else {
+      return Kokkos::abs(energy_density(stencil));
+    }
+  }
+
+ private:
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value unless_vacant(Stencil const& stencil,
+                                                  Value const& value) const {
+    return select<Value>(stencil.site().load(occupation_) == Value(0), Value(0), value);
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_vacant(Stencil const& stencil,
+                                                        Vec3<Value> const& h) const {
+    return {unless_vacant(stencil, h.x), unless_vacant(stencil, h.y), unless_vacant(stencil, h.z)};
+  }
+
+  Field field_;
+  SiteArray<Real, 1> occupation_;
+};
+
+}  // namespace detail
+
+/// A field on a lattice with vacancies. `occupation` is 1 on sites that hold a spin and 0 on vacant
+/// ones. A vacant site has no field and no energy, so that its spin stays as it is; to its
+/// neighbours it is a missing one, as past an open end. Terms of one's own that follow the stencil
+/// need no change. Every term has to stand inside: one beside it still turns the vacant spins.
+/// A HostField's solver is given the vacant spins too, and has to leave them out.
+template <class Field, class Real, class MemorySpace>
+class FieldWithVacancies {
+  static_assert(!detail::averages_layers<Field>,
+                "LayerAveragedSlabDemag counts the spins of vacant sites in its averages.");
+
+ public:
+  static constexpr bool depends_on_time = detail::depends_on_time<Field>;
+
+  /// Throws std::invalid_argument when an occupation is neither 0 nor 1.
+  FieldWithVacancies(Field field, ScalarField<Real, MemorySpace> occupation)
+      : field_(std::move(field)), occupation_(std::move(occupation)) {
+    if (!detail::signs_of(occupation_, "cayspin::FieldWithVacancies: the occupation").zero_or_one)
+      throw std::invalid_argument(
+          "cayspin::FieldWithVacancies: the occupation must be 0 or 1 on every site");
+  }
+
+  template <class Exec, class Spins>
+  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+    detail::require_lattice_of(spins, occupation_, "cayspin::FieldWithVacancies");
+    return among(detail::prepare_term(field_, exec, spins, t));
+  }
+  template <class Exec, class Rates>
+  auto prepare_rate(Exec const& exec, Rates const& rates, double t, double dt) const {
+    return among(detail::prepare_rate(field_, exec, rates, t, dt));
+  }
+
+ private:
+  template <class Prepared>
+  auto among(Prepared prepared) const {
+    return detail::FieldAmongVacancies<Prepared, Real>(std::move(prepared), occupation_.array());
+  }
+
+  Field field_;
+  ScalarField<Real, MemorySpace> occupation_;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/coefficient.hpp>
+#include <cayspin/field/uniaxial_anisotropy.hpp>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace cayspin {
+
+namespace detail {
+
+inline Vec3<double> array_of(Vec3<double> const& axis) { return axis; }
+
+template <class Value, class Site>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coefficient(Vec3<double> const& axis, Site const&) {
+  return as_value<Value>(axis);
+}
+template <class Value, class Site, class Real>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coefficient(SiteArray<Real, 3> const& axes,
+                                                    Site const& site) {
+  return site.load(axes);
+}
+
+template <class Spins>
+void require_lattice_of(Spins const&, Vec3<double> const&, char const*) {}
+
+/// Counts sites whose vector is not of length 1, to rounding.
+template <class Real>
+struct NotUnitOfSites {
+  SiteArray<Real, 3> vectors;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* count) const {
+    auto const e = site.load(vectors);
+    Value const tolerance(8.0 * std::numeric_limits<Real>::epsilon());
+    count[0] = select<Value>(Kokkos::abs(Value(dot(e, e) - Value(1.0))) < tolerance, Value(0.0),
+                             Value(1.0));
+  }
+};
+
+/// H = K (m.e) e with K and e of a site; each is held as one value or as an array.
+template <class Constant, class Axis>
+struct UniaxialAnisotropyOfSites {
+  Constant constant;
+  Axis axis;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto const e = coefficient<Value>(axis, stencil.site());
+    return Value(coefficient<Value>(constant, stencil.site()) * dot(stencil.center(), e)) * e;
+  }
+
+  /// H is linear in the spins.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    return field(stencil);
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const along = dot(stencil.center(), coefficient<Value>(axis, stencil.site()));
+    return Value(-0.5) * coefficient<Value>(constant, stencil.site()) * along * along;
+  }
+};
+
+}  // namespace detail
+
+/// Uniaxial anisotropy whose constant, axis, or both differ from site to site:
+/// H = K_n (m.e_n) e_n, E = -K_n (m.e_n)^2 / 2.
+/// Constant is double or a ScalarField, Axis a Vec3<double> or a SiteField of three components;
+/// only what differs takes memory.
+template <class Constant, class Axis>
+class SiteDependentUniaxialAnisotropy {
+  static constexpr char const* name = "cayspin::SiteDependentUniaxialAnisotropy";
+
+ public:
+  /// One axis for all sites is normalised; a field of axes is taken as it is. Throws
+  /// std::invalid_argument when a constant is not finite or an axis of a field not of length 1.
+  SiteDependentUniaxialAnisotropy(std::type_identity_t<Constant> constant,
+                                  std::type_identity_t<Axis> axis)
+      : constant_(std::move(constant)), axis_(std::move(axis)) {
+    if constexpr (std::is_same_v<Constant, double>) {
+      if (!std::isfinite(constant_))
+        throw std::invalid_argument(std::string(name) + ": the constant must be finite");
+    } else {
+      detail::signs_of(constant_, "cayspin::SiteDependentUniaxialAnisotropy: the constant");
+    }
+    if constexpr (std::is_same_v<Axis, Vec3<double>>) {
+      axis_ = normalized(axis_, "cayspin::SiteDependentUniaxialAnisotropy: the axis");
+    } else {
+      require_unit(axis_);
+    }
+  }
+
+  template <class Exec, class Spins>
+  auto prepare(Exec const&, Spins const& spins, double) const {
+    detail::require_lattice_of(spins, constant_, name);
+    detail::require_lattice_of(spins, axis_, name);
+    auto const constant = detail::array_of(constant_);
+    auto const axis = detail::array_of(axis_);
+    return detail::UniaxialAnisotropyOfSites<std::remove_const_t<decltype(constant)>,
+                                             std::remove_const_t<decltype(axis)>>{constant, axis};
+  }
+
+ private:
+  template <class Real, class MemorySpace>
+  static void require_unit(SiteField<Real, 3, MemorySpace> const& axes) {
+    typename MemorySpace::execution_space const exec;
+    auto const count = detail::reduce_sites<detail::Sum, 1>(
+        exec, "cayspin::SiteDependentUniaxialAnisotropy::axes", axes.layout(),
+        detail::NotUnitOfSites<Real>{axes.array()});
+    if (count[0] != 0)
+      throw std::invalid_argument(std::string(name) +
+                                  ": the axis must be of length 1 on every site, and is not on " +
+                                  std::to_string(static_cast<std::int64_t>(count[0])));
+  }
+
+  Constant constant_;
+  Axis axis_;
+};
+
+template <class Real, class MemorySpace>
+SiteDependentUniaxialAnisotropy(SiteField<Real, 1, MemorySpace>, Vec3<double>)
+    -> SiteDependentUniaxialAnisotropy<SiteField<Real, 1, MemorySpace>, Vec3<double>>;
+template <class Real, class MemorySpace>
+SiteDependentUniaxialAnisotropy(double, SiteField<Real, 3, MemorySpace>)
+    -> SiteDependentUniaxialAnisotropy<double, SiteField<Real, 3, MemorySpace>>;
+template <class Real, class MemorySpace>
+SiteDependentUniaxialAnisotropy(SiteField<Real, 1, MemorySpace>, SiteField<Real, 3, MemorySpace>)
+    -> SiteDependentUniaxialAnisotropy<SiteField<Real, 1, MemorySpace>,
+                                       SiteField<Real, 3, MemorySpace>>;
+
+}  // namespace cayspin

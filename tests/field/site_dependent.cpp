@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Terms with coefficients of each site: H = -dE/dm, formulas by hand, equal coefficients against
+// the terms with one, conserved energy, and what they refuse.
+#include "../support/figures.hpp"
+#include "../support/landau_lifshitz.hpp"
+#include "coefficients.hpp"
+#include "gradient.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+namespace cayspin::test {
+namespace {
+
+std::function<double(Bond const&)> harmonic_mean(std::vector<double> const& a) {
+  return [=](Bond const& bond) {
+    double const n = a[bond.from], q = a[bond.to];
+    return n == 0 || q == 0 ? 0 : 2 / (1 / n + 1 / q);
+  };
+}
+
+ByHand anisotropy_by_hand(std::vector<double> const& k, std::vector<double> const& axes) {
+  return {[=](auto const& m, std::int64_t site) {
+            auto const e = at(axes, site);
+            return (k[site] * dot(at(m, site), e)) * e;
+          },
+          [=](auto const& m) {
+            double sum = 0;
+            for (std::size_t site = 0; site < k.size(); ++site) {
+              double const along = dot(at(m, site), at(axes, site));
+              sum -= 0.5 * k[site] * along * along;
+            }
+            return sum;
+          }};
+}
+
+std::vector<double> repeated(Vec3<double> const& v, std::int64_t count) {
+  std::vector<double> numbers;
+  for (std::int64_t site = 0; site < count; ++site) numbers.insert(numbers.end(), {v.x, v.y, v.z});
+  return numbers;
+}
+
+template <class Backend>
+class SiteDependent : public GradientTest<Backend> {
+ protected:
+  using Real = typename Backend::Real;
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec exec;
+
+  /// Field and energy of two terms, on row lengths around whole packs, open and periodic.
+  template <class One, class Other>
+  void expect_equal(One const& one, Other const& other, double size) const {
+    for (std::int64_t const nx : {1, 2, 3, 7, 8, 9, 15, 16, 17, 31, 32, 33})
+      for (Boundary const boundary : {Boundary::open, Boundary::periodic})
+        for (auto const& [ny, nz] : {std::pair{1, 1}, {3, 2}, {1, 4}}) {
+          auto lattice = Lattice::cubic(nx, ny, nz, 0.8, boundary);
+          auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+          auto const h = one(lattice), g = other(lattice);
+          auto const a = evaluated(exec, h, spins), b = evaluated(exec, g, spins);
+          double largest = 0;
+          for (std::size_t i = 0; i < a.size(); ++i)
+            largest = std::max(largest, std::abs(a[i] - b[i]));
+          ASSERT_LE(largest, 4 * epsilon<Real> * size) << nx << " " << ny << " " << nz;
+          // In double, from coefficients that Real holds.
+          Energy const e = energy(exec, h, spins);
+          ASSERT_NEAR(e.value, energy(exec, g, spins).value, 8 * epsilon<double> * e.magnitude);
+        }
+  }
+};
+TYPED_TEST_SUITE(SiteDependent, Backends, BackendName);
+
+TYPED_TEST(SiteDependent, ExchangeIsTheHarmonicMean) {
+  using Spins = typename TypeParam::Spins;
+  for (auto const& lattice : lattices)
+    for (double const sign : {1.0, -1.0}) {
+      auto const constants = random_numbers_on<Spins>(lattice, sign * 0.1, sign * 4, 5, 7);
+      this->check("exchange", lattice, EffectiveField(SiteDependentExchange(constants)),
+                  exchange_by_hand(lattice, harmonic_mean(numbers_of(constants))));
+    }
+}
+
+TYPED_TEST(SiteDependent, AnisotropyOfConstantAxisOrBoth) {
+  using Spins = typename TypeParam::Spins;
+  auto const& lattice = lattices[0];
+  auto const constants = random_numbers_on<Spins>(lattice, -2, 4, 6, 5);
+  auto const axes = spins_of<Spins>(lattice, random_directions(lattice.sites(), 12));
+  auto const k = numbers_of(constants), e = numbers_of(axes);
+  Vec3<double> const one{1, -2, 2};
+  this->check("both", lattice, SiteDependentUniaxialAnisotropy(constants, axes),
+              anisotropy_by_hand(k, e));
+  this->check("constant", lattice, SiteDependentUniaxialAnisotropy(constants, one),
+              anisotropy_by_hand(k, repeated(unit(one), lattice.sites())));
+  this->check("axis", lattice, SiteDependentUniaxialAnisotropy(1.75, axes),
+              anisotropy_by_hand(std::vector(k.size(), 1.75), e));
+}
+
+TYPED_TEST(SiteDependent, EqualConstantsAreOneConstant) {
+  using Spins = typename TypeParam::Spins;
+  this->expect_equal(
+      [](auto const& lattice) { return Exchange(lattice, 1.375); },
+      [](auto const& lattice) {
+        return SiteDependentExchange(numbers_on<Spins>(lattice, [](auto) { return 1.375; }));
+      },
+      6 * 2 * 1.375 / 0.64);
+  this->expect_equal(
+      [](auto const&) {
+        return UniaxialAnisotropy(1.375, {0, 0, 1});
+      },
+      [](auto const& lattice) {
+        return SiteDependentUniaxialAnisotropy(
+            numbers_on<Spins>(lattice, [](auto) { return 1.375; }), Spins("axes", lattice));
+      },
+      1.375);
+}
+
+// Random constants, zeros among them, at every place of a pack that a row can end at.
+TYPED_TEST(SiteDependent, UniformStatesHaveNoExchange) {
+  using Spins = typename TypeParam::Spins;
+  for (std::int64_t nx = 1; nx <= 34; ++nx)
+    for (Boundary const boundary : {Boundary::open, Boundary::periodic}) {
+      auto const lattice = Lattice::cubic(nx, 2, 3, 0.3, boundary);
+      auto const spins = spins_of<Spins>(
+          lattice,
+          repeated(at(random_directions(1, static_cast<unsigned>(nx)), 0), lattice.sites()));
+      SiteDependentExchange const exchange(random_numbers_on<Spins>(lattice, 0.1, 4, 2, 3));
+      for (double const h : evaluated(this->exec, exchange, spins)) ASSERT_EQ(h, 0);
+      ASSERT_EQ(energy(this->exec, exchange, spins).value, 0);
+    }
+}
+
+// What is not symmetric over a bond, or not -dE/dm, gains or loses energy at any dt.
+TEST(SiteDependentCoefficients, ConserveEnergyToTheMethodsOrder) {
+  Space const exec;
+  Lattice const lattice{
+      {11, 4, 3}, {1, 1, 1}, {Boundary::periodic, Boundary::open, Boundary::open}};
+  auto const start = random_spins(lattice, 31);
+  EffectiveField const field(
+      SiteDependentExchange(random_numbers_on<Spins>(lattice, 0.1, 1, 8, 9)),
+      SiteDependentUniaxialAnisotropy(random_numbers_on<Spins>(lattice, -1, 1, 9),
+                                      random_spins(lattice, 10)));
+  LandauLifshitz const generator(field, 0.0);
+  std::vector<double> dts, errors;
+  for (int const steps : {40, 80, 160}) {
+    auto const spins = run<Rkmk4<Spins>>(generator, start, 4.0 / steps, steps);
+    dts.push_back(4.0 / steps);
+    errors.push_back(std::abs(energy(exec, field, spins).value - energy(exec, field, start).value));
+  }
+  std::printf("    energy errors %.3g %.3g %.3g\n", errors[0], errors[1], errors[2]);
+  expect_order("order of the energy error", fitted_order(dts, errors), 5, 0.4);
+}
+
+// Spins without exchange, each with a damping of its own, against runs with one damping.
+TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::cubic(19, 3, 2);
+  auto const m = random_directions(lattice.sites(), 51);
+  EffectiveField const field(UniaxialAnisotropy(0.7, {1, 2, -2}), Zeeman{{0.5, 0, 1}});
+  auto const after = [&](auto const& damping) {
+    auto spins = spins_of<Spins>(lattice, m);
+    Rkmk4 stepper(spins);
+    LandauLifshitz const generator(field, damping, false);
+    integrate(this->exec, stepper, generator, spins, {0, 0.1, 10});
+    return numbers_of(spins);
+  };
+  double const dampings[] = {0, 0.25, 1.5};
+  auto const found =
+      after(numbers_on<Spins>(lattice, [&](auto site) { return dampings[site % 3]; }));
+  for (int which = 0; which < 3; ++which) {
+    auto const expected = after(dampings[which]);
+    for (std::int64_t site = which; site < lattice.sites(); site += 3)
+      for (int c = 0; c < 3; ++c) ASSERT_EQ(found[3 * site + c], expected[3 * site + c]) << site;
+  }
+}
+
+TYPED_TEST(SiteDependent, WhatIsRefused) {
+  using Spins = typename TypeParam::Spins;
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  double const infinity = std::numeric_limits<double>::infinity();
+  auto const lattice = Lattice::chain(21);
+  auto const ones_but = [&](double last) {
+    return numbers_on<Spins>(lattice, [=](auto site) { return site == 20 ? last : 1.0; });
+  };
+  Spins const axes("axes", lattice);
+  for (double const number : {nan, infinity, -infinity}) {
+    EXPECT_THROW(SiteDependentExchange(ones_but(number)), std::invalid_argument);
+    EXPECT_THROW(SiteDependentUniaxialAnisotropy(ones_but(number), axes), std::invalid_argument);
+    EXPECT_THROW(SiteDependentUniaxialAnisotropy(number, axes), std::invalid_argument);
+  }
+  EXPECT_THROW(SiteDependentExchange(ones_but(-1)), std::invalid_argument);
+  for (double const number : {-0.1, nan, infinity})
+    EXPECT_THROW(LandauLifshitz(EffectiveField<>(), ones_but(number)), std::invalid_argument);
+  EXPECT_NO_THROW(SiteDependentExchange(ones_but(0)));
+  EXPECT_THROW(SiteDependentUniaxialAnisotropy(ones_but(1), {0, 0, 0}), std::invalid_argument);
+  for (double const length : {0.0, 0.5, nan}) {
+    auto numbers = repeated({0, 1, 0}, 21);
+    numbers[3 * 20 + 1] = length;
+    EXPECT_THROW(SiteDependentUniaxialAnisotropy(1, spins_of<Spins>(lattice, numbers)),
+                 std::invalid_argument);
+  }
+  for (Lattice const& another : {Lattice::chain(20), Lattice::chain(21, 0.5)}) {
+    Spins const spins("spins", another);
+    EXPECT_THROW(energy(this->exec, SiteDependentExchange(ones_but(1)), spins),
+                 std::invalid_argument);
+    EXPECT_THROW(energy(this->exec, SiteDependentUniaxialAnisotropy(1, axes), spins),
+                 std::invalid_argument);
+    EXPECT_THROW(energy(this->exec, LandauLifshitz(EffectiveField<>(), ones_but(1)), spins),
+                 std::invalid_argument);
+    EXPECT_THROW(magnetization(this->exec, spins, ones_but(1)), std::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::test
