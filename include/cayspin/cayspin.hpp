@@ -30,6 +30,7 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
 #include <cayspin/stepper/classical.hpp>
+#include <cayspin/stepper/energy_projection.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/lie_adams_bashforth2.hpp>
 #include <cayspin/stepper/lie_euler.hpp>

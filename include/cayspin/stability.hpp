@@ -78,6 +78,19 @@ struct LinearUpdate<update::Lie<Exponential>> {
   }
 };
 
+template <class Rotation>
+struct LinearUpdate<update::LieUncorrected<Rotation>> : LinearUpdate<update::Lie<Rotation>> {
+  static NearAxis increment(NearAxis const&, NearAxis const& y, Complex, Complex) { return y; }
+};
+
+template <>
+struct LinearUpdate<update::Stereographic> {
+  static NearAxis increment(NearAxis const&, NearAxis const&, Complex z, Complex amplitude) {
+    return {0.5 * z * amplitude, 0};
+  }
+  static Complex growth(NearAxis const& f) { return 2.0 * f.transverse; }
+};
+
 template <bool Renormalise>
 struct LinearUpdate<update::Classical<Renormalise>> {
   static NearAxis increment(NearAxis const&, NearAxis const&, Complex z, Complex amplitude) {

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/concepts.hpp>
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/sigma.hpp>
+#include <cayspin/observer/scalars.hpp>
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/stencil.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace cayspin {
+
+namespace detail {
+
+/// The coordinates orthogonal to m0 of the rotation that takes m0 to m1, f = 2 m0 x m1 / (1 +
+/// m0.m1), so that cay(f) m0 = m1. Zero for opposite spins, which have no such f.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coordinates_between(Vec3<Value> const& m0,
+                                                            Vec3<Value> const& m1) {
+  Vec3<Value> const middle = m0 + m1;  // |m0 + m1|^2 = 2 (1 + m0.m1), without cancellation
+  return guarded_quotient(Value(4), dot(middle, middle)) * cross(m0, m1);
+}
+
+/// <dE/dm, f> = -<A, f> of coordinates f orthogonal to the spins.
+template <class Generator, class Real>
+struct EnergyAlongCoordinates {
+  Generator generator;
+  SiteArray<Real, 3> begin, end;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, begin);
+    Vec3<Value> const f = coordinates_between(stencil.center(), site.load(end));
+    values[0] = Value(0.0) - dot(evaluate(generator, stencil), f);
+  }
+};
+
+/// m1 <- cay(f + epsilon m0) m0
+template <class Real>
+struct ProjectStage {
+  SiteArray<Real, 3> begin, end;
+  OutputArray<Real, 3> next;
+  Real epsilon;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> const m0 = site.load(begin), m1 = site.load(end);
+    Vec3<Value> const f = coordinates_between(m0, m1);
+    Vec3<Value> const projected = Cayley::rotate(multiply_add(Value(epsilon), m0, f), m0);
+    // Where there is no f the step stays as it is.
+    auto const none = dot(f, f) == Value(0);
+    site.store({select<Value>(none, m1.x, projected.x), select<Value>(none, m1.y, projected.y),
+                select<Value>(none, m1.z, projected.z)},
+               next);
+  }
+};
+
+}  // namespace detail
+
+/// A stepper whose steps end on the energy they began with: m1 <- cay(f + epsilon m0) m0, f the
+/// coordinates orthogonal to m0 of the stepper's own step, with one epsilon for all spins:
+/// sigma as an energy correction for any conservative generator that has an energy and no t.
+/// Keeps the stepper's order; the energy is held to round-off as far as `corrections` go.
+/// Not in the paper. Work memory: two fields beside the stepper's.
+template <class Stepper>
+class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type> {
+  using Base = detail::StepperBase<typename Stepper::spins_type>;
+
+ public:
+  using Spins = typename Stepper::spins_type;
+  using typename Base::Real;
+  static constexpr int order = Stepper::order;
+  static constexpr int evaluations = Stepper::evaluations + 1;  // energies not counted
+  static constexpr int work_fields = Stepper::work_fields + 2;
+
+  EnergyProjection(Spins const& like, Stepper stepper, int corrections = 3)
+      : Base("EnergyProjection"),
+        stepper_(std::move(stepper)),
+        corrections_(corrections),
+        begin_("EnergyProjection::begin", like.lattice()),
+        next_("EnergyProjection::next", like.lattice()) {}
+
+  std::size_t work_bytes() const { return stepper_.work_bytes() + 2 * begin_.bytes(); }
+
+  /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
+  /// take arrays of `spins` anew after a step. Waits.
+  /// Throws std::invalid_argument when the generator is not conservative, or `spins` is not of the
+  /// lattice given at construction.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    static_assert(
+        requires { generator.is_conservative(); },
+        "EnergyProjection needs a generator that says whether it conserves its energy: a "
+        "member is_conservative().");
+    static_assert(!detail::depends_on_time<Generator>,
+                  "EnergyProjection refuses fields that depend on t.");
+    auto const region = this->begin_step(exec, spins, begin_);
+    if (!generator.is_conservative())
+      throw std::invalid_argument(
+          "cayspin::EnergyProjection: the generator does not conserve its energy (damping 0 does)");
+    Kokkos::deep_copy(exec, begin_.allocation(), spins.allocation());
+    double const before = energy(exec, generator, begin_, t).value;
+    stepper_.step(exec, generator, spins, t, dt);
+
+    auto const prepared = detail::prepare_term(generator, exec, begin_, t);
+    using Slope = detail::EnergyAlongCoordinates<std::remove_const_t<decltype(prepared)>, Real>;
+    double const slope =
+        detail::reduce_sites<detail::Sum, 1>(exec, this->label("::slope"), spins.layout(),
+                                             Slope{prepared, begin_.array(), spins.array()})[0];
+    if (!(slope != 0)) return;
+    double epsilon = 0, projected_with = 0;
+    double excess = energy(exec, generator, spins, t).value - before;
+    for (int i = 0; i < corrections_ && excess != 0; ++i) {
+      projected_with = epsilon - 2 * excess / slope;
+      project(exec, spins, projected_with);
+      double const left = energy(exec, generator, next_, t).value - before;
+      if (!(std::abs(left) < std::abs(excess))) break;
+      epsilon = projected_with;
+      excess = left;
+    }
+    if (epsilon == 0) return;
+    if (projected_with != epsilon) project(exec, spins, epsilon);
+    swap(spins, next_);
+  }
+
+ private:
+  template <class Exec>
+  void project(Exec const& exec, Spins const& end, double epsilon) {
+    detail::for_each_site<Real>(
+        exec, this->label("::project"), end.layout(),
+        detail::ProjectStage<Real>{begin_.array(), end.array(), next_.output(false),
+                                   static_cast<Real>(epsilon)});
+  }
+
+  Stepper stepper_;
+  int corrections_;
+  Spins begin_, next_;
+};
+
+template <class Spins, class Stepper>
+EnergyProjection(Spins, Stepper, int = 3) -> EnergyProjection<Stepper>;
+
+}  // namespace cayspin
