@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/coefficient.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -114,17 +115,23 @@ class RigidBody : public detail::BodyGenerator<RigidBody> {
   double xx_, yy_, zz_, xy_, xz_, yz_;
 };
 
-/// Free rigid bodies, each with an inertia of its own: six numbers per body, ordered as
-/// SymmetricTensor.
-template <class Real, class MemorySpace>
+/// Free rigid bodies, each with an inertia of its own. Six numbers per body: I^-1, ordered as
+/// SymmetricTensor. Three: I^-1 is diagonal, in the body's principal axes.
+template <class Real, class MemorySpace, int Components = 6>
 class RigidBodyEnsemble {
+  static_assert(
+      Components == 6 || Components == 3,
+      "An inverse inertia is a symmetric tensor of 6 components, or the 3 of a diagonal.");
+  struct Prepared;
+
  public:
-  using Tensors = SiteField<Real, 6, MemorySpace>;
+  using Tensors = SiteField<Real, Components, MemorySpace>;
 
   explicit RigidBodyEnsemble(Tensors inverse_inertia) : tensors_(std::move(inverse_inertia)) {}
 
   template <class Exec, class Spins>
-  auto prepare(Exec const&, Spins const& spins, double) const {
+  Prepared prepare(Exec const&, Spins const& spins, double) const {
+    detail::require_type_of<Spins>(tensors_);
     if (spins.lattice().shape != tensors_.lattice().shape)
       throw std::invalid_argument(
           "cayspin::RigidBodyEnsemble: one inertia tensor per body is needed, on the same lattice");
@@ -133,13 +140,15 @@ class RigidBodyEnsemble {
 
  private:
   struct Prepared : detail::BodyGenerator<Prepared> {
-    detail::SiteArray<Real, 6> tensors;
+    detail::SiteArray<Real, Components> tensors;
 
     template <class Value, class Site>
     KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> inverse_inertia(
         Site const& site) const {
-      return {site.load(tensors, 0), site.load(tensors, 1), site.load(tensors, 2),
-              site.load(tensors, 3), site.load(tensors, 4), site.load(tensors, 5)};
+      auto const entry = [&](int component) {
+        return component < Components ? site.load(tensors, component) : Value(0);
+      };
+      return {entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
     }
   };
 
