@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Terms with coefficients of each site: H = -dE/dm, formulas by hand, equal coefficients against
 // the terms with one, conserved energy, and what they refuse.
+#include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
-#include "coefficients.hpp"
 #include "gradient.hpp"
 
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Vacant sites: no field, no energy, no motion, and to their neighbours as an open end.
-#include "coefficients.hpp"
+#include "../support/coefficients.hpp"
 #include "gradient.hpp"
 
 #include <limits>

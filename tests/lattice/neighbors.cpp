@@ -16,6 +16,21 @@ struct Neighbor {
   }
 };
 
+/// A generator that returns what a field of numbers holds before the site, on it and after it.
+template <int Axis, class Real>
+struct Numbers {
+  detail::SiteArray<Real, 1> numbers;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto operator()(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto const& site = stencil.site();
+    Value const own = site.load(numbers);
+    return Vec3<Value>{site.template neighbor<Axis, 0>(numbers, own), own,
+                       site.template neighbor<Axis, 1>(numbers, own)};
+  }
+};
+
 /// A generator that returns the site's own index.
 struct Index {
   template <class Stencil>
@@ -81,6 +96,25 @@ class Neighbors : public ::testing::Test {
     EXPECT_EQ((wrong<2, true>(spins, numbers)), 0) << what << ", next along z";
   }
 
+  template <int Axis>
+  static void expect_numbers(Lattice const& lattice) {
+    typename Backend::Exec const exec;
+    std::vector<double> numbers;
+    for (std::int64_t site = 0; site < lattice.sites(); ++site)
+      numbers.push_back(static_cast<double>(site + 1));
+    ScalarField<typename Backend::Real, typename Backend::MemorySpace> const field("numbers",
+                                                                                   lattice);
+    copy_from_host(numbers, field);
+    typename Backend::Spins const spins("spins", lattice);
+    auto const found = evaluated(exec, Numbers<Axis, typename Backend::Real>{field.array()}, spins);
+    int wrong = 0;
+    for (std::int64_t site = 0; site < lattice.sites(); ++site)
+      for (int step = -1; step <= 1; ++step)
+        wrong += found[3 * site + 1 + step] != numbers[neighbor(lattice, site, Axis, step)];
+    EXPECT_EQ(wrong, 0) << "shape " << lattice.shape[0] << " " << lattice.shape[1] << " "
+                        << lattice.shape[2] << ", axis " << Axis;
+  }
+
   static std::array<Boundary, 3> boundaries(int bits) {
     auto const which = [&](int axis) {
       return (bits >> axis & 1) != 0 ? Boundary::periodic : Boundary::open;
@@ -102,6 +136,16 @@ TYPED_TEST(Neighbors, EveryExtentAlongYAndZ) {
       this->expect_neighbors({{3, n, 1}, {1, 1, 1}, this->boundaries(bits)});
       this->expect_neighbors({{1, 2, n}, {1, 1, 1}, this->boundaries(bits)});
       this->expect_neighbors({{17, n, n}, {1, 1, 1}, this->boundaries(bits)});
+    }
+}
+
+TYPED_TEST(Neighbors, OfFieldsOfNumbers) {
+  for (std::int64_t nx = 1; nx <= 34; ++nx)
+    for (int const bits : {0, 7}) {
+      Lattice const lattice{{nx, 3, 2}, {1, 1, 1}, this->boundaries(bits)};
+      this->template expect_numbers<0>(lattice);
+      this->template expect_numbers<1>(lattice);
+      this->template expect_numbers<2>(lattice);
     }
 }
 

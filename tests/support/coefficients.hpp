@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "../support/backends.hpp"
+#include "backends.hpp"
 
 #include <cayspin/spin_field.hpp>
 
