@@ -114,9 +114,10 @@ class Site {
       Vec3<Value> found = load_at(array, offset() + (Direction == 0 ? -1 : 1));
       if constexpr (AtEdge) {
         if (holds_end<Direction>()) {
-          found = {past_end<Direction>(array, found.x, center.x, 0),
-                   past_end<Direction>(array, found.y, center.y, 1),
-                   past_end<Direction>(array, found.z, center.z, 2)};
+          auto const end = is_end<Direction>();
+          found = {select<Value>(end, past_end<Direction>(array, center.x, 0), found.x),
+                   select<Value>(end, past_end<Direction>(array, center.y, 1), found.y),
+                   select<Value>(end, past_end<Direction>(array, center.z, 2), found.z)};
         }
       }
       return found;
@@ -130,7 +131,8 @@ class Site {
     } else {
       Value const found = detail::load<Value>(array.data + offset() + (Direction == 0 ? -1 : 1));
       if constexpr (AtEdge) {
-        if (holds_end<Direction>()) return past_end<Direction>(array, found, center, 0);
+        if (holds_end<Direction>())
+          return select<Value>(is_end<Direction>(), past_end<Direction>(array, center, 0), found);
       }
       return found;
     }
@@ -155,18 +157,17 @@ class Site {
   KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
     return end_lane<Direction>() >= 0 && end_lane<Direction>() < lanes;
   }
-  /// `found`, but on the lane at the end of the row the value of the other end, or `center`.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
+    return lane_numbers<Value>() == Value(static_cast<scalar_type>(end_lane<Direction>()));
+  }
+  /// What stands for the neighbour past the end of the row: the other end, or `center`.
   template <int Direction, class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value past_end(SiteArray<Real, Components> const& array,
-                                             Value const& found, Value const& center,
-                                             int component) const {
+                                             Value const& center, int component) const {
     std::ptrdiff_t const other_end = row_.offset + (Direction == 0 ? row_.nx - 1 : 0);
-    Value const beyond = row_.periodic_x
-                             ? Value(scalar_type(array.data[component * array.stride + other_end]))
-                             : center;
-    return select<Value>(
-        lane_numbers<Value>() == Value(static_cast<scalar_type>(end_lane<Direction>())), beyond,
-        found);
+    return row_.periodic_x ? Value(scalar_type(array.data[component * array.stride + other_end]))
+                           : center;
   }
 
   template <class Real>
