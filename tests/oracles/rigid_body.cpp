@@ -29,10 +29,30 @@ std::vector<double> repeated(std::vector<double> const& m, std::int64_t count) {
 
 template <class Backend>
 class RigidBodyOracles : public ::testing::Test {};
-TYPED_TEST_SUITE(RigidBodyOracles, Backends, BackendName);
+TYPED_TEST_SUITE(RigidBodyOracles, OracleBackends, BackendName);
 
 // Nineteen bodies alike: whole packs, the rest of one, and every lane.
 constexpr std::int64_t bodies = 19;
+
+/// The methods that rigid bodies alone have, and those of all generators.
+template <class Exec, class Spins>
+std::vector<double> body_step(std::string const& method, RigidBody const& body, double constant,
+                              Start const& start) {
+  Spins const like("like", start.lattice);
+  isotropy::Energy const energy;
+  auto const with = [&](auto const& stepper, auto const& of) {
+    return step_once<Exec>(stepper, of, start);
+  };
+  auto const w = orthogonal(body);
+  if (method == "heun_dcor") return with(LieHeun(like, energy), body);
+  if (method == "heun_ocor") return with(LieHeun(like, energy), w);
+  if (method == "rkmk4_dcor") return with(Rkmk4(like, energy), body);
+  if (method == "rkmk4_ocor") return with(Rkmk4(like, energy), w);
+  if (method == "sy4_dcor") return with(Series4(like, energy), body);
+  if (method == "sy4_ocor") return with(Series4(like, energy), w);
+  if (method == "sy4_ocor_paper") return with(Series4Paper(like, energy), body);
+  return one_step<Exec, Spins>(method, body, constant, start);
+}
 
 TYPED_TEST(RigidBodyOracles, Steps) {
   using Real = typename TypeParam::Real;
@@ -40,18 +60,23 @@ TYPED_TEST(RigidBodyOracles, Steps) {
   int checked = 0;
   for (auto const& entry : oracles("rigid_body_step")) {
     RigidBody const body(tensor(decimals(entry.at("Iinv"))));
-    auto const start = repeated(decimals(entry.at("m")), bodies);
-    for (auto const& [method, step] : entry.at("steps").items()) {
-      auto const expected = decimals(step.at("m1"));
-      auto const found = one_step<typename TypeParam::Exec, typename TypeParam::Spins>(
-          method, body, entry.at("sigma_const"), lattice, start, entry.at("h"));
+    Start const start{lattice, repeated(decimals(entry.at("m")), bodies),
+                      repeated(decimals(entry.at("m_prev")), bodies), entry.at("h")};
+    auto const expect = [&](std::string const& method, std::vector<double> const& expected) {
+      auto const found = body_step<typename TypeParam::Exec, typename TypeParam::Spins>(
+          method, body, entry.at("sigma_const"), start);
       for (std::size_t i = 0; i < found.size(); ++i)
         EXPECT_NEAR(found[i], expected[i % 3], step_tolerance<Real>)
             << entry.at("tag") << ", " << method << ", number " << i;
       ++checked;
+    };
+    for (auto const& [method, step] : entry.at("steps").items()) {
+      auto const expected = decimals(step.at("m1"));
+      expect(method, expected);
+      if (method == "euler_cor_analytic") expect("euler_cor_connection", expected);
     }
   }
-  EXPECT_EQ(checked, 77);
+  EXPECT_EQ(checked, 11 * (28 + 1) - 2);
 }
 
 TYPED_TEST(RigidBodyOracles, GeneratorAndEnergy) {
@@ -91,8 +116,15 @@ TYPED_TEST(RigidBodyOracles, Trajectories) {
     };
     if (method == "euler_def") run(LieEuler(spins), body);
     if (method == "euler_orth") run(LieEuler(spins), orthogonal(body));
+    if (method == "euler_cor_analytic") run(LieEuler(spins, isotropy::Analytic{}), body);
+    if (method == "heun_def") run(LieHeun(spins), body);
+    if (method == "heun_ocor") run(LieHeun(spins, isotropy::Energy{}), orthogonal(body));
     if (method == "rkmk4_def") run(Rkmk4(spins), body);
     if (method == "rkmk4_orth") run(Rkmk4(spins), orthogonal(body));
+    if (method == "sy4_def") run(Series4(spins), body);
+    if (method == "sy4_ocor") run(Series4(spins, isotropy::Energy{}), orthogonal(body));
+    if (method == "implicit_def") run(ImplicitLieEuler(spins), body);
+    if (method == "midpoint") run(ImplicitMidpoint(spins), body);
     ASSERT_EQ(samples.size(), entry.at("n").get<std::size_t>() + 1) << method;
 
     auto const expected = decimals(entry.at("m_n")), found = numbers_of(spins);

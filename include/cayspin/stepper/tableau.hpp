@@ -19,11 +19,27 @@ struct Heun {
   static constexpr double c[2] = {0, 1};
 };
 
+struct Kutta3 {
+  static constexpr int stages = 3, order = 3;
+  static constexpr double a[3][3] = {{0, 0, 0}, {0.5, 0, 0}, {-1, 2, 0}};
+  static constexpr double b[3] = {1. / 6, 2. / 3, 1. / 6};
+  static constexpr double c[3] = {0, 0.5, 1};
+};
+
 struct Classical4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0, 0, 1, 0}};
   static constexpr double b[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
   static constexpr double c[4] = {0, 0.5, 0.5, 1};
+};
+
+/// Kutta's 3/8 rule.
+struct ThreeEighths4 {
+  static constexpr int stages = 4, order = 4;
+  static constexpr double a[4][4] = {
+      {0, 0, 0, 0}, {1. / 3, 0, 0, 0}, {-1. / 3, 1, 0, 0}, {1, -1, 1, 0}};
+  static constexpr double b[4] = {1. / 8, 3. / 8, 3. / 8, 1. / 8};
+  static constexpr double c[4] = {0, 1. / 3, 2. / 3, 1};
 };
 
 }  // namespace cayspin::tableau
