@@ -172,6 +172,29 @@ TYPED_TEST(SiteDependent, DampingActsSiteBySite) {
   }
 }
 
+// With sigma from the derivatives of the fields and of the generator.
+TYPED_TEST(SiteDependent, EqualCoefficientsStepAlike) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::cubic(9, 3, 2, 0.8, Boundary::periodic);
+  auto const constant = [&](double number) {
+    return numbers_on<Spins>(lattice, [=](auto) { return number; });
+  };
+  auto const after = [&](auto const& generator) {
+    auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 52));
+    LieEuler<Spins, isotropy::Analytic> stepper(spins);
+    integrate(this->exec, stepper, generator, spins, {0, 0.0625, 4});
+    return numbers_of(spins);
+  };
+  auto const one = after(LandauLifshitz(
+      EffectiveField(Exchange(lattice, 1.375), UniaxialAnisotropy(0.5, {0, 0, 1})), 0.25));
+  auto const each = after(
+      LandauLifshitz(EffectiveField(SiteDependentExchange(constant(1.375)),
+                                    SiteDependentUniaxialAnisotropy(constant(0.5), {0, 0, 1})),
+                     constant(0.25)));
+  for (std::size_t i = 0; i < one.size(); ++i)
+    ASSERT_NEAR(one[i], each[i], 256 * epsilon<typename TypeParam::Real>);
+}
+
 TYPED_TEST(SiteDependent, WhatIsRefused) {
   using Spins = typename TypeParam::Spins;
   double const nan = std::numeric_limits<double>::quiet_NaN();
