@@ -27,8 +27,15 @@ void print_json(Plan const& plan, Precision precision) {
       "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"}}\n",
       stable, plan.times.dt, plan.times.steps, plan.lattice.sites(), bytes_per_site(plan),
       memory.spins, memory.work, memory.field, memory.files, memory.total(),
-      plan.method.evaluations, plan.method.order, plan.frames, plan.file_bytes,
-      io::to_string(plan.method.method), to_string(precision));
+      plan.method.evaluations == 0 ? "null" : fmt::format("{}", plan.method.evaluations),
+      plan.method.order, plan.frames, plan.file_bytes, io::to_string(plan.method.key.method),
+      to_string(precision));
+}
+
+std::string evaluations_text(MethodEntry const& method) {
+  if (method.evaluations == 0) return "as many evaluations as the iteration takes";
+  if (method.evaluations == 1) return "1 evaluation";
+  return fmt::format("{} evaluations", method.evaluations);
 }
 
 std::string stability_text(Plan const& plan) {
@@ -56,17 +63,15 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
     fmt::print("{:<11} {}\n", name, text);
   };
   auto const& memory = plan.memory;
-  print("method", fmt::format("{}, order {}, {} of the field per step",
-                              describe_method(scene.integrator), plan.method.order,
-                              plan.method.evaluations == 1
-                                  ? "1 evaluation"
-                                  : fmt::format("{} evaluations", plan.method.evaluations)));
+  print("method",
+        fmt::format("{}, order {}, {} of the field per step", describe_method(scene.integrator),
+                    plan.method.order, evaluations_text(plan.method)));
   print("time", fmt::format("{} steps of {:.9g}, to t = {:.9g}", plan.times.steps, plan.times.dt,
                             plan.times.at(plan.times.steps)));
   print("stable dt", stability_text(plan));
   print("cost",
         fmt::format(
-            "{} evaluations per step, {:.4g} spin updates in all", plan.method.evaluations,
+            "{} per step, {:.4g} spin updates in all", evaluations_text(plan.method),
             static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites())));
   print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, method {}, fields "
                               "{}; with {} of buffers on the host {}",

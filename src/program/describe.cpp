@@ -92,6 +92,8 @@ std::string describe_method(io::Integrator const& integrator) {
                       io::to_string(integrator.rotation));
   if (integrator.isotropy == io::Isotropy::constant)
     text += fmt::format(", sigma = {:.6g}", integrator.sigma);
+  else if (integrator.isotropy != io::Isotropy::zero)
+    text += fmt::format(", sigma by {}", io::to_string(integrator.isotropy));
   return text;
 }
 

@@ -4,27 +4,40 @@
 #include "simulation.hpp"
 
 #include <cayspin/integrate.hpp>
-#include <cayspin/io/words.hpp>
+#include <cayspin/io/scene.hpp>
 
 #include <span>
+#include <vector>
 
 namespace cayspin::program {
 
 /// The scene's choices within a method.
 struct MethodOptions {
   io::Rotation rotation = io::Rotation::cayley;
-  double sigma = 0;
+  double sigma = 0, cap = 0;  // of isotropies that have one
+};
+
+/// What tells integrators apart that are compiled for themselves. isotropy: zero also stands for a
+/// constant; tangent: the generator of that name; rigid_body: for energy, which has its formulas
+/// there and projects elsewhere, and for series, which are local there.
+struct MethodKey {
+  io::Method method;
+  io::Isotropy isotropy = io::Isotropy::zero;
+  bool tangent = false, rigid_body = false;
+
+  friend bool operator==(MethodKey const&, MethodKey const&) = default;
 };
 
 /// What the program knows about one integrator. A new one is a source file that defines such an
-/// entry, and a line in methods.cpp.
+/// entry, and a line in method_table.cpp.
 struct MethodEntry {
-  io::Method method;
+  MethodKey key;
   int order;
-  int evaluations;  // of the generator, per step
-  int work_fields;  // spin fields of work memory
+  int evaluations;   // of the generator, per step; 0 where it iterates
+  int work_fields;   // spin fields of work memory
+  bool exponential;  // rotations that it may take: Cayley alone, or both
 
-  /// cayspin::largest_stable_step of the method.
+  /// cayspin::largest_stable_step of the method; infinity where no bound is known.
   double (*stable_step)(double field_bound, double damping, bool precession,
                         MethodOptions const& options);
   /// Allocates the stepper and integrates.
@@ -32,16 +45,18 @@ struct MethodEntry {
 };
 
 std::span<MethodEntry const> method_entries();
-MethodEntry const& find_method(io::Method method);
+MethodEntry const& find_method(io::Scene const& scene);
 
-MethodEntry euler_entry();
-MethodEntry rkmk4_entry();
-MethodEntry rkmk4_as_printed_entry();
-MethodEntry classical_euler_entry();
-MethodEntry classical_heun_entry();
-MethodEntry classical_rk4_entry();
-MethodEntry projected_euler_entry();
-MethodEntry projected_heun_entry();
-MethodEntry projected_rk4_entry();
+using MethodEntries = std::vector<MethodEntry>;
+MethodEntries euler_entries();
+MethodEntries corrected_euler_entries();
+MethodEntries heun_entries();
+MethodEntries rkmk4_entries();
+MethodEntries adams_bashforth_entries();
+MethodEntries implicit_entries();
+MethodEntries series4_entries();
+MethodEntries tangent_entries();
+MethodEntries classical_entries();
+MethodEntries projected_entries();
 
 }  // namespace cayspin::program

@@ -5,16 +5,12 @@
 
 namespace cayspin::program {
 
-MethodEntry classical_euler_entry() {
-  return RungeKuttaEntry<BaselineFamily<ClassicalEuler>>::make(io::Method::classical_euler);
-}
-
-MethodEntry classical_heun_entry() {
-  return RungeKuttaEntry<BaselineFamily<ClassicalHeun>>::make(io::Method::classical_heun);
-}
-
-MethodEntry classical_rk4_entry() {
-  return RungeKuttaEntry<BaselineFamily<ClassicalRk4>>::make(io::Method::classical_rk4);
+MethodEntries classical_entries() {
+  using enum io::Method;
+  using enum io::Isotropy;
+  return {Entry<Baseline<ClassicalEuler>::Family>::make({classical_euler}),
+          Entry<Baseline<ClassicalHeun>::Family>::make({classical_heun}),
+          Entry<Baseline<ClassicalRk4>::Family>::make({classical_rk4})};
 }
 
 }  // namespace cayspin::program

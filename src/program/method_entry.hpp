@@ -6,7 +6,9 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/stability.hpp>
-#include <cayspin/stepper/runge_kutta_stage.hpp>
+#include <cayspin/stepper/energy_projection.hpp>
+
+#include <limits>
 
 namespace cayspin::program {
 
@@ -19,19 +21,21 @@ auto with_rotation(io::Rotation rotation, Work const& work) {
   return work(Cayley{});
 }
 
-/// The entry of a Runge-Kutta method. Family names the Stepper for a Spins and a Rotation, says
-/// whether that may be the exponential, and makes one with a sigma.
+/// The entry of an integrator. Family derives from LieFamily and names the Stepper for a Spins and
+/// a Rotation.
 template <class Family>
-struct RungeKuttaEntry {
-  template <class Rotation>
-  using Double = typename Family::template Stepper<
-      SpinField<double, Kokkos::DefaultHostExecutionSpace::memory_space>, Rotation>;
-  using Standard = Double<Cayley>;
+struct Entry {
+  using HostSpins = SpinField<double, Kokkos::DefaultHostExecutionSpace::memory_space>;
+  using Standard = typename Family::template Stepper<HostSpins, Cayley>;
 
   static double stable_step(double field_bound, double damping, bool precession,
                             MethodOptions const& options) {
     return with_rotation<Family>(options.rotation, [&]<class Rotation>(Rotation) {
-      return largest_stable_step<Double<Rotation>>(field_bound, damping, precession, options.sigma);
+      using Linear = typename Family::template Linear<HostSpins, Rotation>;
+      if constexpr (std::is_void_v<Linear>)
+        return std::numeric_limits<double>::infinity();
+      else
+        return largest_stable_step<Linear>(field_bound, damping, precession, options.sigma);
     });
   }
 
@@ -39,8 +43,10 @@ struct RungeKuttaEntry {
     return std::visit([&](auto* simulation) { return advance_one(*simulation, options); }, any);
   }
 
-  static MethodEntry make(io::Method method) {
-    return {method,      Standard::order, Standard::evaluations, Standard::work_fields,
+  static MethodEntry make(MethodKey const& key) {
+    int work_fields = Standard::work_fields;
+    if constexpr (requires { Family::work_fields; }) work_fields = Family::work_fields;
+    return {key,         Standard::order, Standard::evaluations, work_fields, Family::exponential,
             stable_step, advance};
   }
 
@@ -49,31 +55,73 @@ struct RungeKuttaEntry {
   static Summary advance_one(Simulation& simulation, MethodOptions const& options) {
     return with_rotation<Family>(options.rotation, [&]<class Rotation>(Rotation) {
       using Stepper = typename Family::template Stepper<typename Simulation::Spins, Rotation>;
-      Stepper stepper = Family::template make<Stepper>(simulation.spins, options.sigma);
-      return integrate(simulation.exec, stepper, simulation.generator, simulation.spins,
-                       simulation.times, *simulation.observer);
+      Stepper stepper = Family::template make<Stepper>(simulation.spins, options);
+      return integrate(simulation.exec, stepper, Family::generator(simulation.generator),
+                       simulation.spins, simulation.times, *simulation.observer);
     });
   }
 };
 
-/// Methods on the Lie group, with a sigma.
+/// What methods on the Lie group have in common: both rotations, a constant sigma, any generator, a
+/// bound on dt by the stepper's own stages.
+template <template <class, class> class StepperOf>
 struct LieFamily {
   static constexpr bool exponential = true;
+  template <class Spins, class Rotation>
+  using Stepper = StepperOf<Spins, Rotation>;
+  template <class Spins, class Rotation>
+  using Linear = StepperOf<Spins, Rotation>;
+
   template <class Stepper, class Spins>
-  static Stepper make(Spins const& like, double sigma) {
-    return Stepper(like, SceneIsotropy{sigma});
+  static Stepper make(Spins const& like, MethodOptions const& options) {
+    return Stepper(like, SceneIsotropy{options.sigma});
   }
+  template <class Generator>
+  static Generator const& generator(Generator const& of_the_scene) {
+    return of_the_scene;
+  }
+};
+
+/// Steppers that are made from the spins alone, in Cayley coordinates or in none.
+template <template <class, class> class StepperOf>
+struct PlainFamily : LieFamily<StepperOf> {
+  static constexpr bool exponential = false;
+  template <class Stepper, class Spins>
+  static Stepper make(Spins const& like, MethodOptions const&) {
+    return Stepper(like);
+  }
+};
+
+/// No bound on dt is known.
+struct Unbounded {
+  template <class, class>
+  using Linear = void;
 };
 
 /// The baselines.
 template <template <class> class Method>
-struct BaselineFamily {
-  static constexpr bool exponential = false;
+struct Baseline {
   template <class Spins, class>
   using Stepper = Method<Spins>;
+  using Family = PlainFamily<Stepper>;
+};
+
+/// The generator of rigid bodies in place of the scene's.
+struct OfRigidBodies {
+  template <class Generator>
+  static auto generator(Generator const& of_the_scene) {
+    return of_the_scene.rigid_bodies();
+  }
+};
+
+/// A method whose steps are projected to the energy; the bound on dt is the method's own.
+template <template <class, class> class StepperOf>
+struct ProjectedToEnergy : PlainFamily<StepperOf> {
+  template <class Spins, class Rotation>
+  using Stepper = EnergyProjection<StepperOf<Spins, Rotation>>;
   template <class Stepper, class Spins>
-  static Stepper make(Spins const& like, double) {
-    return Stepper(like);
+  static Stepper make(Spins const& like, MethodOptions const&) {
+    return Stepper(like, StepperOf<Spins, Cayley>(like));
   }
 };
 

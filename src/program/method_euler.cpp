@@ -6,13 +6,16 @@
 namespace cayspin::program {
 namespace {
 
-struct Family : LieFamily {
-  template <class Spins, class Rotation>
-  using Stepper = LieEuler<Spins, SceneIsotropy, Rotation>;
-};
+template <class Spins, class Rotation>
+using Euler = LieEuler<Spins, SceneIsotropy, Rotation>;
 
 }  // namespace
 
-MethodEntry euler_entry() { return RungeKuttaEntry<Family>::make(io::Method::euler); }
+MethodEntries euler_entries() {
+  using enum io::Method;
+  using enum io::Isotropy;
+  return {Entry<LieFamily<Euler>>::make({euler}),
+          Entry<ProjectedToEnergy<Euler>>::make({euler, energy})};
+}
 
 }  // namespace cayspin::program

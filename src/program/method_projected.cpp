@@ -5,16 +5,12 @@
 
 namespace cayspin::program {
 
-MethodEntry projected_euler_entry() {
-  return RungeKuttaEntry<BaselineFamily<ProjectedEuler>>::make(io::Method::projected_euler);
-}
-
-MethodEntry projected_heun_entry() {
-  return RungeKuttaEntry<BaselineFamily<ProjectedHeun>>::make(io::Method::projected_heun);
-}
-
-MethodEntry projected_rk4_entry() {
-  return RungeKuttaEntry<BaselineFamily<ProjectedRk4>>::make(io::Method::projected_rk4);
+MethodEntries projected_entries() {
+  using enum io::Method;
+  using enum io::Isotropy;
+  return {Entry<Baseline<ProjectedEuler>::Family>::make({projected_euler}),
+          Entry<Baseline<ProjectedHeun>::Family>::make({projected_heun}),
+          Entry<Baseline<ProjectedRk4>::Family>::make({projected_rk4})};
 }
 
 }  // namespace cayspin::program

@@ -6,13 +6,29 @@
 namespace cayspin::program {
 namespace {
 
-struct Family : LieFamily {
-  template <class Spins, class Rotation>
-  using Stepper = Rkmk4<Spins, SceneIsotropy, Rotation>;
+template <class Spins, class Rotation>
+using Standard = Rkmk4<Spins, SceneIsotropy, Rotation>;
+template <class Spins, class Rotation>
+using Body = Rkmk4<Spins, isotropy::Energy, Rotation>;
+template <class Spins, class Rotation>
+using Printed = Rkmk4AsPrinted<Spins, SceneIsotropy>;
+
+struct Bodies : PlainFamily<Body>, OfRigidBodies {
+  using OfRigidBodies::generator;
+};
+struct AsPrinted : LieFamily<Printed> {
+  static constexpr bool exponential = false;
 };
 
 }  // namespace
 
-MethodEntry rkmk4_entry() { return RungeKuttaEntry<Family>::make(io::Method::rkmk4); }
+MethodEntries rkmk4_entries() {
+  using enum io::Method;
+  using enum io::Isotropy;
+  return {Entry<LieFamily<Standard>>::make({rkmk4}),
+          Entry<Bodies>::make({rkmk4, energy, false, true}),
+          Entry<ProjectedToEnergy<Standard>>::make({rkmk4, energy}),
+          Entry<AsPrinted>::make({rkmk4_as_printed})};
+}
 
 }  // namespace cayspin::program

@@ -2,30 +2,35 @@
 #include "method.hpp"
 
 #include <algorithm>
-#include <array>
+#include <stdexcept>
 
 namespace cayspin::program {
 
 std::span<MethodEntry const> method_entries() {
-  static auto const entries = std::to_array<MethodEntry>({
-      euler_entry(),
-      rkmk4_entry(),
-      rkmk4_as_printed_entry(),
-      classical_euler_entry(),
-      classical_heun_entry(),
-      classical_rk4_entry(),
-      projected_euler_entry(),
-      projected_heun_entry(),
-      projected_rk4_entry(),
-  });
+  static auto const entries = [] {
+    MethodEntries all;
+    for (auto const& some :
+         {euler_entries(), corrected_euler_entries(), heun_entries(), rkmk4_entries(),
+          adams_bashforth_entries(), implicit_entries(), series4_entries(), tangent_entries(),
+          classical_entries(), projected_entries()})
+      all.insert(all.end(), some.begin(), some.end());
+    return all;
+  }();
   return entries;
 }
 
-MethodEntry const& find_method(io::Method method) {
+MethodEntry const& find_method(io::Scene const& scene) {
+  auto const& integrator = scene.integrator;
+  MethodKey key{integrator.method, integrator.isotropy,
+                integrator.generator == io::Generator::tangent, false};
+  if (key.isotropy == io::Isotropy::constant) key.isotropy = io::Isotropy::zero;
+  if (key.isotropy == io::Isotropy::energy || io::is_series(key.method))
+    key.rigid_body = scene.system.kind == io::SystemKind::rigid_body;
   auto const entries = method_entries();
-  auto const found = std::ranges::find(entries, method, &MethodEntry::method);
+  auto const found = std::ranges::find(entries, key, &MethodEntry::key);
   if (found == entries.end())
-    throw std::logic_error("no entry for the method " + std::string(io::to_string(method)));
+    throw std::logic_error("no entry for the method " +
+                           std::string(io::to_string(integrator.method)));
   return *found;
 }
 

@@ -7,34 +7,45 @@
 namespace cayspin::program {
 namespace {
 
-template <class Word>
-std::string list(bool cayley_only = false) {
-  std::string names;
-  for (auto const& word : io::words<Word>()) {
-    if (!word.built || (cayley_only && word.name != "cayley")) continue;
-    if (!names.empty()) names += ", ";
-    names += word.name;
-  }
-  return names;
+std::string isotropies(MethodKey const& key) {
+  if (io::is_baseline(key.method)) return "-";
+  if (key.isotropy == io::Isotropy::energy)
+    return key.rigid_body ? "energy (rigid_body)" : "energy (llg)";
+  bool const constant = key.isotropy == io::Isotropy::zero && !key.tangent &&
+                        io::takes_isotropy(key.method, io::Isotropy::constant, io::SystemKind::llg);
+  return std::string(io::to_string(key.isotropy)) + (constant ? ", constant" : "");
+}
+
+std::string generators(MethodKey const& key) {
+  if (io::is_baseline(key.method)) return "-";
+  return key.tangent ? "tangent" : "default, orthogonal";
+}
+
+std::string rotations(MethodEntry const& entry) {
+  if (io::is_baseline(entry.key.method)) return "-";
+  return entry.exponential ? "cayley, exponential" : "cayley";
 }
 
 }  // namespace
 
 int methods() {
-  fmt::print("{:<17} {:>5} {:>11} {:>11}  {}\n", "method", "order", "evaluations", "work fields",
-             "rotations");
+  constexpr auto line = "{:<17} {:<27} {:<20} {:<20} {:>5} {:>11} {:>11}\n";
+  fmt::print(line, "method", "isotropy", "generator", "rotation", "order", "evaluations",
+             "work fields");
   for (auto const& entry : method_entries()) {
-    bool const baseline = io::is_baseline(entry.method);
-    fmt::print("{:<17} {:>5} {:>11} {:>11}  {}\n", io::to_string(entry.method), entry.order,
-               entry.evaluations, entry.work_fields,
-               baseline ? "-" : list<io::Rotation>(io::needs_cayley(entry.method)));
+    if (io::is_series(entry.key.method) && entry.key.rigid_body &&
+        entry.key.isotropy == io::Isotropy::zero)
+      continue;  // the same words as on spins
+    fmt::print(line, io::to_string(entry.key.method), isotropies(entry.key), generators(entry.key),
+               rotations(entry), entry.order,
+               entry.evaluations == 0 ? "iterates" : fmt::format("{}", entry.evaluations),
+               entry.work_fields);
   }
   fmt::print(
       "\nevaluations: of the generator, per step. work fields: memory beside the state, in fields\n"
-      "of three numbers per site. Methods with a rotation take\n"
-      "  generator  {}\n  isotropy   {}; constant as {{ constant = SIGMA }}\n"
-      "The others are the baselines, which take neither generator, isotropy nor rotation.\n",
-      list<io::Generator>(), list<io::Isotropy>());
+      "of three numbers per site; at most so many. A constant isotropy is typed\n"
+      "{{ constant = SIGMA }}. The baselines, at the end, take neither generator, isotropy nor\n"
+      "rotation.\n");
   return Status::done;
 }
 

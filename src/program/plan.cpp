@@ -108,8 +108,8 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   auto const lattice = make_lattice(scene);
   auto const& integrator = scene.integrator;
   Plan plan{lattice,
-            find_method(integrator.method),
-            {integrator.rotation, integrator.sigma},
+            find_method(scene),
+            {integrator.rotation, integrator.sigma, integrator.isotropy_cap},
             {0, integrator.dt, integrator.steps},
             std::numeric_limits<double>::infinity(),
             {},

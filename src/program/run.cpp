@@ -7,6 +7,7 @@
 #include "text.hpp"
 #include "watch.hpp"
 
+#include <cayspin/stepper/implicit.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
@@ -80,6 +81,8 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options) 
     FlushDenormals const while_stepping;
     summary = plan.method.advance(&job, plan.options);
   } catch (NumbersFailed const& error) {
+    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
+  } catch (NotConverged const& error) {
     throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
   }
   auto const frames = watch.file() ? watch.file()->frames() : 0;

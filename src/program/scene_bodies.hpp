@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/spin_field.hpp>
 
@@ -12,20 +13,52 @@ namespace cayspin::program {
 
 /// Rigid bodies that share an inertia, or have one each: asked at run time.
 template <class Many>
-struct SceneBodiesNow {
+struct SceneBodiesNow : cayspin::detail::BodyGenerator<SceneBodiesNow<Many>> {
   RigidBody one;
   Many many;
   bool each;
 
+  SceneBodiesNow(RigidBody const& one, Many const& many, bool each)
+      : one(one), many(many), each(each) {}
+
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::SymmetricMatrix<Value> inverse_inertia(
+      Site const& site) const {
+    return each ? many.template inverse_inertia<Value>(site)
+                : one.template inverse_inertia<Value>(site);
+  }
+};
+
+/// The same as a generator by itself, for the methods that know rigid bodies; with or without its
+/// part along the spin, asked at run time.
+template <class Bodies>
+struct RigidBodiesNow {
+  static constexpr bool is_local = true;
+  Bodies bodies;
+  bool orthogonal;
+
+  KOKKOS_FORCEINLINE_FUNCTION bool is_orthogonal() const { return orthogonal; }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
-    return each ? many(stencil) : one(stencil);
+    auto const a = bodies(stencil);
+    return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
       Stencil const& stencil) const {
-    return each ? many.energy_density(stencil) : one.energy_density(stencil);
+    return bodies(stencil);
+  }
+  template <int K, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
+                                                     Vec3<Value> const* source) const {
+    return orthogonal ? cayspin::detail::orthogonal_derivative<K>(bodies, m, source)
+                      : bodies.template derivative<K>(m, source);
+  }
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION auto inverse_inertia(Site const& site) const {
+    return bodies.template inverse_inertia<Value>(site);
   }
 };
 
@@ -54,13 +87,24 @@ class SceneBodies {
 
   template <class Exec>
   SceneBodiesNow<Many> prepare(Exec const& exec, Spins const& spins, double t) const {
-    return SceneBodiesNow<Many>{one_, each_ ? each_->prepare(exec, spins, t) : Many{},
-                                each_.has_value()};
+    return SceneBodiesNow<Many>(one_, each_ ? each_->prepare(exec, spins, t) : Many{},
+                                each_.has_value());
   }
 
  private:
   RigidBody one_;
   std::optional<Ensemble> each_;
+};
+
+template <class Spins>
+struct RigidBodies {
+  SceneBodies<Spins> bodies;
+  bool orthogonal;
+
+  template <class Exec>
+  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+    return RigidBodiesNow{bodies.prepare(exec, spins, t), orthogonal};
+  }
 };
 
 }  // namespace cayspin::program

@@ -77,12 +77,25 @@ struct SceneFieldNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
+    auto const h = linear_field(stencil);
+    return has_applied ? h + zeeman.field(stencil) : h;
+  }
+
+  /// The linear part alone: without the applied field.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
     auto h = exchange.field(stencil);
     if (quadratic.present()) h = h + quadratic.field(stencil.center());
-    if (has_applied) h = h + zeeman.field(stencil);
     if (has_layers) h = h + layers.field(stencil);
     if (has_stored) h = h + stored.field(stencil);
     return h;
+  }
+  /// dH/dt along rates, of what prepare_rate returns.
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&,
+                                                     Stencil const& rates) const {
+    return field(rates);
   }
 
   template <class Stencil>
@@ -133,6 +146,16 @@ class SceneField {
     if (now.has_applied) now.zeeman = {applied_(t)};
     if (layers_) now.layers = layers_->prepare(exec, spins, t);
     if (stored_) now.stored = stored_->prepare(exec, spins, t);
+    return now;
+  }
+
+  /// The same for rates of spins, the applied field's own rate in place of the field.
+  template <class Exec>
+  SceneFieldNow<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
+                                   double dt) const {
+    auto now = prepare(exec, rates, t);
+    now.has_applied = applied_.depends_on_time();
+    if (now.has_applied) now.zeeman = {cayspin::detail::time_derivative(applied_, t, dt)};
     return now;
   }
 

@@ -34,10 +34,21 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare(Exec const& exec, Spins 
   return {llg_.prepare(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_, orthogonal_};
 }
 
-#define CAYSPIN_INSTANTIATE(Space, Real)                           \
-  template SceneGeneratorNow<SpinField<Real, Space::memory_space>> \
-  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare(   \
-      Space const&, SpinField<Real, Space::memory_space> const&, double) const;
+template <class Spins>
+template <class Exec>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
+                                                             double t, double dt) const {
+  return {llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t), is_llg_,
+          orthogonal_};
+}
+
+#define CAYSPIN_INSTANTIATE(Space, Real)                                        \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare(                \
+      Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_rate(           \
+      Space const&, SpinField<Real, Space::memory_space> const&, double, double) const;
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
 #undef CAYSPIN_INSTANTIATE

@@ -5,6 +5,7 @@
 #include "scene_field.hpp"
 
 #include <cayspin/generator/landau_lifshitz.hpp>
+#include <cayspin/generator/orthogonal.hpp>
 
 namespace cayspin::program {
 
@@ -21,9 +22,31 @@ struct SceneGeneratorNow {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Vec3<Value> const a = is_llg ? llg(stencil) : bodies(stencil);
-    if (!orthogonal) return a;
-    return multiply_add(Value(Value(0) - dot(stencil.center(), a)), stencil.center(), a);
+    return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
   }
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
+    return is_llg ? llg.rate(m, rates) : bodies.rate(m, rates);
+  }
+
+  // Series of rigid bodies have a generator of their own.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
+      Stencil const& stencil) const {
+    return llg.series_source(stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
+      Stencil const& stencil) const {
+    return llg.linear_series_source(stencil);
+  }
+  template <int K, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
+                                                     Vec3<Value> const* source) const {
+    return orthogonal ? cayspin::detail::orthogonal_derivative<K>(llg, m, source)
+                      : llg.template derivative<K>(m, source);
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
@@ -47,12 +70,27 @@ class SceneGenerator {
   SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                  std::vector<SymmetricTensor> const& inverse_inertia);
 
+  bool is_llg() const { return is_llg_; }
+  RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
+  bool is_orthogonal() const { return orthogonal_; }
+  bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }
+
+  /// With the part along the spin.
+  SceneGenerator bare() const {
+    SceneGenerator other = *this;
+    other.orthogonal_ = false;
+    return other;
+  }
+
   /// The effective field alone, as the generator of a precession about it.
   SceneGenerator precession_alone() const;
 
   /// Compiled in scene_generator.cpp alone, for the spaces of space.hpp.
   template <class Exec>
   SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
+  template <class Exec>
+  SceneGeneratorNow<Spins> prepare_rate(Exec const& exec, Spins const& rates, double t,
+                                        double dt) const;
 
  private:
   LandauLifshitz<SceneField<Spins>> llg_;

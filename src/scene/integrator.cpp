@@ -52,7 +52,7 @@ void read_isotropy(Item const& item, Scene& scene, Integrator& integrator) {
   constexpr std::string_view accepted = "{ constant = sigma }";
   std::string strings;
   for (auto const& entry : words<Isotropy>()) {
-    if (entry.built && entry.value != Isotropy::constant) {
+    if (entry.value != Isotropy::constant) {
       strings += fmt::format("\"{}\", ", entry.name);
     }
   }
@@ -66,8 +66,9 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   auto const generator = table.find("generator");
   auto const isotropy = table.find("isotropy");
   auto const rotation = table.find("rotation");
+  auto const cap = table.find("isotropy_cap");
   if (is_baseline(integrator.method)) {
-    for (auto const& item : {generator, isotropy, rotation}) {
+    for (auto const& item : {generator, isotropy, rotation, cap}) {
       if (item) item->fail(fmt::format("method \"{}\" does not take it", method), "no such key");
     }
     return;
@@ -75,9 +76,12 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   if (generator) integrator.generator = word<Generator>(*generator);
   if (isotropy) read_isotropy(*isotropy, table.scene(), integrator);
   if (rotation) integrator.rotation = word<Rotation>(*rotation);
-  if (needs_cayley(integrator.method) && integrator.rotation != Rotation::cayley) {
-    rotation->fail(fmt::format("method \"{}\" belongs to Cayley coordinates", method),
-                   "\"cayley\"");
+  if (cap) {
+    if (integrator.isotropy != Isotropy::finite_difference &&
+        integrator.isotropy != Isotropy::finite_difference_backward)
+      cap->fail("belongs to isotropy \"finite_difference\" and \"finite_difference_backward\"",
+                "no such key");
+    integrator.isotropy_cap = positive_number(*cap);
   }
 }
 
@@ -85,10 +89,10 @@ void read_coordinates(Table const& table, Integrator& integrator) {
 
 Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table = root.table("integrator", "a table [integrator]");
-  table.accept_only({"method", "generator", "isotropy", "rotation", "dt", "end", "steps",
-                     "energy_guard", "until_torque"});
+  table.accept_only({"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end",
+                     "steps", "energy_guard", "until_torque"});
   Integrator integrator;
-  integrator.method = word<Method>(table.required("method", built_words<Method>()));
+  integrator.method = word<Method>(table.required("method", all_words<Method>()));
   read_coordinates(table, integrator);
   integrator.dt = positive_number(table.required("dt", "a number > 0"));
   integrator.steps = read_steps(table, integrator.dt);

@@ -49,7 +49,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
   }
   if (auto const item = table.find("boundary")) {
     auto const read = [](Item const& entry) { return word<BoundaryKind>(entry); };
-    read_per_axis(*item, extents.size(), lattice.boundary, read, built_words<BoundaryKind>());
+    read_per_axis(*item, extents.size(), lattice.boundary, read, all_words<BoundaryKind>());
   }
   return lattice;
 }

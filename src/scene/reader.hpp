@@ -71,26 +71,22 @@ Triple direction(Item const& item);
 std::filesystem::path input_file(Table const& table, std::string_view name);
 
 template <class Value>
-std::string built_words() {
+std::string all_words() {
   std::string list;
-  for (auto const& word : words<Value>()) {
-    if (word.built) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word.name);
-  }
+  for (auto const& word : words<Value>())
+    list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word.name);
   return list;
 }
 
-/// A word of the tables in words.hpp that this version has built.
+/// A word of the tables in words.hpp.
 template <class Value>
 Value word(Item const& item, std::string_view accepted = {}) {
-  auto const built = accepted.empty() ? built_words<Value>() : std::string(accepted);
-  auto const name = string(item, built);
-  if (auto const* const found = find_word<Value>(name)) {
-    if (found->built) return found->value;
-    item.fail(fmt::format("\"{}\" is not built in this version; available: {}", name, built));
-  }
+  auto const all = accepted.empty() ? all_words<Value>() : std::string(accepted);
+  auto const name = string(item, all);
+  if (auto const* const found = find_word<Value>(name)) return found->value;
   std::vector<std::string_view> known;
   for (auto const& word : words<Value>()) known.push_back(word.name);
-  item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), built);
+  item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), all);
 }
 
 }  // namespace cayspin::io::detail

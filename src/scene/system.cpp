@@ -47,7 +47,7 @@ System read_system(Table const& root) {
   auto const table = root.table("system", "a table [system]");
   table.accept_only({"kind", "damping", "precession", "inertia"});
   System system;
-  system.kind = word<SystemKind>(table.required("kind", built_words<SystemKind>()));
+  system.kind = word<SystemKind>(table.required("kind", all_words<SystemKind>()));
   if (system.kind == SystemKind::llg) {
     refuse(table, "inertia", "llg");
     system.damping = non_negative_number(table.required("damping", "a number >= 0"));

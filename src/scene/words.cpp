@@ -6,8 +6,6 @@
 namespace cayspin::io {
 namespace {
 
-constexpr bool later = false;
-
 constexpr auto system_kinds = std::to_array<Word<SystemKind>>({
     {"llg", SystemKind::llg},
     {"rigid_body", SystemKind::rigid_body},
@@ -20,14 +18,14 @@ constexpr auto boundary_kinds = std::to_array<Word<BoundaryKind>>({
 
 constexpr auto methods = std::to_array<Word<Method>>({
     {"euler", Method::euler},
-    {"implicit_euler", Method::implicit_euler, later},
-    {"heun", Method::heun, later},
+    {"implicit_euler", Method::implicit_euler},
+    {"heun", Method::heun},
     {"rkmk4", Method::rkmk4},
     {"rkmk4_as_printed", Method::rkmk4_as_printed},
-    {"series4", Method::series4, later},
-    {"series4_paper", Method::series4_paper, later},
-    {"ab2", Method::ab2, later},
-    {"implicit_midpoint", Method::implicit_midpoint, later},
+    {"series4", Method::series4},
+    {"series4_paper", Method::series4_paper},
+    {"ab2", Method::ab2},
+    {"implicit_midpoint", Method::implicit_midpoint},
     {"classical_euler", Method::classical_euler},
     {"classical_heun", Method::classical_heun},
     {"classical_rk4", Method::classical_rk4},
@@ -39,16 +37,16 @@ constexpr auto methods = std::to_array<Word<Method>>({
 constexpr auto generators = std::to_array<Word<Generator>>({
     {"default", Generator::standard},
     {"orthogonal", Generator::orthogonal},
-    {"tangent", Generator::tangent, later},
+    {"tangent", Generator::tangent},
 });
 
 constexpr auto isotropies = std::to_array<Word<Isotropy>>({
     {"zero", Isotropy::zero},
     {"constant", Isotropy::constant},
-    {"analytic", Isotropy::analytic, later},
-    {"finite_difference", Isotropy::finite_difference, later},
-    {"finite_difference_backward", Isotropy::finite_difference_backward, later},
-    {"energy", Isotropy::energy, later},
+    {"analytic", Isotropy::analytic},
+    {"finite_difference", Isotropy::finite_difference},
+    {"finite_difference_backward", Isotropy::finite_difference_backward},
+    {"energy", Isotropy::energy},
 });
 
 constexpr auto rotations = std::to_array<Word<Rotation>>({
@@ -93,9 +91,38 @@ bool is_baseline(Method method) {
          method == Method::projected_heun || method == Method::projected_rk4;
 }
 
+bool is_series(Method method) {
+  return method == Method::series4 || method == Method::series4_paper;
+}
+
 bool needs_cayley(Method method) {
-  return method == Method::rkmk4_as_printed || method == Method::series4 ||
-         method == Method::series4_paper;
+  return method == Method::rkmk4_as_printed || method == Method::implicit_midpoint ||
+         is_series(method);
+}
+
+bool takes_tangent(Method method) {
+  return method == Method::euler || method == Method::heun || method == Method::rkmk4;
+}
+
+bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind) {
+  bool const runge_kutta = takes_tangent(method);
+  switch (isotropy) {
+    case Isotropy::zero:
+      return !is_baseline(method);
+    case Isotropy::constant:
+      return runge_kutta || method == Method::rkmk4_as_printed || method == Method::ab2 ||
+             method == Method::implicit_euler;
+    case Isotropy::analytic:
+      return method == Method::euler || method == Method::implicit_euler;
+    case Isotropy::finite_difference:
+    case Isotropy::finite_difference_backward:
+      return method == Method::euler;
+    case Isotropy::energy:
+      return kind == SystemKind::llg
+                 ? runge_kutta
+                 : is_series(method) || method == Method::heun || method == Method::rkmk4;
+  }
+  return false;
 }
 
 }  // namespace cayspin::io

@@ -11,6 +11,13 @@ namespace cayspin {
 
 namespace detail {
 
+/// A - (m.A) m
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
+                                                        Vec3<Value> const& m) {
+  return multiply_add(Value(Value(0) - dot(m, a)), m, a);
+}
+
 /// d^K/dt^K of A - (m.A) m.
 template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& generator,
@@ -56,10 +63,7 @@ class Orthogonal {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    Vec3<Value> const a = detail::evaluate(generator_, stencil);
-    Value const along = Value(0) - dot(stencil.center(), a);
-    return multiply_add(along, stencil.center(), a);
+    return detail::orthogonal_part(detail::evaluate(generator_, stencil), stencil.center());
   }
 
   /// The generator whose part along the spin was removed.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -89,6 +90,7 @@ struct Integrator {
   Generator generator = Generator::standard;
   Isotropy isotropy = Isotropy::zero;
   double sigma = 0;  ///< isotropy constant: what is added to A along m
+  double isotropy_cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
   Rotation rotation = Rotation::cayley;
   double dt = 0;
   std::int64_t steps = 0;  ///< computed from `end` when the scene gives that

@@ -42,12 +42,11 @@ enum class Isotropy {
 };
 enum class Rotation { cayley, exponential };
 
-/// One word of a scene. `built` is false for a word that a later version will compute.
+/// One word of a scene.
 template <class Value>
 struct Word {
   std::string_view name;
   Value value;
-  bool built = true;
 };
 
 /// All words of a kind, in the order of the documentation. Specialised for every enum above.
@@ -89,7 +88,16 @@ bool is_baseline(Method method);
 /// True for classical_*, which let |m| drift.
 bool is_classical(Method method);
 
+/// True for series4 and series4_paper.
+bool is_series(Method method);
+
 /// True for the methods that are formulated in Cayley coordinates only.
 bool needs_cayley(Method method);
+
+/// True for the methods that run in the stereographic chart too.
+bool takes_tangent(Method method);
+
+/// Is there such a sigma for the method on such a system?
+bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind);
 
 }  // namespace cayspin::io

@@ -3,18 +3,12 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/sigma.hpp>
+#include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/stencil.hpp>
 
 // Steps that are made of the generator at two points, one of them kept in a field: finite
 // differences of A_o, and the two-step method of Adams and Bashforth.
 namespace cayspin::detail {
-
-/// A - (m.A) m
-template <class Value>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
-                                                        Vec3<Value> const& m) {
-  return multiply_add(Value(Value(0) - dot(m, a)), m, a);
-}
 
 /// What a rule is told at a site: the spin m that A belongs to, the spin m0 of the step's begin, A
 /// there with its isotropy added, the kept vector, and dt. It returns the step's coordinates F and
