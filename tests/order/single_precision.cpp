@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Orders in single precision, over step sizes whose errors stand above round-off; and in double
 // under a field that depends on time.
+#include "../support/evaluate.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
@@ -45,14 +46,64 @@ TEST(TimeDependentField, KeepsTheOrder) {
   std::vector<int> const ladder{40, 80, 160, 320};
   expect_slope<LieEuler<Spins>>("geometric Euler", 1, ladder);
   expect_slope<Rkmk4<Spins>>("rkmk4", 4, ladder);
+  expect_slope<Rkmk<Spins, tableau::Kutta3>>("rkmk of Kutta's tableau", 3, ladder);
+  expect_slope<Rkmk<Spins, tableau::ThreeEighths4>>("rkmk of the 3/8 tableau", 4, ladder);
+  expect_slope<LieHeun<Spins>>("geometric Heun", 2, ladder);
+  expect_slope<LieAdamsBashforth2<Spins>>("ab2", 2, ladder);
+  expect_slope<ImplicitLieEuler<Spins>>("implicit Euler", 1, ladder);
+  expect_slope<ImplicitMidpoint<Spins>>("implicit midpoint", 2, ladder);
+  expect_slope<StereographicRungeKutta<Spins, tableau::Classical4>>("stereographic", 4, ladder);
   expect_slope<Rkmk4AsPrinted<Spins>>("rkmk4 as printed", 3, ladder);
   expect_slope<ClassicalHeun<Spins>>("classical Heun", 2, ladder);
   expect_slope<ProjectedRk4<Spins>>("projected rk4", 4, ladder);
 }
 
+/// The largest local error along A_o of one step, over dt^2: what a right sigma makes vanish.
+template <class Isotropy>
+double local_error_along_generator(double dt) {
+  constexpr double t = 0.4;
+  Space const exec;
+  auto const from = run<Rkmk4<Spins>>(generator(), start<Spins>(), t / 1000, 1000);
+  auto fine = copy_of(from), coarse = copy_of(from), previous = copy_of(from);
+  Rkmk4 exact(fine);
+  for (int n = 0; n < 50; ++n) exact.step(exec, generator(), fine, t + n * dt / 50, dt / 50);
+  LieEuler<Spins, Isotropy> stepper(coarse);
+  if constexpr (requires { stepper.remember(exec, generator(), coarse, t, dt); }) {
+    for (int n = 0; n < 50; ++n) exact.step(exec, generator(), previous, t - n * dt / 50, -dt / 50);
+    stepper.remember(exec, generator(), previous, t - dt, dt);
+  }
+  stepper.step(exec, generator(), coarse, t, dt);
+  auto const w = evaluated(exec, orthogonal(generator()), from, t);
+  double largest = 0;
+  for (std::int64_t site = 0; site < 8; ++site) {
+    Vector const error = spin(coarse, site) - spin(fine, site);
+    largest = std::max(largest, std::abs(dot(error, at(w, site))) / length(at(w, site)));
+  }
+  return largest / (dt * dt);
+}
+
+TEST(TimeDependentField, SigmaTakesTheLocalErrorAlongTheGenerator) {
+  auto const order = [](auto error) {
+    std::vector<double> const dts{0.02, 0.01, 0.005, 0.0025};
+    std::vector<double> errors;
+    for (double const dt : dts) errors.push_back(error(dt));
+    return fitted_order(dts, errors);
+  };
+  using namespace isotropy;
+  expect_order("sigma 0", order(local_error_along_generator<Zero>), 0, tolerance);
+  expect_order("analytic", order(local_error_along_generator<Analytic>), 1, tolerance);
+  expect_order("connection", order(local_error_along_generator<Connection>), 1, tolerance);
+  expect_order("forward", order(local_error_along_generator<FiniteDifference>), 1, tolerance);
+  expect_order("backward", order(local_error_along_generator<FiniteDifferenceBackward>), 1,
+               tolerance);
+}
+
 TEST(SinglePrecision, OrderAboveRoundOff) {
   expect_slope<LieEuler<SingleSpins>>("geometric Euler", 1, {40, 80, 160, 320});
   expect_slope<ProjectedHeun<SingleSpins>>("projected Heun", 2, {40, 80, 160});
+  expect_slope<LieHeun<SingleSpins>>("geometric Heun", 2, {40, 80, 160});
+  expect_slope<LieAdamsBashforth2<SingleSpins>>("ab2", 2, {40, 80, 160});
+  expect_slope<ImplicitMidpoint<SingleSpins>>("implicit midpoint", 2, {40, 80, 160});
   expect_slope<Rkmk4<SingleSpins>>("rkmk4", 4, {10, 14, 20});
   expect_slope<ClassicalRk4<SingleSpins>>("classical rk4", 4, {10, 14, 20});
 }

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Orders of the energy of an undamped coupled chain, over T = 10 and step sizes fixed beforehand:
+// not those of a single sphere.
+#include "chain.hpp"
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+using namespace isotropy;
+constexpr double end_time = 10;
+
+Slab const slab = coupled_chain(0);
+
+template <class Stepper, class Generator>
+void expect_energy(char const* what, Generator const& generator, std::vector<int> const& ladder,
+                   double order, double tolerance = 0.15) {
+  std::vector<double> dts, errors;
+  for (int const steps : ladder) {
+    auto spins = chain_start();
+    Stepper stepper(spins);
+    std::vector<Sample> samples;
+    integrate(Space{}, stepper, generator, spins, Times{0, end_time / steps, steps},
+              Record(generator, samples));
+    dts.push_back(end_time / steps);
+    errors.push_back(0);
+    for (auto const& sample : samples)
+      errors.back() =
+          std::max(errors.back(), std::abs(sample.energy.value - samples[0].energy.value));
+  }
+  std::printf("    %-30s errors %.2e .. %.2e\n", what, errors.front(), errors.back());
+  expect_order(what, fitted_order(dts, errors), order, tolerance);
+}
+
+// Steps in all: those of order 4 are near round-off where the others begin to follow their order.
+std::vector<int> const fine{4000, 5657, 8000}, coarse{177, 250, 354, 500, 707};
+
+TEST(ChainEnergyOrder, LieEuler) {
+  expect_energy<LieEuler<Spins>>("sigma 0", slab.natural(), fine, 1);
+  expect_energy<LieEuler<Spins, Analytic>>("analytic", slab.natural(), fine, 2);
+  expect_energy<LieEuler<Spins, FiniteDifference>>("forward", slab.natural(), fine, 2);
+  expect_energy<LieEuler<Spins, FiniteDifferenceBackward>>("backward", slab.natural(), fine, 2);
+}
+
+// On a single sphere both generators of Heun's method have 3.
+TEST(ChainEnergyOrder, OrderTwo) {
+  expect_energy<LieHeun<Spins>>("Heun, default", slab.natural(), fine, 3);
+  expect_energy<LieHeun<Spins>>("Heun, orthogonal", slab.orthogonal(), fine, 2);
+  expect_energy<LieAdamsBashforth2<Spins>>("ab2, default", slab.natural(), fine, 2);
+  expect_energy<LieAdamsBashforth2<Spins>>("ab2, orthogonal", slab.orthogonal(), fine, 2);
+}
+
+// Readings between the orders 4 and 5 of two terms of opposite weight.
+TEST(ChainEnergyOrder, Rkmk4) {
+  expect_energy<Rkmk4<Spins>>("default", slab.natural(), coarse, 4.9, 0.2);
+  expect_energy<Rkmk4<Spins>>("orthogonal", slab.orthogonal(), coarse, 4.2, 0.2);
+}
+
+TEST(ChainEnergyOrder, MidpointConserves) {
+  for (double const dt : {0.01, 0.05, 0.1}) {
+    auto spins = chain_start();
+    double const before = energy(Space{}, slab.natural(), spins).value;
+    ImplicitMidpoint stepper(spins);
+    advance(stepper, slab.natural(), spins, dt, 100);
+    expect_below("drift of 100 steps",
+                 std::abs(energy(Space{}, slab.natural(), spins).value - before), 2e-13);
+  }
+}
+
+}  // namespace
