@@ -27,10 +27,22 @@ struct CheckOptions : SceneOptions {
   bool json = false;
 };
 
+struct ReproduceOptions {
+  std::vector<std::string> parts = {"all"};
+  std::int64_t bodies = 1000;
+  std::uint64_t seed = 1;
+  std::optional<std::filesystem::path> output;  // folder
+  int threads = 1;
+};
+
+/// What `reproduce` may be asked for.
+std::vector<std::string> reproducible_parts();
+
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);
 int check(CheckOptions const& options);
 int methods();
 int info(std::filesystem::path const& file);
+int reproduce(ReproduceOptions const& options);
 
 }  // namespace cayspin::program

@@ -45,6 +45,18 @@ void require_command(CLI::App const& app, int argc, char** argv) {
       first.empty() ? std::string("no command") : fmt::format("unknown command {}", first), names));
 }
 
+void add_reproduce_options(CLI::App& command, ReproduceOptions& options) {
+  command.add_option("PART", options.parts, "What to reproduce (default: all)")
+      ->check(CLI::IsMember(reproducible_parts()));
+  command.add_option("--bodies", options.bodies, "Random bodies per table (default: 1000)")
+      ->check(CLI::Range(1, 10'000'000));
+  command.add_option("--seed", options.seed, "Seed of the random bodies (default: 1)");
+  command.add_option("--output", options.output, "Folder for the numbers, as CSV files")
+      ->type_name("DIR");
+  command.add_option("--threads", options.threads, "Threads (default: 1, the systems are small)")
+      ->check(CLI::Range(1, 65536));
+}
+
 int perform(int argc, char** argv) {
   CLI::App app("Lie-group time integration of spin fields", "cayspin");
   app.set_version_flag("--version", CAYSPIN_VERSION_STRING);
@@ -76,6 +88,11 @@ int perform(int argc, char** argv) {
   auto* info_command = app.add_subcommand("info", "Say what a trajectory file holds");
   info_command->add_option("FILE", info_file, "Trajectory file (HDF5)")->required();
 
+  ReproduceOptions reproduce_options;
+  auto* reproduce_command = app.add_subcommand(
+      "reproduce", "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's");
+  add_reproduce_options(*reproduce_command, reproduce_options);
+
   require_command(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -88,6 +105,7 @@ int perform(int argc, char** argv) {
   if (*run_command) return run(run_options);
   if (*check_command) return check(check_options);
   if (*methods_command) return methods();
+  if (*reproduce_command) return reproduce(reproduce_options);
   return info(info_file);
 }
 
