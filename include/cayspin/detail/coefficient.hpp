@@ -57,8 +57,8 @@ struct SignsOfSites {
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* counts) const {
     Value const number = site.load(numbers), zero(0.0), one(1.0);
-    Value const infinity(std::numeric_limits<double>::infinity());
-    counts[0] = select<Value>(Kokkos::abs(number) < infinity, zero, one);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    counts[0] = select<Value>(Kokkos::abs(number) < Value(infinity), zero, one);
     counts[1] = select<Value>(number < zero, one, zero);
     counts[2] = select<Value>(zero < number, one, zero);
     counts[3] = select<Value>(number == one, one, zero);

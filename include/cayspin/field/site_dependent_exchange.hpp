@@ -9,6 +9,80 @@
 
 namespace cayspin {
 
+namespace detail {
+
+/// H_n = sum of A_nq (m_q - m_n) / spacing^2, with 1 / spacing^2 of each axis or 0.
+template <class Real>
+struct ExchangeOfSites {
+  SiteArray<Real, 1> constants;
+  double inverse_square[3];
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const own = stencil.site().load(constants);
+    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    if (inverse_square[0] != 0) h = differences<0>(stencil, own, h);
+    if (inverse_square[1] != 0) h = differences<1>(stencil, own, h);
+    if (inverse_square[2] != 0) h = differences<2>(stencil, own, h);
+    return h;
+  }
+
+  /// H is linear in the spins.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    return field(stencil);
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const own = stencil.site().load(constants);
+    Value e(0);
+    if (inverse_square[0] != 0) e = bonds<0>(stencil, own, e);
+    if (inverse_square[1] != 0) e = bonds<1>(stencil, own, e);
+    if (inverse_square[2] != 0) e = bonds<2>(stencil, own, e);
+    return e;
+  }
+
+ private:
+  /// The constant of the bond to a neighbour over the spacing squared, times `factor`; the same
+  /// bits from either end.
+  template <int Axis, int Direction, class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value bond(Site const& site, Value const& own,
+                                         double factor = 1) const {
+    Value const other = site.template neighbor<Axis, Direction>(constants, own);
+    Value const sum = own + other;
+    Value const mean = Value(2) * (own * other) / select<Value>(sum == Value(0), Value(1), sum);
+    return coefficient<Value>(factor * inverse_square[Axis], site) * mean;
+  }
+
+  template <int Axis, class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> differences(Stencil const& stencil, Value const& own,
+                                                      Vec3<Value> const& sum) const {
+    auto const back = stencil.template previous<Axis>() - stencil.center();
+    auto const on = stencil.template next<Axis>() - stencil.center();
+    return multiply_add(bond<Axis, 1>(stencil.site(), own), on,
+                        multiply_add(bond<Axis, 0>(stencil.site(), own), back, sum));
+  }
+
+  // Each site carries half of each of its bonds.
+  template <int Axis, class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value bonds(Stencil const& stencil, Value const& own,
+                                          Value const& sum) const {
+    auto const back = stencil.template previous<Axis>() - stencil.center();
+    auto const on = stencil.template next<Axis>() - stencil.center();
+    return multiply_add(
+        bond<Axis, 1>(stencil.site(), own, 0.25), dot(on, on),
+        multiply_add(bond<Axis, 0>(stencil.site(), own, 0.25), dot(back, back), sum));
+  }
+};
+
+}  // namespace detail
+
 /// Exchange whose constant A differs from site to site. The constant of the bond between sites n
 /// and q is the harmonic mean A_nq = 2 A_n A_q / (A_n + A_q), that of two half cells in series: it
 /// keeps A dm/dx continuous where A jumps, and a site with A = 0 has no bonds.
@@ -16,7 +90,7 @@ namespace cayspin {
 /// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2.
 template <class Real, class MemorySpace>
 class SiteDependentExchange {
-  struct Prepared;
+  using Prepared = detail::ExchangeOfSites<Real>;
 
  public:
   /// Spacings and boundaries are those of the constants' lattice. Throws std::invalid_argument when
@@ -43,75 +117,6 @@ class SiteDependentExchange {
   }
 
  private:
-  struct Prepared {
-    detail::SiteArray<Real, 1> constants;
-    double inverse_square[3];
-
-    template <class Stencil>
-    KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-        Stencil const& stencil) const {
-      using Value = typename Stencil::value_type;
-      Value const own = stencil.site().load(constants);
-      Vec3<Value> h{Value(0), Value(0), Value(0)};
-      if (inverse_square[0] != 0) h = differences<0>(stencil, own, h);
-      if (inverse_square[1] != 0) h = differences<1>(stencil, own, h);
-      if (inverse_square[2] != 0) h = differences<2>(stencil, own, h);
-      return h;
-    }
-
-    /// H is linear in the spins.
-    template <class Stencil>
-    KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-        Stencil const& stencil) const {
-      return field(stencil);
-    }
-
-    template <class Stencil>
-    KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-        Stencil const& stencil) const {
-      using Value = typename Stencil::value_type;
-      Value const own = stencil.site().load(constants);
-      Value e(0);
-      if (inverse_square[0] != 0) e = bonds<0>(stencil, own, e);
-      if (inverse_square[1] != 0) e = bonds<1>(stencil, own, e);
-      if (inverse_square[2] != 0) e = bonds<2>(stencil, own, e);
-      return e;
-    }
-
-   private:
-    /// The constant of the bond to a neighbour over the spacing squared, times `factor`; the same
-    /// bits from either end.
-    template <int Axis, int Direction, class Site, class Value>
-    KOKKOS_FORCEINLINE_FUNCTION Value bond(Site const& site, Value const& own,
-                                           double factor = 1) const {
-      Value const other = site.template neighbor<Axis, Direction>(constants, own);
-      Value const sum = own + other;
-      Value const mean =
-          Value(2) * (own * other) / detail::select<Value>(sum == Value(0), Value(1), sum);
-      return detail::coefficient<Value>(factor * inverse_square[Axis], site) * mean;
-    }
-
-    template <int Axis, class Stencil, class Value>
-    KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> differences(Stencil const& stencil, Value const& own,
-                                                        Vec3<Value> const& sum) const {
-      auto const back = stencil.template previous<Axis>() - stencil.center();
-      auto const on = stencil.template next<Axis>() - stencil.center();
-      return multiply_add(bond<Axis, 1>(stencil.site(), own), on,
-                          multiply_add(bond<Axis, 0>(stencil.site(), own), back, sum));
-    }
-
-    // Each site carries half of each of its bonds.
-    template <int Axis, class Stencil, class Value>
-    KOKKOS_FORCEINLINE_FUNCTION Value bonds(Stencil const& stencil, Value const& own,
-                                            Value const& sum) const {
-      auto const back = stencil.template previous<Axis>() - stencil.center();
-      auto const on = stencil.template next<Axis>() - stencil.center();
-      return detail::multiply_add(
-          bond<Axis, 1>(stencil.site(), own, 0.25), dot(on, on),
-          detail::multiply_add(bond<Axis, 0>(stencil.site(), own, 0.25), dot(back, back), sum));
-    }
-  };
-
   ScalarField<Real, MemorySpace> constants_;
 };
 

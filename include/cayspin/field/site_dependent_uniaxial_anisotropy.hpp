@@ -37,9 +37,9 @@ struct NotUnitOfSites {
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* count) const {
     auto const e = site.load(vectors);
-    Value const tolerance(8.0 * std::numeric_limits<Real>::epsilon());
-    count[0] = select<Value>(Kokkos::abs(Value(dot(e, e) - Value(1.0))) < tolerance, Value(0.0),
-                             Value(1.0));
+    constexpr double tolerance = 8.0 * std::numeric_limits<Real>::epsilon();
+    count[0] = select<Value>(Kokkos::abs(Value(dot(e, e) - Value(1.0))) < Value(tolerance),
+                             Value(0.0), Value(1.0));
   }
 };
 

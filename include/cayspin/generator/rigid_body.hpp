@@ -115,6 +115,23 @@ class RigidBody : public detail::BodyGenerator<RigidBody> {
   double xx_, yy_, zz_, xy_, xz_, yz_;
 };
 
+namespace detail {
+
+template <class Real, int Components>
+struct BodiesOfSites : BodyGenerator<BodiesOfSites<Real, Components>> {
+  SiteArray<Real, Components> tensors;
+
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION SymmetricMatrix<Value> inverse_inertia(Site const& site) const {
+    auto const entry = [&](int component) {
+      return component < Components ? site.load(tensors, component) : Value(0);
+    };
+    return {entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
+  }
+};
+
+}  // namespace detail
+
 /// Free rigid bodies, each with an inertia of its own. Six numbers per body: I^-1, ordered as
 /// SymmetricTensor. Three: I^-1 is diagonal, in the body's principal axes.
 template <class Real, class MemorySpace, int Components = 6>
@@ -122,7 +139,7 @@ class RigidBodyEnsemble {
   static_assert(
       Components == 6 || Components == 3,
       "An inverse inertia is a symmetric tensor of 6 components, or the 3 of a diagonal.");
-  struct Prepared;
+  using Prepared = detail::BodiesOfSites<Real, Components>;
 
  public:
   using Tensors = SiteField<Real, Components, MemorySpace>;
@@ -139,19 +156,6 @@ class RigidBodyEnsemble {
   }
 
  private:
-  struct Prepared : detail::BodyGenerator<Prepared> {
-    detail::SiteArray<Real, Components> tensors;
-
-    template <class Value, class Site>
-    KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> inverse_inertia(
-        Site const& site) const {
-      auto const entry = [&](int component) {
-        return component < Components ? site.load(tensors, component) : Value(0);
-      };
-      return {entry(0), entry(1), entry(2), entry(3), entry(4), entry(5)};
-    }
-  };
-
   Tensors tensors_;
 };
 
