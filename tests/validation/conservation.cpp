@@ -63,6 +63,17 @@ TEST(Conservation, GeometricEuler) {
                                  {".17", "9.9e-3", "4.8e-3", "2.4e-3"});
 }
 
+TEST(Conservation, BackwardDifferenceSigma) {
+  expect_drifts<LieEuler<Spins, isotropy::FiniteDifferenceBackward>>(
+      "geometric Euler, backward difference", natural, {"8.23e-3", "9.76e-4", "2.63e-4", "5.27e-5"},
+      {"1.072e-2", "2.53e-3", "1.147e-3", "5.54e-4"});
+}
+
+TEST(Conservation, GeometricHeun) {
+  expect_drifts<LieHeun<Spins>>("geometric Heun", natural, {"2.7e-3", "3.2e-4", "3.4e-5", "4.0e-6"},
+                                {"1.2e-4", "2.7e-5", "6.2e-6", "1.5e-6"});
+}
+
 TEST(Conservation, Rkmk4) {
   expect_drifts<Rkmk4<Spins>>("rkmk4, default", natural, {"8.3e-6", "2.2e-7", "3.9e-9", "5.9e-11"},
                               {"3.2e-8", "1.7e-9", "9.5e-11", "5.7e-12"});
@@ -97,6 +108,7 @@ void expect_unit_length(std::string const& method, double damping) {
 TEST(Conservation, LengthAfterAMillionSteps) {
   for (double const damping : {0.0, 0.05}) {
     expect_unit_length<LieEuler<Spins>>("geometric Euler", damping);
+    expect_unit_length<LieHeun<Spins>>("geometric Heun", damping);
     expect_unit_length<Rkmk4<Spins>>("rkmk4", damping);
   }
 }

@@ -48,6 +48,8 @@ TEST(Dissipation, EnergyFallsInEveryStep) {
     Slab const slab = block(damping);
     expect_no_rise<LieEuler<Spins>>("geometric Euler, default", slab.natural(), slab);
     expect_no_rise<LieEuler<Spins>>("geometric Euler, orthogonal", slab.orthogonal(), slab);
+    expect_no_rise<LieHeun<Spins>>("geometric Heun, default", slab.natural(), slab);
+    expect_no_rise<LieHeun<Spins>>("geometric Heun, orthogonal", slab.orthogonal(), slab);
     expect_no_rise<Rkmk4<Spins>>("rkmk4, default", slab.natural(), slab);
     expect_no_rise<Rkmk4<Spins>>("rkmk4, orthogonal", slab.orthogonal(), slab);
   }

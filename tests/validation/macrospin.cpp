@@ -65,6 +65,15 @@ TEST(Macrospin, GeometricEuler) {
                 {"2.262e-1", "1.144e-1", "5.703e-2", "2.840e-2"});
 }
 
+TEST(Macrospin, GeometricHeun) {
+  expect_errors("geometric Heun, default",
+                errors<LieHeun<Spins>>(constant_field().natural(), start, end),
+                {"9.70e-3", "2.43e-3", "6.07e-4", "1.52e-4"});
+  expect_errors("geometric Heun, orthogonal",
+                errors<LieHeun<Spins>>(constant_field().orthogonal(), start, end),
+                {"9.3e-4", "3.5e-4", "1.03e-4", "2.75e-5"});
+}
+
 TEST(Macrospin, Rkmk4) {
   auto const natural = errors<Rkmk4<Spins>>(constant_field().natural(), start, end);
   expect_errors("rkmk4, default", natural, {"1.009e-6", "6.204e-8", "3.841e-9", "2.388e-10"});
@@ -96,6 +105,9 @@ TEST(Macrospin, RotatingField) {
   EXPECT_LT(length(exact - Vector{.41326265, -.87850247, -.23968185}), 1e-8);
   expect_errors("rotating field, rkmk4", errors<Rkmk4<Spins>>(generator, {0.6, 0, 0.8}, exact),
                 {"1.956e-6", "1.235e-7", "7.741e-9", "4.841e-10"});
+  expect_errors("rotating field, geometric Heun",
+                errors<LieHeun<Spins>>(generator, {0.6, 0, 0.8}, exact),
+                {"1.857e-2", "4.654e-3", "1.164e-3", "2.911e-4"});
 }
 
 }  // namespace

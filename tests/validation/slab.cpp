@@ -41,6 +41,21 @@ double distance(Path const& a, Path const& b) {
   return largest;
 }
 
+/// The backward difference with sigma of the sign that the paper prints.
+struct PrintedDifference : detail::BackwardDifference {
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(detail::TwoPoints<Value>& p) const {
+    Vec3<Value> const f = detail::BackwardDifference::operator()(p);
+    return Value(Value(2.0) * p.dt) * p.kept - f;
+  }
+};
+struct PrintedMethod : detail::BackwardDifferenceMethod {
+  PrintedDifference next(double ratio) const { return {{cap, ratio}}; }
+};
+struct EulerAsPrinted : TwoPoint<Spins, PrintedMethod, isotropy::Zero, Cayley> {
+  explicit EulerAsPrinted(Spins const& like) : TwoPoint("LieEulerAsPrinted", like, {}) {}
+};
+
 class SwitchingSlab : public ::testing::Test {
  protected:
   SwitchingSlab(Slab const& slab, double end_time)
@@ -111,6 +126,13 @@ TEST_F(Precessing, GeometricEuler) {
   expect<Shifted>("default, sigma 10, dt 1e-2", natural, 1e-2, ".462", "", ten);
 }
 
+TEST_F(Precessing, BackwardDifferenceSigma) {
+  using Backward = LieEuler<Spins, isotropy::FiniteDifferenceBackward>;
+  auto const natural = slab_.natural();
+  expect<Backward>("backward difference, dt 1e-2", natural, 1e-2, ".0061", "");
+  expect<EulerAsPrinted>("of the printed sign, dt 1e-2", natural, 1e-2, ".66", "");
+}
+
 TEST_F(Overdamped, Euler) {
   auto const a = slab_.natural();
   expect<ClassicalEuler<Spins>>("Euler, dt 1e-2", a, 1e-2, ".0142", "1.9e-2");
@@ -121,6 +143,8 @@ TEST_F(Overdamped, GeometricEuler) {
   auto const a = slab_.natural();
   expect<LieEuler<Spins>>("default, dt 1e-2", a, 1e-2, ".0074", "");
   expect<LieEuler<Spins>>("orthogonal, dt 1e-2", slab_.orthogonal(), 1e-2, ".0074", "");
+  expect<LieEuler<Spins, isotropy::FiniteDifferenceBackward>>("backward difference, dt 1e-2", a,
+                                                              1e-2, ".0074", "");
 }
 
 TEST_F(OverdampedInWeakField, EulerAndGeometricEuler) {
