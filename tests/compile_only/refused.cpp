@@ -83,5 +83,11 @@ inline void refused() {
   SpinField<long double, Kokkos::HostSpace> const wide("wide", Lattice::chain(3));
 #elif CAYSPIN_TEST_MISTAKE == 13
   copy(exec, Kokkos::View<double*, Kokkos::HostSpace>("flat", 9), spins);
+#elif CAYSPIN_TEST_MISTAKE == 14
+  with(SiteDependentExchange(ScalarField<float, Kokkos::HostSpace>("float", Lattice::chain(3))));
+#elif CAYSPIN_TEST_MISTAKE == 15
+  ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
+  LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
+  FieldWithVacancies const field(EffectiveField{layers}, occupation);
 #endif
 }
