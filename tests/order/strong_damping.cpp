@@ -29,6 +29,7 @@ double order(Slab const& slab, double end_time, double sigma) {
   return fitted_order(dts, errors);
 }
 
+using Heun = LieHeun<Spins, Constant>;
 using Corrected = Rkmk4<Spins, Constant>;
 using Printed3 = Rkmk4AsPrinted<Spins, Constant>;
 
@@ -36,6 +37,7 @@ TEST(StrongDamping, WeakField) {
   Slab const slab = unit_slab({0.05, 0.05, 0}, 10, true, along_x);
   for (double const sigma : {-10.0, 0.0, 10.0}) {
     std::string const name = ", sigma " + std::to_string(static_cast<int>(sigma));
+    expect_order("geometric Heun" + name, order<Heun>(slab, 1, sigma), 2, 0.05);
     expect_order("rkmk4" + name, order<Corrected>(slab, 1, sigma), 4, 0.05);
     expect_order("rkmk4 as printed" + name, order<Printed3>(slab, 1, sigma), 3, 0.05);
   }
@@ -46,6 +48,7 @@ TEST(StrongDamping, StrongField) {
   Slab const slab = unit_slab({5, 0, 0}, 10, true, along_x);
   for (double const sigma : {-40.0, -20.0, 0.0, 20.0, 40.0}) {
     std::string const name = ", sigma " + std::to_string(static_cast<int>(sigma));
+    expect_order("geometric Heun" + name, order<Heun>(slab, 0.1, sigma), 2.11, 0.29);
     expect_order("rkmk4" + name, order<Corrected>(slab, 0.1, sigma), 4.145, 0.115);
     expect_order("rkmk4 as printed" + name, order<Printed3>(slab, 0.1, sigma), 3.16, 0.6);
   }

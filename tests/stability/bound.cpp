@@ -99,6 +99,7 @@ TEST(StepLimit, Table) {
     expect("Euler", scaled_limit<ClassicalEuler<Spins>>(row.damping), row.euler);
     expect("geometric Euler", scaled_limit<LieEuler<Spins>>(row.damping), row.euler);
     expect("classical Heun", scaled_limit<ClassicalHeun<Spins>>(row.damping), row.heun);
+    expect("geometric Heun", scaled_limit<LieHeun<Spins>>(row.damping), row.heun);
     expect("classical rk4", scaled_limit<ClassicalRk4<Spins>>(row.damping), row.rk4);
     expect("rkmk4", scaled_limit<Rkmk4<Spins>>(row.damping), row.rk4);
 
@@ -116,6 +117,8 @@ TEST(StepLimit, GeometryAndRenormalisingDoNotMatter) {
     EXPECT_NEAR(scaled_limit<Rkmk4<Spins>>(row.damping), rk4, 1e-9);
     EXPECT_NEAR(scaled_limit<Exponential4>(row.damping), rk4, 1e-9);
     EXPECT_NEAR(scaled_limit<ProjectedRk4<Spins>>(row.damping), rk4, 1e-9);
+    using Stereographic4 = StereographicRungeKutta<Spins, tableau::Classical4>;
+    EXPECT_NEAR(scaled_limit<Stereographic4>(row.damping), rk4, 1e-9);
   }
 }
 
@@ -193,8 +196,9 @@ void expect_first_growth_at_the_limit(std::string const& method) {
     }
 }
 
-TEST(StepLimit, ConstantSigmaOfFourthOrderMethods) {
+TEST(StepLimit, ConstantSigmaOfHigherOrders) {
   using isotropy::Constant;
+  expect_first_growth_at_the_limit<LieHeun<Spins, Constant>>("Heun");
   expect_first_growth_at_the_limit<Rkmk4<Spins, Constant>>("rkmk4");
   expect_first_growth_at_the_limit<Rkmk4<Spins, Constant, Exponential>>("rkmk4, exponential");
 }
