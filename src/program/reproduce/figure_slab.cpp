@@ -9,7 +9,7 @@
 namespace cayspin::program::reproduction {
 namespace {
 
-constexpr int looks = 400;
+constexpr double between_looks = 0.05;
 
 struct Curve {
   std::string_view name;
@@ -27,6 +27,7 @@ double largest_norm_defect(SlabPath const& path) {
 
 void figure_slab(Context const& context, Slab const& slab, std::string_view label) {
   auto const [x, y, z] = slab.applied;
+  auto const looks = static_cast<int>(std::lround(slab.end / between_looks));
   fmt::print("\n  {}: slab of 100 spins, applied ({:g}, {:g}, {:g}), {}damping {:g}, [0, {:g}]\n",
              label, x, y, z, slab.precession ? "" : "overdamped, ", slab.damping, slab.end);
   auto const reference = run_slab(slab, rkmk4_def, 0.0025, looks);
