@@ -13,12 +13,15 @@
 #include <vector>
 
 /// Runs the registered benchmarks interleaved and prints the median of one counter per case,
-/// with the ratio to a yardstick of the same run: above 1 is faster than the yardstick.
-/// Cases are named PRECISION/NAME/SIZE.
+/// with the ratio to a yardstick of the same run: of speeds, above 1 where faster than the
+/// yardstick, or of costs, above 1 where dearer. Cases are named PRECISION/NAME/SIZE.
 class MedianTable : public benchmark::ConsoleReporter {
  public:
-  MedianTable(std::string counter, std::vector<std::pair<std::string, std::string>> yardsticks)
-      : counter_(std::move(counter)), yardsticks_(std::move(yardsticks)) {}
+  enum class Ratio { speed, cost };
+
+  MedianTable(std::string counter, std::vector<std::pair<std::string, std::string>> yardsticks,
+              Ratio ratio = Ratio::speed)
+      : counter_(std::move(counter)), yardsticks_(std::move(yardsticks)), ratio_(ratio) {}
 
   int run(int argc, char** argv) {
     // Defaults in front, so that the command line wins.
@@ -60,10 +63,10 @@ class MedianTable : public benchmark::ConsoleReporter {
   }
 
   void print() const {
-    std::printf("%-32s %14s %10s %10s %8s\n", "median over repetitions", counter_.c_str(), "lowest",
+    std::printf("%-38s %14s %10s %10s %8s\n", "median over repetitions", counter_.c_str(), "lowest",
                 "highest", "ratio");
     for (auto const& [name, values] : values_) {
-      std::printf("%-32s %14.3f %10.3f %10.3f", name.c_str(), median(values),
+      std::printf("%-38s %14.3f %10.3f %10.3f", name.c_str(), median(values),
                   *std::min_element(values.begin(), values.end()),
                   *std::max_element(values.begin(), values.end()));
       for (auto const& [method, yardstick] : yardsticks_) {
@@ -72,8 +75,9 @@ class MedianTable : public benchmark::ConsoleReporter {
         std::string other = name;
         other.replace(at + 1, method.size(), yardstick);
         auto const found = values_.find(other);
-        if (found != values_.end())
-          std::printf(" %8.2f  of %s", median(found->second) / median(values), yardstick.c_str());
+        if (found == values_.end()) continue;
+        double const speed = median(found->second) / median(values);
+        std::printf(" %8.2f  of %s", ratio_ == Ratio::speed ? speed : 1 / speed, yardstick.c_str());
       }
       std::printf("\n");
     }
@@ -81,5 +85,6 @@ class MedianTable : public benchmark::ConsoleReporter {
 
   std::string counter_;
   std::vector<std::pair<std::string, std::string>> yardsticks_;
+  Ratio ratio_;
   std::map<std::string, std::vector<double>> values_;
 };

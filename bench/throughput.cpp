@@ -5,34 +5,18 @@
 //   bench_throughput --benchmark_filter=.. any of Google Benchmark's options
 #include "hand_written.hpp"
 #include "median_table.hpp"
+#include "random_spins.hpp"
 
 #include <cayspin/cayspin.hpp>
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 namespace {
 
 constexpr double exchange = 1, anisotropy = 0.5, applied = 0.3, damping = 0.1, dt = 0.02;
-
-std::vector<double> random_spins(std::int64_t sites) {
-  std::vector<double> spins(static_cast<std::size_t>(sites) * 3);
-  std::uint64_t state = 1;
-  auto const uniform = [&state] {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return static_cast<double>(state >> 11) * 0x1p-53;
-  };
-  for (std::size_t i = 0; i < spins.size(); i += 3) {
-    double const z = 2 * uniform() - 1, phi = 6.283185307179586 * uniform();
-    double const r = std::sqrt(1 - z * z);
-    spins[i] = r * std::cos(phi), spins[i + 1] = r * std::sin(phi), spins[i + 2] = z;
-  }
-  return spins;
-}
 
 void report(benchmark::State& state, std::int64_t sites, int evaluations) {
   auto const done = static_cast<double>(state.iterations()) * static_cast<double>(sites);
@@ -96,6 +80,7 @@ void register_cases(std::string const& precision) {
   add("hand-written Heun", run_hand_written<hand_written::Heun, Real, 2>);
   add("hand-written RK4", run_hand_written<hand_written::RungeKutta4, Real, 4>);
   add("LieEuler", run_cayspin<cayspin::LieEuler<Spins>, Real>);
+  add("LieHeun", run_cayspin<cayspin::LieHeun<Spins>, Real>);
   add("Rkmk4", run_cayspin<cayspin::Rkmk4<Spins>, Real>);
   add("ProjectedHeun", run_cayspin<cayspin::ProjectedHeun<Spins>, Real>);
   add("ProjectedRk4", run_cayspin<cayspin::ProjectedRk4<Spins>, Real>);
@@ -108,6 +93,7 @@ int main(int argc, char** argv) {
   register_cases<double>("f64");
   register_cases<float>("f32");
   MedianTable table("ns/evaluation", {{"LieEuler", "hand-written Heun"},
+                                      {"LieHeun", "hand-written Heun"},
                                       {"ProjectedHeun", "hand-written Heun"},
                                       {"Rkmk4", "hand-written RK4"},
                                       {"ProjectedRk4", "hand-written RK4"}});

@@ -106,9 +106,8 @@ class LayerAveragedSlabDemag {
     constexpr std::int64_t lanes = detail::lanes_of<Value>;
     std::int64_t const tasks = axis_ == 0 ? (shape_[0] + lanes - 1) / lanes : shape_[axis_];
     auto const array = spins.array();
-    Kokkos::parallel_for(
-        "cayspin::LayerAveragedSlabDemag",
-        Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, tasks),
+    detail::for_each_task(
+        exec, "cayspin::LayerAveragedSlabDemag", tasks, spins.sites(),
         detail::AverageLayers<Value, Real>{array.data + axis_ * array.stride, spins.layout(), axis_,
                                            averages_.data()});
     return {averages_.data(), axis_, strength_};

@@ -73,6 +73,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
 
  public:
   using Spins = typename Stepper::spins_type;
+  using stepper_type = Stepper;
   using typename Base::Real;
   static constexpr int order = Stepper::order;
   static constexpr int evaluations = Stepper::evaluations + 1;  // energies not counted
