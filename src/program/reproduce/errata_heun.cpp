@@ -63,7 +63,8 @@ void row_pair(Comparison& comparison, std::vector<Body> const& bodies, std::stri
   auto const printed = energy_error(factor, power);
   comparison.row(fmt::format("energy error over [0, {:g}], dt = {:g}{}", end, coarse_dt, name),
                  median_of(bodies, printed(coarse_dt)), right.error);
-  comparison.row("... its order", median_order(bodies, printed), right.order);
+  comparison.row(fmt::format("energy order, dt {:g} to {:g}{}", coarse_dt, fine_dt, name),
+                 median_order(bodies, printed), right.order);
 }
 
 }  // namespace
@@ -76,7 +77,7 @@ void erratum_power_of_dt(Comparison& comparison) {
   row_pair(comparison, bodies, "", -1, 2, library(bodies, heun_dcor));
   auto const plain = library(bodies, heun_def);
   comparison.row("energy error without any correction", not_a_number, plain.error);
-  comparison.row("... its order", not_a_number, plain.order);
+  comparison.row("energy order without any correction", not_a_number, plain.order);
 }
 
 void erratum_heun_correction(Comparison& comparison) {

@@ -145,7 +145,7 @@ void erratum_sigma(Comparison& comparison) {
   for (auto const& [name, form] : variants) {
     comparison.row(fmt::format("energy error over [0, {:g}], dt = {:g}: {}", end, coarse_dt, name),
                    median_of(bodies, energy_error(form)(coarse_dt)), quantile(coarse, 0.5));
-    comparison.row(fmt::format("... its order, dt {:g} to {:g}", coarse_dt, fine_dt),
+    comparison.row(fmt::format("energy order, dt {:g} to {:g}: {}", coarse_dt, fine_dt, name),
                    median_order(bodies, energy_error(form)), order);
   }
   auto const twice = [&](Body const& body) {

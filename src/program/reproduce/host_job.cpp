@@ -2,20 +2,23 @@
 #include "host_job.hpp"
 
 #include "../denormals.hpp"
-#include "../plan.hpp"
+#include "../method.hpp"
 
 namespace cayspin::program::reproduction {
 
 HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
                       std::vector<SymmetricTensor> const& inverse_inertia, HostObserver& observer) {
-  auto const plan = make_plan(scene, Precision::double_precision);
-  HostSpins const spins("spins", plan.lattice);
+  auto const lattice = Lattice::chain(scene.lattice.shape[0]);
+  auto const& integrator = scene.integrator;
+  HostSpins const spins("spins", lattice);
   copy_from_host(starts, spins);
-  using Job = Simulation<double, HostSpace>;
-  Job job{HostSpace(), spins, SceneGenerator<HostSpins>(scene, plan.lattice, inverse_inertia),
-          plan.times, &observer};
+  Simulation<double, HostSpace> job{HostSpace(), spins,
+                                    SceneGenerator<HostSpins>(scene, lattice, inverse_inertia),
+                                    Times{0, integrator.dt, integrator.steps}, &observer};
+  // No plan of the run is made: its search for the stable dt would take longer than the run.
   FlushDenormals const while_stepping;
-  plan.method.advance(&job, plan.options);
+  find_method(scene).advance(&job,
+                             {integrator.rotation, integrator.sigma, integrator.isotropy_cap});
   return job.spins;
 }
 
