@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Every choice a scene has between method, generator, isotropy and rotation, on spins and on rigid
+// bodies: it runs at its order, or it is refused in one line.
+#include "program_test.hpp"
+
+#include <cayspin/io/words.hpp>
+
+#include <cmath>
+
+namespace cayspin::program::test {
+namespace {
+
+struct Choice {
+  io::Method method;
+  io::Generator generator;
+  io::Isotropy isotropy;
+  io::Rotation rotation;
+
+  Arguments arguments() const {
+    auto const isotropy_text = isotropy == io::Isotropy::constant
+                                   ? "{constant=0.7}"
+                                   : "'" + std::string(to_string(isotropy)) + "'";
+    return {"--set", "integrator.method='" + std::string(to_string(method)) + "'",
+            "--set", "integrator.generator='" + std::string(to_string(generator)) + "'",
+            "--set", "integrator.isotropy=" + isotropy_text,
+            "--set", "integrator.rotation='" + std::string(to_string(rotation)) + "'"};
+  }
+
+  bool has_meaning(io::SystemKind kind) const {
+    bool const needs_cayley = io::needs_cayley(method) || isotropy == io::Isotropy::energy ||
+                              generator == io::Generator::tangent;
+    if (needs_cayley && rotation != io::Rotation::cayley) return false;
+    if (generator == io::Generator::tangent)
+      return io::takes_tangent(method) && isotropy == io::Isotropy::zero;
+    return io::takes_isotropy(method, isotropy, kind);
+  }
+
+  double order() const {
+    switch (method) {
+      case io::Method::euler:
+      case io::Method::implicit_euler:
+        return 1;
+      case io::Method::heun:
+      case io::Method::ab2:
+      case io::Method::implicit_midpoint:
+        return 2;
+      case io::Method::rkmk4_as_printed:
+        return 3;
+      default:
+        return 4;
+    }
+  }
+};
+
+class AllMethods : public ProgramTest {
+ protected:
+  std::vector<double> end(std::string const& scene, Arguments arguments, char const* dt) const {
+    arguments.insert(arguments.end(), {"--set", std::string("integrator.dt=") + dt, "--overwrite",
+                                       "--set", "integrator.energy_guard=false"});
+    Arguments all{"run", write("scene.toml", scene), "--quiet", "--output", in_folder("out.h5")};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    auto const outcome = start(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return last_spins("out.h5");
+  }
+
+  static double distance(std::vector<double> const& a, std::vector<double> const& b) {
+    double largest = a.size() == b.size() ? 0 : INFINITY;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+  }
+
+  // Calls work with each choice; counts those that have a meaning.
+  template <class Work>
+  static int for_each_choice(io::SystemKind kind, Work const& work) {
+    int count = 0;
+    for (auto const& method : io::words<io::Method>())
+      for (auto const& generator : io::words<io::Generator>())
+        for (auto const& isotropy : io::words<io::Isotropy>())
+          for (auto const& rotation : io::words<io::Rotation>()) {
+            if (io::is_baseline(method.value)) continue;
+            Choice const choice{method.value, generator.value, isotropy.value, rotation.value};
+            if (choice.has_meaning(kind)) ++count;
+            work(choice);
+          }
+    return count;
+  }
+
+  // `floor`: below it errors are round-off.
+  void expect_orders(std::string const& scene, io::SystemKind kind, int choices, double floor,
+                     double energy_tolerance) {
+    auto const reference = end(scene, {}, "0.00125");
+    auto const checked = for_each_choice(kind, [&](Choice const& choice) {
+      if (!choice.has_meaning(kind)) return;
+      auto const name = testing::PrintToString(choice.arguments());
+      auto const coarse = distance(end(scene, choice.arguments(), "0.02"), reference);
+      auto const fine = distance(end(scene, choice.arguments(), "0.01"), reference);
+      EXPECT_GT(fine, 0) << name;
+      if (fine > floor)
+        EXPECT_NEAR(std::log2(coarse / fine), choice.order(), 0.4) << name;
+      else
+        EXPECT_EQ(choice.order(), 4) << name;
+      if (choice.isotropy != io::Isotropy::energy) return;
+      auto const energies = read_dataset("out.h5", "/energy").values;
+      EXPECT_NEAR(energies.back(), energies.front(), energy_tolerance) << name;
+    });
+    EXPECT_EQ(checked, choices);
+  }
+};
+
+// Conservative, so that sigma by energy has a meaning; with a field of a layer's average.
+std::string spins_scene() {
+  return R"toml([system]
+kind = "llg"
+damping = 0.0
+[lattice]
+shape = [7, 5]
+[field]
+exchange = 0.3
+anisotropy = { constant = 0.6, axis = [0, 0.6, 0.8] }
+applied = [0.3, 0.1, 0.4]
+slab_demag = { normal = [1, 0, 0], average = "layer" }
+[initial]
+expression = ["0.3+0.2*cos(pi*x)", "0.5+0.1*cos(2*pi*y)", "0.8-x*y"]
+[integrator]
+method = "rkmk4"
+dt = 0.02
+end = 1.0
+)toml";
+}
+
+std::string bodies_scene() {
+  return R"toml([system]
+kind = "rigid_body"
+inertia = [[0.5, 0.1, 0.0], [0.1, 0.3, -0.05], [0.0, -0.05, 0.2]]
+[lattice]
+shape = [5]
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "rkmk4"
+dt = 0.02
+end = 1.0
+)toml";
+}
+
+TEST_F(AllMethods, OnSpinsHaveTheirOrder) {
+  expect_orders(spins_scene(), io::SystemKind::llg, 75, 1e-12, 1e-9);
+}
+
+TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
+  expect_orders(bodies_scene(), io::SystemKind::rigid_body, 77, 1e-12, 2e-5);
+}
+
+TEST_F(AllMethods, WithoutMeaningAreRefusedInOneLine) {
+  auto const scene = write("scene.toml", bodies_scene());
+  int refused = 0;
+  for_each_choice(io::SystemKind::rigid_body, [&](Choice const& choice) {
+    // One generator for the many that fail alike.
+    if (choice.has_meaning(io::SystemKind::rigid_body) ||
+        choice.generator == io::Generator::orthogonal)
+      return;
+    Arguments arguments{"check", scene};
+    auto const more = choice.arguments();
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto const outcome = start(arguments);
+    EXPECT_EQ(outcome.status, 2) << testing::PrintToString(more);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << testing::PrintToString(more);
+    ++refused;
+  });
+  EXPECT_GT(refused, 100);
+}
+
+// With a field in time sigma by the derivative needs dH/dt: without it the energy's rate is wrong
+// to first order, seen in how far the two ways to the same sigma are apart.
+TEST_F(AllMethods, AnalyticSigmaSeesAFieldInTime) {
+  Arguments const changes{"--set", "field.applied=['0.7*cos(3*t)','0.7*sin(3*t)','0.4']", "--set",
+                          "integrator.method='euler'", "--set"};
+  auto const with = [&](std::string const& isotropy, char const* dt) {
+    auto arguments = changes;
+    arguments.push_back("integrator.isotropy='" + isotropy + "'");
+    return end(spins_scene(), arguments, dt);
+  };
+  double const coarse = distance(with("analytic", "0.01"), with("finite_difference", "0.01"));
+  double const fine = distance(with("analytic", "0.005"), with("finite_difference", "0.005"));
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.25);
+}
+
+TEST_F(AllMethods, AnImplicitStepThatIsNotSolvedEndsTheRun) {
+  auto const scene = write("scene.toml", spins_scene());
+  auto const outcome = start({"run", scene, "--quiet", "--output", in_folder("out.h5"), "--set",
+                              "integrator={method='implicit_midpoint',dt=1e7,steps=3}", "--set",
+                              "field.exchange=1e4", "--set", "lattice.shape=[200]", "--set",
+                              "field.slab_demag={normal=[1,0,0]}"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "is not solved"));
+  EXPECT_TRUE(contains(outcome.errors, "the last good frame is 0"));
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Words that are right each by itself and have no meaning together.
+#include "scene_file.hpp"
+
+#include <cmath>
+
+namespace cayspin::io::test {
+namespace {
+
+struct Combination {
+  char const* name;
+  std::vector<std::string> overrides;
+  char const* key;       ///< what the message begins with, after the place
+  char const* contains;  ///< what is wrong or accepted
+};
+
+void PrintTo(Combination const& wrong, std::ostream* stream) { *stream << wrong.name; }
+
+void expect_refused(std::string_view scene, Combination const& wrong) {
+  Folder const folder;
+  auto const message = refusal(folder.write(scene), wrong.overrides);
+  ASSERT_TRUE(message) << "the scene was accepted";
+  EXPECT_NE(message->find(std::string(": ") + wrong.key + ": "), std::string::npos) << *message;
+  EXPECT_NE(message->find(wrong.contains), std::string::npos) << *message;
+  EXPECT_NE(message->find("; accepted: "), std::string::npos) << *message;
+  EXPECT_EQ(message->find('\n'), std::string::npos) << *message;
+}
+
+class WrongCombination : public testing::TestWithParam<Combination> {};
+TEST_P(WrongCombination, IsRefusedInOneLine) { expect_refused(llg_scene, GetParam()); }
+
+class WrongBodyCombination : public testing::TestWithParam<Combination> {};
+TEST_P(WrongBodyCombination, IsRefusedInOneLine) { expect_refused(body_scene, GetParam()); }
+
+auto const name = [](auto const& info) { return std::string(info.param.name); };
+
+INSTANTIATE_TEST_SUITE_P(
+    Llg, WrongCombination,
+    testing::Values(
+        Combination{"analytic_with_rkmk4",
+                    {"integrator.isotropy='analytic'"},
+                    "integrator.isotropy",
+                    "accepted: \"zero\", { constant = sigma }, \"energy\""},
+        Combination{
+            "difference_with_implicit",
+            {"integrator.method='implicit_euler'", "integrator.isotropy='finite_difference'"},
+            "integrator.isotropy",
+            "accepted: \"zero\", { constant = sigma }, \"analytic\""},
+        Combination{"constant_with_midpoint",
+                    {"integrator.method='implicit_midpoint'", "integrator.isotropy={constant=1}"},
+                    "integrator.isotropy",
+                    "accepted: \"zero\""},
+        Combination{"constant_with_series",
+                    {"integrator.method='series4'", "integrator.isotropy={constant=1}"},
+                    "integrator.isotropy",
+                    "accepted: \"zero\""},
+        Combination{"energy_with_ab2",
+                    {"integrator.method='ab2'", "integrator.isotropy='energy'"},
+                    "integrator.isotropy",
+                    "accepted: \"zero\", { constant = sigma }"},
+        Combination{"energy_with_damping",
+                    {"integrator.isotropy='energy'"},
+                    "integrator.isotropy",
+                    "damping = 0"},
+        Combination{
+            "energy_overdamped",
+            {"integrator.isotropy='energy'", "system.damping=0.0", "system.precession=false"},
+            "integrator.isotropy",
+            "conserves its energy"},
+        Combination{"energy_with_time",
+                    {"integrator.isotropy='energy'", "system.damping=0.0"},
+                    "integrator.isotropy",
+                    "without t"},
+        Combination{"energy_in_exponential",
+                    {"integrator.isotropy='energy'", "system.damping=0.0", "field.applied=[0,0,1]",
+                     "integrator.rotation='exponential'"},
+                    "integrator.rotation",
+                    "belongs to Cayley coordinates"},
+        Combination{"series_with_time",
+                    {"integrator.method='series4'"},
+                    "integrator.method",
+                    "fields that depend on t"},
+        Combination{"series_in_exponential",
+                    {"integrator.method='series4_paper'", "field.applied=[0,0,1]",
+                     "integrator.rotation='exponential'"},
+                    "integrator.rotation",
+                    "belongs to Cayley coordinates"},
+        Combination{"midpoint_in_exponential",
+                    {"integrator.method='implicit_midpoint'", "integrator.rotation='exponential'"},
+                    "integrator.rotation",
+                    "belongs to Cayley coordinates"},
+        Combination{"tangent_with_series",
+                    {"integrator.method='series4'", "integrator.generator='tangent'"},
+                    "integrator.generator",
+                    "accepted: \"default\", \"orthogonal\""},
+        Combination{"tangent_with_sigma",
+                    {"integrator.generator='tangent'", "integrator.isotropy={constant=1}"},
+                    "integrator.isotropy",
+                    "accepted: \"zero\""},
+        Combination{"tangent_in_exponential",
+                    {"integrator.generator='tangent'", "integrator.rotation='exponential'"},
+                    "integrator.rotation",
+                    "accepted: \"cayley\""},
+        Combination{"cap_without_difference",
+                    {"integrator.isotropy_cap=2.0"},
+                    "integrator.isotropy_cap",
+                    "belongs to isotropy"},
+        Combination{"cap_negative",
+                    {"integrator.method='euler'", "integrator.isotropy='finite_difference'",
+                     "integrator.isotropy_cap=-1.0"},
+                    "integrator.isotropy_cap",
+                    "a number > 0"}),
+    name);
+
+INSTANTIATE_TEST_SUITE_P(RigidBody, WrongBodyCombination,
+                         testing::Values(Combination{"energy_with_euler",
+                                                     {"integrator.method='euler'",
+                                                      "integrator.isotropy='energy'"},
+                                                     "integrator.isotropy",
+                                                     "kind = \"rigid_body\""},
+                                         Combination{"energy_in_exponential",
+                                                     {"integrator.isotropy='energy'",
+                                                      "integrator.rotation='exponential'"},
+                                                     "integrator.rotation",
+                                                     "belongs to Cayley coordinates"}),
+                         name);
+
+TEST(Combinations, OfRigidBodiesWithEnergyAreAccepted) {
+  Folder const folder;
+  for (std::string const method : {"heun", "rkmk4", "series4", "series4_paper"})
+    EXPECT_FALSE(refusal(folder.write(body_scene),
+                         {"integrator.method='" + method + "'", "integrator.isotropy='energy'"}));
+}
+
+TEST(Combinations, CapIsRead) {
+  Folder const folder;
+  std::vector<std::string> const difference{"integrator.method='euler'",
+                                            "integrator.isotropy='finite_difference_backward'"};
+  EXPECT_TRUE(std::isinf(read_text(folder, llg_scene, difference).integrator.isotropy_cap));
+  auto with_cap = difference;
+  with_cap.emplace_back("integrator.isotropy_cap=1.5");
+  EXPECT_EQ(read_text(folder, llg_scene, with_cap).integrator.isotropy_cap, 1.5);
+}
+
+}  // namespace
+}  // namespace cayspin::io::test
