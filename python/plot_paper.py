@@ -103,19 +103,19 @@ def draw_orders(folder):
 
 
 def draw_convergence(folder):
-    table = read_table(folder / "convergence.csv", ("sweep", "method"), ("dt", "error", "error_x"))
-    sweeps = list(groups(table, "sweep"))
-    figure, axes = style.plt.subplots(1, len(sweeps), figsize=(11, 4.8), squeeze=False,
+    table = read_table(folder / "convergence.csv", ("case", "method"), ("dt", "error", "error_x"))
+    cases = list(groups(table, "case"))
+    figure, axes = style.plt.subplots(1, len(cases), figsize=(13, 4.8), squeeze=False,
                                       constrained_layout=True)
-    for axis, (sweep, panel) in zip(axes[0], sweeps):
+    for axis, (case, panel) in zip(axes[0], cases):
         for number, (method, part) in enumerate(groups(panel, "method")):
             axis.loglog(part["dt"], part["error"], "o-", color=COLORS[number], label=method)
             axis.loglog(part["dt"], part["error_x"], "o:", color=COLORS[number],
-                        label=f"{method}, first component")
-        axis.set_title(f"error, {sweep}")
+                        label=f"{method}, $m_x$ of spin 37")
+        axis.set_title(case, fontsize=10)
         axis.set_xlabel("dt")
     axes[0, 0].legend(fontsize=9)
-    figure.suptitle("fig:7b  RKMK4, sigma = 0, damping 10")
+    figure.suptitle("fig:7b  error of RKMK4 over dt, sigma = 0")
     style.save(figure, folder / "convergence.png")
 
 

@@ -2,6 +2,7 @@
 #include "choices.hpp"
 #include "figures.hpp"
 #include "numbers_file.hpp"
+#include "paragraph.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,8 @@ struct Sweep {
   Slab slab;
   double largest_sigma;
 };
-constexpr Sweep sweeps[]{{"weak field, [0, 1]", strong_damping, 10},
-                         {"strong field, [0, 0.1]", strong_damping_strong_field, 40}};
+constexpr Sweep weak{"weak field, [0, 1]", strong_damping, 10};
+constexpr Sweep strong{"strong field, [0, 0.1]", strong_damping_strong_field, 40};
 
 struct Curve {
   std::string_view name;
@@ -38,7 +39,7 @@ void figure_orders(Context const& context) {
       "", "", "fitted", "finest pair", "error, largest/least");
   NumbersFile file(context.folder, "orders.csv",
                    "sweep,method,sigma,fitted_order,finest_order,error");
-  for (auto const& [name, slab, largest_sigma] : sweeps) {
+  for (auto const& [name, slab, largest_sigma] : {weak, strong}) {
     auto const reference = reference_run(slab);
     for (auto const& curve : curves) {
       std::vector<double> fitted, finest, errors;
@@ -59,27 +60,45 @@ void figure_orders(Context const& context) {
     }
   }
   file.write();
+  print_paragraph(
+      "The paper: the order varies with sigma, for RKMK4 more than for Heun. Where dt is small "
+      "enough "
+      "it does not (weak field); the error does, by factors of hundreds and more. Fitted from "
+      "steps "
+      "that begin just below the stable one (strong field) it does, and most with the stages as "
+      "printed.");
 }
 
 void figure_convergence(Context const& context) {
   fmt::print(
-      "\n  fig:7b: RKMK4, sigma = 0, the slab at damping 10: error over dt; the paper: order 5.6 "
-      "in "
-      "m_x, 4.03 in the norm\n");
-  NumbersFile file(context.folder, "convergence.csv", "sweep,method,dt,error,error_x");
-  for (auto const& [name, slab, largest_sigma] : sweeps) {
+      "\n  fig:7b: RKMK4, sigma = 0: fitted order of the error in m_x of spin 37, and of the "
+      "largest "
+      "error; the paper: 5.6 and 4.03\n");
+  NumbersFile file(context.folder, "convergence.csv", "case,method,dt,error,error_x");
+  struct Case {
+    std::string_view name;
+    Slab slab;
+    double coarsest;
+  };
+  for (auto const& [name, slab, coarsest] :
+       {Case{"damping 10, weak field, [0, 1]", strong_damping, 0.02},
+        Case{"damping 10, strong field, [0, 0.1]", strong_damping_strong_field, 0.02},
+        Case{"damping 0.05, strong field, [0, 10]", full_to_10, 0.1}}) {
     auto const reference = reference_run(slab);
     for (auto const& [method, choice] :
          {Curve{"RKMK4", rkmk4_def}, Curve{"RKMK4 as printed", rkmk4_printed_def}}) {
-      auto const convergence = converge(slab, choice, reference);
+      auto const convergence = converge(slab, choice, reference, coarsest);
       for (std::size_t i = 0; i < convergence.dts.size(); ++i)
         file.row(name, method, convergence.dts[i], convergence.errors[i],
                  convergence.first_component_errors[i]);
-      fmt::print("  {:<24} {:<18} fitted order {:.2f} in m_x, {:.2f} in the norm\n", name, method,
+      fmt::print("  {:<36} {:<18} {:.2f} in m_x, {:.2f} in the norm\n", name, method,
                  convergence.order_of_first_component(), convergence.order());
     }
   }
   file.write();
+  print_paragraph(
+      "4.03 is found, 5.6 is not. At weak damping the leading error is one of the phase of the "
+      "precession about x, which m_x does not see: there it falls faster for a while.");
 }
 
 void figure_norm(Context const& context) {
@@ -104,6 +123,10 @@ void figure_norm(Context const& context) {
     }
   }
   file.write();
+  print_paragraph(
+      "RK4's drift goes with the damping, which the paper does not give here, and with dt^4; RKMK4 "
+      "has "
+      "none beyond rounding.");
 }
 
 }  // namespace cayspin::program::reproduction

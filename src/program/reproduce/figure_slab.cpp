@@ -2,6 +2,7 @@
 #include "choices.hpp"
 #include "figures.hpp"
 #include "numbers_file.hpp"
+#include "paragraph.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,8 @@ double largest_norm_defect(SlabPath const& path) {
 
 }  // namespace
 
-void figure_slab(Context const& context, Slab const& slab, std::string_view label) {
+void figure_slab(Context const& context, Slab const& slab, std::string_view label,
+                 std::string_view remark) {
   auto const [x, y, z] = slab.applied;
   auto const looks = static_cast<int>(std::lround(slab.end / between_looks));
   fmt::print("\n  {}: slab of 100 spins, applied ({:g}, {:g}, {:g}), {}damping {:g}, [0, {:g}]\n",
@@ -62,6 +64,7 @@ void figure_slab(Context const& context, Slab const& slab, std::string_view labe
   for (std::size_t i = 0; i < optimal.times.size(); ++i)
     sigma.row(optimal.times[i], optimal.sigma[i]);
   sigma.write();
+  print_paragraph(remark);
 }
 
 }  // namespace cayspin::program::reproduction

@@ -8,7 +8,8 @@
 namespace cayspin::program::reproduction {
 
 void figure_trajectories(Context const& context);
-void figure_slab(Context const& context, Slab const& slab, std::string_view label);
+void figure_slab(Context const& context, Slab const& slab, std::string_view label,
+                 std::string_view remark);
 void figure_orders(Context const& context);
 void figure_convergence(Context const& context);
 void figure_norm(Context const& context);

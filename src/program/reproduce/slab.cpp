@@ -160,18 +160,18 @@ double distance_at_end(SlabPath const& a, SlabPath const& b) {
 
 SlabPath reference_run(Slab const& slab) { return run_slab(slab, rkmk4_def, finest_dt, 1); }
 
-Convergence converge(Slab const& slab, Choice const& choice, SlabPath const& reference) {
+Convergence converge(Slab const& slab, Choice const& choice, SlabPath const& reference,
+                     double coarsest) {
   Convergence convergence;
-  for (double const dt : {0.02, 0.01, 0.005, 0.0025, 0.00125}) {
+  for (int halvings = 0; halvings < 5; ++halvings) {
+    double const dt = std::ldexp(coarsest, -halvings);
     auto const run = run_slab(slab, choice, dt, 1);
     double const error = distance_at_end(run, reference);
     if (error < round_off) continue;
-    double first_component = 0;
-    for (std::size_t i = 0; i < run.end.size(); ++i)
-      first_component = std::max(first_component, std::abs(run.end[i].x - reference.end[i].x));
     convergence.dts.push_back(dt);
     convergence.errors.push_back(error);
-    convergence.first_component_errors.push_back(first_component);
+    convergence.first_component_errors.push_back(
+        std::abs(run.end[watched].x - reference.end[watched].x));
   }
   return convergence;
 }

@@ -23,6 +23,7 @@ inline constexpr std::array<double, 3> weak_field{0.05, 0.05, 0}, strong_field{5
 inline constexpr Slab weak_overdamped{"weak_overdamped", weak_field, 1, false, 20};
 inline constexpr Slab strong_overdamped{"strong_overdamped", strong_field, 1, false, 20};
 inline constexpr Slab full{"full", strong_field, 0.05, true, 60};
+inline constexpr Slab full_to_10{"full_to_10", strong_field, 0.05, true, 10};
 inline constexpr Slab strong_damping{"strong_damping", weak_field, 10, true, 1, {1, 0, 0}};
 inline constexpr Slab strong_damping_strong_field{
     "strong_damping_strong_field", strong_field, 10, true, 0.1, {1, 0, 0}};
@@ -52,16 +53,19 @@ double largest_distance(SlabPath const& a, SlabPath const& b);
 /// Largest distance over the sites at the end.
 double distance_at_end(SlabPath const& a, SlabPath const& b);
 
-/// Orders in dt against rkmk4 at a much smaller step, with the error that each dt leaves.
+/// The errors at the end that five steps leave, the first `coarsest`, each half the one before.
 struct Convergence {
-  std::vector<double> dts, errors;
-  std::vector<double> first_component_errors;
+  std::vector<double> dts, errors;             // largest over the sites
+  std::vector<double> first_component_errors;  // of site 37
 
   double order() const;  // fitted
   double order_of_first_component() const;
   double order_of_finest_pair() const;
 };
-Convergence converge(Slab const& slab, Choice const& choice, SlabPath const& reference);
+Convergence converge(Slab const& slab, Choice const& choice, SlabPath const& reference,
+                     double coarsest = 0.02);
+
+/// rkmk4 at a much smaller step.
 SlabPath reference_run(Slab const& slab);
 
 }  // namespace cayspin::program::reproduction
