@@ -35,16 +35,17 @@ class NewtonKrylov {
       solve_linear(exec, g, v, image, norm);
       double scale = 1, before = norm;
       for (;; scale /= 2) {
-        if (scale < 1e-3) return false;
+        bool const is_last = scale < 1e-3;
+        // Round-off is all that is left.
+        if (scale < 1 && largest <= (is_last ? 512 : 8) * tolerance) {
+          g(v, image);
+          return true;
+        }
+        if (is_last) return false;
         combine(exec, scale, correction_, 1, v, point_);
         g(point_, image);
         norm = residual(exec, point_, image);
         if (norm < (1 - 1e-4 * scale) * before) break;
-        // Round-off is all that is left.
-        if (largest <= 512 * tolerance) {
-          g(v, image);
-          return true;
-        }
       }
       combine(exec, 1, point_, 0, point_, v);
     }

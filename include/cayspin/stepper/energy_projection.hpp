@@ -88,6 +88,11 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
 
   std::size_t work_bytes() const { return stepper_.work_bytes() + 2 * begin_.bytes(); }
 
+  /// Forgets what the stepper remembers of the step before.
+  void reset() {
+    if constexpr (requires { stepper_.reset(); }) stepper_.reset();
+  }
+
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
   /// take arrays of `spins` anew after a step. Waits.
   /// Throws std::invalid_argument when the generator is not conservative, or `spins` is not of the

@@ -89,13 +89,14 @@ class Implicit : public StepperBase<Spins> {
     double const epsilon = std::numeric_limits<Real>::epsilon();
     double const tolerance = options_.tolerance * epsilon;
     double change = std::numeric_limits<double>::infinity(), smallest = change;
+    int stalled = 0;
     for (int i = 0; i < options_.fixed_point; ++i) {
       map(i == 0 ? spins : level_, next_);
-      double const before = change;
       change = largest_difference(exec, i == 0 ? spins : level_, next_);
       if (change <= tolerance) return true;
-      // At a few hundred epsilons a change that no longer falls is round-off.
-      if (change <= 512 * tolerance && !(change < before)) return true;
+      // At a few hundred epsilons a change that falls no more is round-off.
+      stalled = change < smallest ? 0 : stalled + 1;
+      if (change <= 512 * tolerance && stalled == 4) return true;
       if (!(change < 100 * smallest)) break;
       smallest = std::min(smallest, change);
       swap(level_, next_);

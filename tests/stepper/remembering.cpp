@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Steppers that keep a field from one step to the next, and the bound of sigma by differences.
+#include "../support/evaluate.hpp"
+#include "../support/figures.hpp"
+#include "../support/landau_lifshitz.hpp"
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+using isotropy::FiniteDifference;
+using isotropy::FiniteDifferenceBackward;
+
+Slab const slab{.lattice = Lattice::chain(8),
+                .exchange = 1,
+                .anisotropy = 0.8,
+                .axis = {1, 2, 3},
+                .applied = {0.5, -0.7, 0.9},
+                .damping = 0.2};
+
+template <class Stepper>
+class Remembering : public ::testing::Test {};
+using Steppers =
+    ::testing::Types<LieAdamsBashforth2<Spins>, LieEuler<Spins, FiniteDifferenceBackward>>;
+TYPED_TEST_SUITE(Remembering, Steppers);
+
+TYPED_TEST(Remembering, StartsAnewAfterReset) {
+  Spins const start = random_spins(slab.lattice, 5);
+  auto const fresh = copy_to_host(run<TypeParam>(slab.natural(), start, 0.05, 2));
+  TypeParam stepper(start);
+  auto const again = [&] {
+    Spins spins = copy_of(start);
+    advance(stepper, slab.natural(), spins, 0.05, 2);
+    return copy_to_host(spins);
+  };
+  EXPECT_EQ(again(), fresh);
+  EXPECT_NE(again(), fresh);
+  stepper.reset();
+  EXPECT_EQ(again(), fresh);
+
+  Spins spins = copy_of(start);
+  integrate(Space{}, stepper, slab.natural(), spins, Times{0, 0.05, 2});
+  EXPECT_EQ(copy_to_host(spins), fresh);
+}
+
+// A first step from a state that is told is the second step from it.
+TYPED_TEST(Remembering, StateBefore) {
+  Spins const start = random_spins(slab.lattice, 5);
+  Spins const after_one = run<TypeParam>(slab.natural(), start, 0.05, 1);
+  Spins spins = copy_of(after_one);
+  TypeParam stepper(spins);
+  stepper.remember(Space{}, slab.natural(), start, 0, 0.05);
+  advance(stepper, slab.natural(), spins, 0.05, 1, 1);
+  EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(slab.natural(), start, 0.05, 2)));
+}
+
+/// n pairs of steps, of one and two thirds of the mean.
+template <class Stepper>
+Spins unequal_steps(Slab const& of, int pairs, double end_time) {
+  Spins spins = random_spins(of.lattice, 5);
+  Stepper stepper(spins);
+  double t = 0;
+  for (int n = 0; n < 2 * pairs; ++n) {
+    double const dt = (n % 2 == 0 ? 1 : 2) * end_time / (3 * pairs);
+    stepper.step(Space{}, of.natural(), spins, t, dt);
+    t += dt;
+  }
+  return spins;
+}
+
+TEST(UnequalSteps, KeepTheOrder) {
+  Spins const exact = run<Rkmk4<Spins>>(slab.natural(), random_spins(slab.lattice, 5), 1e-3, 1000);
+  Slab undamped = slab;
+  undamped.damping = 0;
+  double const before = energy(Space{}, undamped.natural(), random_spins(slab.lattice, 5)).value;
+  std::vector<double> dts, errors, energies;
+  for (int const pairs : {40, 80, 160, 320}) {
+    dts.push_back(1.0 / pairs);
+    errors.push_back(
+        largest_distance(unequal_steps<LieAdamsBashforth2<Spins>>(slab, pairs, 1), exact));
+    auto const end = unequal_steps<LieEuler<Spins, FiniteDifferenceBackward>>(undamped, pairs, 1);
+    energies.push_back(std::abs(energy(Space{}, undamped.natural(), end).value - before));
+  }
+  expect_order("ab2", fitted_order(dts, errors), 2, 0.15);
+  expect_order("backward difference, energy", fitted_order(dts, energies), 2, 0.15);
+}
+
+// F = dt w + clamp(dt sigma) m, sigma written out.
+TEST(FiniteDifference, CapOfTheTurn) {
+  constexpr double dt = 0.1;
+  Space const exec;
+  auto const generator = orthogonal(slab.natural());
+  Spins const start = random_spins(slab.lattice, 5);
+  auto const w = evaluated(exec, generator, start);
+  auto const predicted = evaluated(exec, generator, run<LieEuler<Spins>>(generator, start, dt, 1));
+  double largest = 0;
+  for (double const cap : {0.0, 0.01, 0.1, std::numeric_limits<double>::infinity()}) {
+    auto const end =
+        run<LieEuler<Spins, FiniteDifference>>(slab.natural(), start, dt, 1, FiniteDifference{cap});
+    auto const uncapped = run<LieEuler<Spins, FiniteDifferenceBackward>>(
+        slab.natural(), start, dt, 1, FiniteDifferenceBackward{cap});
+    EXPECT_EQ(copy_to_host(end), copy_to_host(uncapped)) << "the first step is a forward one";
+    for (std::int64_t site = 0; site < 8; ++site) {
+      Vector const m = spin(start, site), a = at(w, site);
+      double const turn = -dot(at(predicted, site) - a, cross(a, m)) / dot(a, a);
+      largest = std::max(largest, std::abs(turn));
+      Vector const f = dt * a + std::clamp(turn, -cap, cap) * m;
+      EXPECT_LT(length(spin(end, site) - Cayley::rotate(f, m)), 1e-14) << cap << ' ' << site;
+    }
+  }
+  EXPECT_GT(largest, 0.1) << "no spin that the caps bear on";
+}
+
+}  // namespace
