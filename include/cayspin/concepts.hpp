@@ -29,6 +29,39 @@ concept has_field_rate = requires(Term const& term, Stencil const& stencil) {
     } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
 };
 
+/// The linear part of an affine field at a stencil's centre, applied to the stencil's array.
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+    Term const& term, Stencil const& stencil) {
+  using Value = typename Stencil::value_type;
+  if constexpr (requires { Term::degree; }) {
+    static_assert(
+        Term::degree == 1 || Term::degree == 2,
+        "A field term's degree is that of its energy: 1 for H independent of the spins, 2 "
+        "for H linear in them; leave it out otherwise.");
+    if constexpr (Term::degree == 2)
+      return term.field(stencil);
+    else
+      return {Value(0), Value(0), Value(0)};
+  } else {
+    static_assert(has_linear_field<Term, Stencil>,
+                  "This needs the derivative of each field term: a static constexpr int degree (1 "
+                  "for H independent of the spins, 2 for H linear in them), linear_field(stencil) "
+                  "for H affine in them, or, for isotropy::Analytic alone, field_rate(m, rates).");
+    return term.linear_field(stencil);
+  }
+}
+
+/// The derivative of a field at a spin m, along the rates of the stencil's array.
+template <class Term, class Value, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Term const& term, Vec3<Value> const& m,
+                                                   Stencil const& rates) {
+  if constexpr (has_field_rate<Term, Stencil>)
+    return term.field_rate(m, rates);
+  else
+    return linear_field(term, rates);
+}
+
 /// Said by a term or generator whose numbers change with t alone.
 template <class Term>
 inline constexpr bool depends_on_time = [] {

@@ -18,11 +18,12 @@ namespace cayspin {
 ///   auto prepare(exec, spins, t) const
 /// which is called on the host before each stage and returns such a struct.
 ///
-/// For isotropy::Analytic a term also has the derivative of its H along rates X of the spins,
-///   Vec3<Value> linear_field(Stencil const& rates) const   where H is affine in the spins: its
-///                                                          linear part, applied to X; also makes
-///                                                          Series4 possible
-///   Vec3<Value> field_rate(Vec3<Value> const& m, Stencil const& rates) const   otherwise
+/// For isotropy::Analytic and Series4 a term also says how its H depends on the spins:
+///   static constexpr int degree                     2 where H is linear in the spins, 1 where it
+///                                                   does not depend on them
+///   Vec3<Value> linear_field(Stencil const&) const  where H is affine: its linear part
+///   Vec3<Value> field_rate(Vec3<Value> const& m, Stencil const& rates) const
+///                                                   otherwise, for Analytic: dH/dt along the rates
 /// and, where H depends on t, prepare_rate(exec, rates, t, dt), which returns such a struct.
 template <class... Terms>
 class EffectiveField;
@@ -102,25 +103,14 @@ class EffectiveField<First, Rest...> {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
       Stencil const& stencil) const {
-    static_assert(detail::has_linear_field<First, Stencil>,
-                  "This method needs fields affine in the spins: a const, device-callable template "
-                  "linear_field(stencil) that returns the linear part of H.");
-    return first_.linear_field(stencil) + rest_.linear_field(stencil);
+    return detail::linear_field(first_, stencil) + rest_.linear_field(stencil);
   }
 
   /// The derivative of H at a spin m, along the rates of the stencil's array.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
                                                      Stencil const& rates) const {
-    static_assert(
-        detail::has_field_rate<First, Stencil> || detail::has_linear_field<First, Stencil>,
-        "isotropy::Analytic needs each field term's derivative: a const, device-callable "
-        "template linear_field(rates), or field_rate(m, rates) where H is not affine.");
-    if constexpr (detail::has_field_rate<First, Stencil>) {
-      return first_.field_rate(m, rates) + rest_.field_rate(m, rates);
-    } else {
-      return first_.linear_field(rates) + rest_.field_rate(m, rates);
-    }
+    return detail::field_rate(first_, m, rates) + rest_.field_rate(m, rates);
   }
 
   template <class Stencil>

@@ -11,6 +11,8 @@ namespace cayspin {
 /// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
 class Exchange {
  public:
+  static constexpr int degree = 2;  // H is linear in the spins
+
   Exchange(Lattice const& lattice, double constant) {
     for (int axis = 0; axis < 3; ++axis)
       coefficient_[axis] = lattice.has_neighbors(axis)
@@ -27,13 +29,6 @@ class Exchange {
     if (coefficient_[1] != 0) h = second_difference<1>(stencil, h);
     if (coefficient_[2] != 0) h = second_difference<2>(stencil, h);
     return h;
-  }
-
-  /// H is linear in the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return field(stencil);
   }
 
   template <class Stencil>

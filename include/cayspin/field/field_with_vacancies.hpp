@@ -75,19 +75,15 @@ class FieldAmongVacancies {
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const requires
-      requires(Field const& field, Inner<Stencil> const& inner) {
-    field.linear_field(inner);
+      Stencil const& stencil) const {
+    return unless_vacant(stencil,
+                         detail::linear_field(field_, Inner<Stencil>(stencil, occupation_)));
   }
-  { return unless_vacant(stencil, field_.linear_field(Inner<Stencil>(stencil, occupation_))); }
-
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const requires
-      requires(Field const& field, Inner<Stencil> const& inner) {
-    field.field_rate(m, inner);
+                                                     Stencil const& rates) const {
+    return unless_vacant(rates, detail::field_rate(field_, m, Inner<Stencil>(rates, occupation_)));
   }
-  { return unless_vacant(rates, field_.field_rate(m, Inner<Stencil>(rates, occupation_))); }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(

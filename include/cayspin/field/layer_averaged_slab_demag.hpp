@@ -43,6 +43,7 @@ struct AverageLayers {
 };
 
 struct LayerField {
+  static constexpr int degree = 2;  // H is linear in the spins
   double const* averages;
   int axis;
   double strength;
@@ -54,13 +55,6 @@ struct LayerField {
     Value const h = along<Value>(stencil.site());
     Value const zero(0);
     return {axis == 0 ? h : zero, axis == 1 ? h : zero, axis == 2 ? h : zero};
-  }
-
-  /// H is linear in the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return field(stencil);
   }
 
   template <class Stencil>

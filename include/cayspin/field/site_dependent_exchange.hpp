@@ -14,6 +14,7 @@ namespace detail {
 /// H_n = sum of A_nq (m_q - m_n) / spacing^2, with 1 / spacing^2 of each axis or 0.
 template <class Real>
 struct ExchangeOfSites {
+  static constexpr int degree = 2;  // H is linear in the spins
   SiteArray<Real, 1> constants;
   double inverse_square[3];
 
@@ -27,13 +28,6 @@ struct ExchangeOfSites {
     if (inverse_square[1] != 0) h = differences<1>(stencil, own, h);
     if (inverse_square[2] != 0) h = differences<2>(stencil, own, h);
     return h;
-  }
-
-  /// H is linear in the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return field(stencil);
   }
 
   template <class Stencil>

@@ -46,6 +46,7 @@ struct NotUnitOfSites {
 /// H = K (m.e) e with K and e of a site; each is held as one value or as an array.
 template <class Constant, class Axis>
 struct UniaxialAnisotropyOfSites {
+  static constexpr int degree = 2;  // H is linear in the spins
   Constant constant;
   Axis axis;
 
@@ -55,13 +56,6 @@ struct UniaxialAnisotropyOfSites {
     using Value = typename Stencil::value_type;
     auto const e = coefficient<Value>(axis, stencil.site());
     return Value(coefficient<Value>(constant, stencil.site()) * dot(stencil.center(), e)) * e;
-  }
-
-  /// H is linear in the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return field(stencil);
   }
 
   template <class Stencil>

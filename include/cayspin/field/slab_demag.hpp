@@ -10,6 +10,8 @@ namespace cayspin {
 /// E = strength (m.n)^2 / 2 per site. The normal n is normalised.
 class SlabDemag {
  public:
+  static constexpr int degree = 2;  // H is linear in the spins
+
   explicit SlabDemag(Vec3<double> const& normal, double strength = 1)
       : strength_(strength), normal_(normalized(normal, "cayspin::SlabDemag: the normal")) {}
 
@@ -19,13 +21,6 @@ class SlabDemag {
     using Value = typename Stencil::value_type;
     auto const n = as_value<Value>(normal_);
     return Value(strength<Value>(-1) * dot(stencil.center(), n)) * n;
-  }
-
-  /// H is linear in the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return field(stencil);
   }
 
   template <class Stencil>

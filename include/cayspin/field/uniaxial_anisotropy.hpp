@@ -27,6 +27,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> as_value(Vec3<double> const& v) {
 /// Uniaxial anisotropy: H = K (m.e) e, E = -K (m.e)^2 / 2 per site. The axis e is normalised.
 class UniaxialAnisotropy {
  public:
+  static constexpr int degree = 2;  // H is linear in the spins
+
   UniaxialAnisotropy(double constant, Vec3<double> const& axis)
       : constant_(constant), axis_(normalized(axis, "cayspin::UniaxialAnisotropy: the axis")) {}
 
@@ -36,13 +38,6 @@ class UniaxialAnisotropy {
     using Value = typename Stencil::value_type;
     auto const e = as_value<Value>(axis_);
     return Value(constant<Value>(1) * dot(stencil.center(), e)) * e;
-  }
-
-  /// H is linear in the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return field(stencil);
   }
 
   template <class Stencil>

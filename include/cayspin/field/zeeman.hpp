@@ -10,19 +10,12 @@ namespace cayspin {
 
 /// A uniform applied field: H = applied, E = -m.H per site.
 struct Zeeman {
+  static constexpr int degree = 1;  // H does not depend on the spins
   Vec3<double> applied;
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
     return as_value<typename Stencil::value_type>(applied);
-  }
-
-  /// H does not depend on the spins.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const&) const {
-    using Value = typename Stencil::value_type;
-    return {Value(0), Value(0), Value(0)};
   }
 
   template <class Stencil>

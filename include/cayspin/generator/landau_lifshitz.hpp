@@ -54,7 +54,7 @@ class LandauLifshitz {
   /// is made of.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
-    return generator(rates.site(), m, field_.field_rate(m, rates));
+    return generator(rates.site(), m, detail::field_rate(field_, m, rates));
   }
 
   /// What Series4 differentiates: H, of which the generator is made, and its linear part.
@@ -66,7 +66,7 @@ class LandauLifshitz {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
       Stencil const& stencil) const {
-    return field_.linear_field(stencil);
+    return detail::linear_field(field_, stencil);
   }
   /// The K-th time derivative of A from those of m and H.
   template <int K, class Value>
