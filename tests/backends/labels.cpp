@@ -17,14 +17,16 @@ namespace tools = Kokkos::Tools::Experimental;
 
 struct Events {
   std::vector<std::string> kernels, allocations, fences, copies, regions;
+  std::size_t allocated = 0;  // bytes
 };
 Events events;
 
 void begin_kernel(char const* name, std::uint32_t, std::uint64_t*) {
   events.kernels.emplace_back(name);
 }
-void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const*, std::uint64_t) {
+void allocate(Kokkos_Profiling_SpaceHandle, char const* label, void const*, std::uint64_t bytes) {
   events.allocations.emplace_back(label);
+  events.allocated += bytes;
 }
 void begin_fence(char const* name, std::uint32_t, std::uint64_t*) {
   std::string const fence = name;
@@ -74,19 +76,21 @@ Slab const slab{.lattice = Lattice::cubic(9, 7, 5),
                 .applied = {0.1, 0.2, 0.3},
                 .damping = 0.1};
 
+/// Ten steps of the kernels `stages`, after as many as the stepper takes to have all it keeps.
 template <class Stepper>
-void expect_quiet_step(std::string const& name) {
+void expect_quiet_step(std::string const& name, std::vector<std::string> const& stages) {
   Exec const exec;
   Field spins("spins", slab.lattice);
   Stepper stepper(spins);
   auto const generator = slab.natural();
+  stepper.step(exec, generator, spins, 0, 0.1);
   Events const seen = events_of([&] {
     for (int n = 0; n < 10; ++n) stepper.step(exec, generator, spins, n * 0.1, 0.1);
   });
-  ASSERT_EQ(seen.kernels.size(), 10u * Stepper::evaluations) << name;
+  ASSERT_EQ(seen.kernels.size(), 10 * stages.size()) << name;
+  EXPECT_EQ(stages.size(), static_cast<std::size_t>(Stepper::evaluations)) << name;
   for (std::size_t i = 0; i < seen.kernels.size(); ++i)
-    EXPECT_EQ(seen.kernels[i],
-              "cayspin::" + name + "::stage_" + std::to_string(i % Stepper::evaluations + 1));
+    EXPECT_EQ(seen.kernels[i], "cayspin::" + name + "::" + stages[i % stages.size()]);
   EXPECT_EQ(seen.regions, std::vector<std::string>(10, "cayspin::" + name));
   EXPECT_TRUE(seen.allocations.empty()) << seen.allocations[0];
   EXPECT_TRUE(seen.copies.empty()) << seen.copies[0];
@@ -94,9 +98,17 @@ void expect_quiet_step(std::string const& name) {
 }
 
 TEST(Labels, AStepIsItsStagesAndNothingElse) {
-  expect_quiet_step<LieEuler<Field>>("LieEuler");
-  expect_quiet_step<Rkmk4<Field>>("Rkmk4");
-  expect_quiet_step<ProjectedHeun<Field>>("Projected2");
+  using namespace isotropy;
+  expect_quiet_step<LieEuler<Field>>("LieEuler", {"stage_1"});
+  expect_quiet_step<Rkmk4<Field>>("Rkmk4", {"stage_1", "stage_2", "stage_3", "stage_4"});
+  expect_quiet_step<ProjectedHeun<Field>>("Projected2", {"stage_1", "stage_2"});
+  expect_quiet_step<LieHeun<Field>>("LieHeun", {"stage_1", "stage_2"});
+  expect_quiet_step<LieEuler<Field, FiniteDifference>>("LieEuler", {"predict", "correct"});
+  expect_quiet_step<LieEuler<Field, FiniteDifferenceBackward>>("LieEuler", {"step"});
+  expect_quiet_step<LieEuler<Field, Analytic>>("LieEuler", {"rates", "rotate"});
+  expect_quiet_step<LieAdamsBashforth2<Field>>("LieAdamsBashforth2", {"step"});
+  expect_quiet_step<Series4<Field>>("Series4",
+                                    {"derivative_1", "derivative_2", "derivative_3", "rotate"});
 }
 
 TEST(Labels, Scalars) {
@@ -131,12 +143,53 @@ TEST(Labels, Integrate) {
   expect_prefix(seen.allocations);
 }
 
-TEST(Labels, WorkMemory) {
+TEST(Labels, IterationsAndEnergies) {
+  Exec const exec;
+  Field spins("spins", slab.lattice);
+  Slab undamped = slab;
+  undamped.damping = 0;
+  ImplicitLieEuler by_newton(spins, isotropy::Zero{}, Cayley{}, ImplicitOptions{8, 2, 30});
+  EnergyProjection projection(spins, LieHeun(spins));
+  Events seen = events_of([&] {
+    by_newton.step(exec, undamped.natural(), spins, 0, 0.1);
+    projection.step(exec, undamped.natural(), spins, 0, 0.1);
+  });
+  EXPECT_GT(seen.kernels.size(), 20u);
+  std::erase(seen.kernels, "Kokkos::ViewFill-1D");  // memory set to 0
+  expect_prefix(seen.kernels);
+  expect_prefix(seen.allocations);
+  EXPECT_EQ(seen.regions.front(), "cayspin::ImplicitLieEuler");
+}
+
+/// The allocations of a stepper bear its name and take what it says.
+template <class Stepper, class... Options>
+void expect_work_memory(std::string const& name, std::size_t fields, Options const&... options) {
   Field const spins("spins", slab.lattice);
-  Events const seen = events_of([&] { Rkmk4<Field> const stepper(spins); });
-  ASSERT_EQ(seen.allocations.size(), 4u);
-  for (auto const& name : seen.allocations)
-    EXPECT_TRUE(name.starts_with("cayspin::Rkmk4::")) << name;
+  std::size_t bytes = 0;
+  Events const seen = events_of([&] {
+    Stepper const stepper(spins, options...);
+    bytes = stepper.work_bytes();
+  });
+  ASSERT_FALSE(seen.allocations.empty());
+  for (auto const& label : seen.allocations)
+    EXPECT_TRUE(label.starts_with("cayspin::" + name + "::")) << label;
+  EXPECT_EQ(seen.allocations.size(), fields) << name;
+  EXPECT_EQ(seen.allocated, bytes) << name;
+}
+
+TEST(Labels, WorkMemory) {
+  using namespace isotropy;
+  expect_work_memory<LieEuler<Field>>("LieEuler", 1);
+  expect_work_memory<LieEuler<Field, FiniteDifference>>("LieEuler", 2);
+  expect_work_memory<LieEuler<Field, Analytic>>("LieEuler", 2);
+  expect_work_memory<LieHeun<Field>>("LieHeun", 2);
+  expect_work_memory<LieAdamsBashforth2<Field>>("LieAdamsBashforth2", 2);
+  expect_work_memory<ImplicitLieEuler<Field>>("ImplicitLieEuler", 2);
+  expect_work_memory<ImplicitLieEuler<Field, Analytic>>("ImplicitLieEuler", 4);
+  expect_work_memory<ImplicitMidpoint<Field>>("ImplicitMidpoint", 2);
+  expect_work_memory<Rkmk4<Field>>("Rkmk4", 4);
+  expect_work_memory<StereographicRungeKutta<Field, tableau::Heun>>("StereographicRungeKutta", 2);
+  expect_work_memory<Series4<Field>>("Series4", 1);
 }
 
 }  // namespace

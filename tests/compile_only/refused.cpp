@@ -53,6 +53,10 @@ inline void refused() {
   [[maybe_unused]] auto const with = [&](auto const& term) {
     stepper.step(exec, LandauLifshitz(EffectiveField(term), 0.1), spins, 0, 0.1);
   };
+  [[maybe_unused]] LandauLifshitz const spin_chain(EffectiveField(Zeeman{{0, 0, 1}}), 0.1);
+  [[maybe_unused]] TimeDependentZeeman const rotating([](double t) {
+    return Vec3<double>{t, 0, 1};
+  });
 #if CAYSPIN_TEST_MISTAKE == 0  // none
   with(Term());
 #elif CAYSPIN_TEST_MISTAKE == 1
@@ -89,5 +93,14 @@ inline void refused() {
   ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
   LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
   FieldWithVacancies const field(EffectiveField{layers}, occupation);
+#elif CAYSPIN_TEST_MISTAKE == 16
+  LieHeun(spins, isotropy::Analytic()).step(exec, body, spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 17
+  LieHeun(spins, isotropy::Energy()).step(exec, spin_chain, spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 18
+  Series4(spins).step(exec, LandauLifshitz(EffectiveField(rotating), 0.1), spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 19
+  LieEuler(spins, isotropy::Analytic())
+      .step(exec, LandauLifshitz(EffectiveField(Term()), 0.1), spins, 0, 0.1);
 #endif
 }

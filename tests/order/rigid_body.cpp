@@ -130,6 +130,7 @@ TEST_F(RigidBodyOrder, LieEuler) {
 
 TEST_F(RigidBodyOrder, LieEulerWithSigma) {
   expect("analytic", LieEuler(like, isotropy::Analytic{}), body, {1, 2});
+  expect("orthogonal, analytic", LieEuler(like, isotropy::Analytic{}), w, {1, 2});
   expect("connection", LieEuler(like, isotropy::Connection{}), body, {1, 2});
   expect("forward", LieEuler(like, isotropy::FiniteDifference{}), body, {1, 2});
   expect("backward", LieEuler(like, isotropy::FiniteDifferenceBackward{}), body, {1, 2});
@@ -144,6 +145,7 @@ TEST_F(RigidBodyOrder, Implicit) {
   expect("default", ImplicitLieEuler(like), body, {1, 1});
   expect("orthogonal", ImplicitLieEuler(like), w, {1, 1});
   expect("analytic", ImplicitLieEuler(like, isotropy::Analytic{}), body, {1, 2});
+  expect("orthogonal, analytic", ImplicitLieEuler(like, isotropy::Analytic{}), w, {1, 2});
   expect("midpoint", ImplicitMidpoint(like), body, {2, exact});
 }
 
