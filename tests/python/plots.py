@@ -17,6 +17,7 @@ SCRIPTS, WRITER = map(pathlib.Path, sys.argv[1:3])
 sys.path.insert(0, str(SCRIPTS))
 
 from cayspin_plots.read import read_trajectory  # noqa: E402  the folder has to be known before
+from cayspin_plots.table import read_table  # noqa: E402
 
 BLUE, RED = (0x1B, 0x5F, 0xA7), (0xCF, 0x3F, 0x2B)
 PIXELS_PER_INCH = 160
@@ -51,10 +52,13 @@ class ScriptTest(unittest.TestCase):
         self.assertEqual(result.stdout, f"{png}\n")
         self.assertEqual(dimensions(png), tuple(round(PIXELS_PER_INCH * side) for side in inches))
         self.assertTrue(15_000 < png.stat().st_size < 3_000_000, png.stat().st_size)
-        pixels = np.round(255 * matplotlib.image.imread(png)[..., :3]).astype(int)
         for color in colors:
-            count = int(np.all(abs(pixels - color) <= 2, axis=-1).sum())
-            self.assertGreater(count, 300, f"pixels of the color {color}")
+            self.assert_has_color(png, color)
+
+    def assert_has_color(self, png, color):
+        pixels = np.round(255 * matplotlib.image.imread(png)[..., :3]).astype(int)
+        count = int(np.all(abs(pixels - color) <= 2, axis=-1).sum())
+        self.assertGreater(count, 300, f"{png.name}: pixels of the color {color}")
 
     def assert_refused(self, png, file, part, result):
         self.assertNotEqual(result.returncode, 0)
@@ -127,6 +131,62 @@ class PlotDemo(ScriptTest):
                           (self.geometric, self.classical, "--reference", text)):
             with self.subTest(arguments):
                 self.assert_refused(self.png, text, "cannot read", self.plot(*arguments))
+
+
+class PlotPaper(ScriptTest):
+    """Tables as `cayspin reproduce figures` writes them, of a few rows each."""
+
+    def setUp(self):
+        super().setUp()
+        path = [(t, np.cos(t), np.sin(t), 0) for t in np.linspace(0, 6, 40)]
+        self.write("trajectories", "body,update,path,time,x,y,z",
+                   [(body, update, 0, *point) for body in ("triaxial", "axisymmetric")
+                    for update in ("a", "b", "c") for point in path])
+        runs = ("Euler, dt = 0.0001", "geometric Euler, optimal sigma, dt = 0.01",
+                "geometric Euler, sigma = 10, dt = 0.01", "not drawn")
+        for slab in ("weak_overdamped", "strong_overdamped", "full"):
+            self.write(f"slab_{slab}", "run,time,x,y,z,log_norm",
+                       [(f'"{run}"', t, x, (1 - number / 5) * y, z, 1e-3 * number)
+                        for number, run in enumerate(runs) for t, x, y, z in path])
+            self.write(f"sigma_{slab}", "time,sigma", [(t, t * t) for t in range(9)])
+        self.write("orders", "sweep,method,sigma,fitted_order,finest_order,error",
+                   [(sweep, method, sigma, order, order + 0.1, 10.0**-order) for sweep in "ab"
+                    for order, method in enumerate("cde") for sigma in (-1, 0, 1)])
+        self.write("convergence", "case,method,dt,error,error_x",
+                   [(case, method, dt, dt**4, dt**5) for case in "abc" for method in "de"
+                    for dt in (0.1, 0.05)])
+        self.write("norm", "method,damping,time,log_norm",
+                   [(method, 1, t, 1e-9 * t) for method in ("RK4", "RKMK4") for t in range(9)])
+
+    def write(self, name, columns, rows):
+        lines = [columns] + [",".join(map(str, row)) for row in rows]
+        (self.folder / f"{name}.csv").write_text("\n".join(lines) + "\n")
+
+    def test_every_figure(self):
+        result = self.run_script("plot_paper.py", self.folder)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        drawn = {"trajectories": (11, 7.6), "slab_weak_overdamped": (11, 5.4),
+                 "slab_strong_overdamped": (11, 5.4), "slab_full": (11, 5.4),
+                 "slab_norm": (8, 4.4), "orders": (11, 7.6), "convergence": (13, 4.8),
+                 "norm": (8, 4.8)}
+        files = [self.folder / f"{name}.png" for name in drawn]
+        self.assertEqual(result.stdout, "".join(f"{file}\n" for file in files))
+        for file, inches in zip(files, drawn.values()):
+            self.assertEqual(dimensions(file), tuple(round(PIXELS_PER_INCH * s) for s in inches))
+            self.assert_has_color(file, BLUE)
+        self.assert_has_color(self.folder / "slab_full.png", RED)
+
+    def test_wrong_tables(self):
+        file = self.folder / "trajectories.csv"
+        columns = "body,update,path,time,x,y,z\n"
+        for content in ("", columns, "body,update\na,b\n", columns + "a,b,0,1,0,0,text\n"):
+            with self.subTest(content), self.assertRaises(SystemExit) as caught:
+                file.write_text(content)
+                read_table(file, ("body", "update", "path"), ("time", "x", "y", "z"))
+            self.assertNotIn("\n", caught.exception.code)
+            self.assertTrue(caught.exception.code.startswith(f"{file}: "), caught.exception.code)
+        self.assert_refused(file.with_suffix(".png"), file, "cannot read the table",
+                            self.run_script("plot_paper.py", self.folder))
 
 
 class CorruptFile(ScriptTest):

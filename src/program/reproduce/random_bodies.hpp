@@ -39,7 +39,7 @@ struct Law {
 /// One line.
 std::string describe(Law const& law);
 
-/// The same bodies for the same seed, on every machine.
+/// The same bodies for the same seed, on every machine up to the rounding of sin and cos.
 std::vector<Body> draw_bodies(Law const& law, std::int64_t count, std::uint64_t seed);
 
 /// A body whose axes are those of the frame.
