@@ -69,6 +69,16 @@ inline constexpr bool depends_on_time = [] {
   return false;
 }();
 
+/// Is one prepared form good for any time and any spins? Of terms and generators that have a
+/// prepare and do not say so: no.
+template <class Term, class Exec, class Spins>
+bool is_stationary(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.is_stationary(exec, spins); })
+    return term.is_stationary(exec, spins);
+  else
+    return !requires { term.prepare(exec, spins, 0.0); };
+}
+
 /// The device-callable form of a term or generator for one evaluation at time t: what its
 /// prepare returns, or itself.
 template <class Term, class Exec, class Spins>

@@ -5,6 +5,7 @@
 
 #include <Kokkos_Timer.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -78,6 +79,26 @@ bool is_due(Observer const& observer, Step const& step) {
     return true;
 }
 
+/// A stepper that can take several steps of few spins in one launch.
+template <class Stepper, class Exec, class Generator, class Spins>
+concept has_batches = requires(Stepper& stepper, Exec const& exec, Generator const& generator,
+                               Spins& spins) {
+  stepper.takes_batches(exec, generator, spins);
+};
+
+/// Steps from `number` to the next one that an observer, or the end, waits for; at most 1000, so
+/// that what an observer asks the world outside is asked again soon.
+template <class... Observers>
+std::int64_t steps_until_due(Times const& times, std::int64_t number,
+                             Observers const&... observers) {
+  std::int64_t const most = std::min<std::int64_t>(times.steps - number, 1000);
+  for (std::int64_t steps = 1; steps < most; ++steps) {
+    [[maybe_unused]] Step const then{number + steps, times.at(number + steps), times.dt, false};
+    if ((is_due(observers, then) || ...)) return steps;
+  }
+  return most;
+}
+
 template <class Exec, class Observer, class Spins>
 Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const& spins) {
   static_assert(std::is_invocable_v<Observer&, Exec const&, Step const&, Spins const&>,
@@ -116,9 +137,12 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   std::int64_t evaluations_before = 0;
   if constexpr (detail::counts_evaluations<Stepper>)
     evaluations_before = stepper.evaluations_done();
+  bool batches = false;
+  if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>)
+    batches = stepper.takes_batches(exec, generator, spins);
   exec.fence("cayspin::integrate: begin");
   clock.reset();
-  for (std::int64_t number = 0;; ++number) {
+  for (std::int64_t number = 0;;) {
     Step const now{number, times.at(number), times.dt, number == times.steps};
     if ((detail::is_due(observers, now) || ...) || now.last) {
       exec.fence("cayspin::integrate: observers");
@@ -131,9 +155,14 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
       }
       clock.reset();
     }
-    stepper.step(exec, generator, spins, now.time, times.dt);
-    ++summary.steps;
-    summary.evaluations += Stepper::evaluations;
+    std::int64_t const steps = batches ? detail::steps_until_due(times, number, observers...) : 1;
+    if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>) {
+      if (steps > 1) stepper.batch(exec, generator, spins, now.time, times.dt, steps);
+    }
+    if (steps == 1) stepper.step(exec, generator, spins, now.time, times.dt);
+    number += steps;
+    summary.steps += steps;
+    summary.evaluations += steps * Stepper::evaluations;
   }
   if constexpr (detail::counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;

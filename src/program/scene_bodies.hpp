@@ -105,6 +105,10 @@ struct RigidBodies {
   auto prepare(Exec const& exec, Spins const& spins, double t) const {
     return RigidBodiesNow{bodies.prepare(exec, spins, t), orthogonal};
   }
+  template <class Exec>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
 };
 
 }  // namespace cayspin::program

@@ -71,6 +71,10 @@ class SceneGenerator {
                  std::vector<SymmetricTensor> const& inverse_inertia);
 
   bool is_llg() const { return is_llg_; }
+  template <class Exec>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return !is_llg_ || llg_.field().is_stationary();
+  }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
   bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }

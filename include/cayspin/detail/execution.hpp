@@ -18,20 +18,30 @@ inline constexpr bool is_host_execution =
 /// Up to this many sites a host kernel runs on the calling thread: waking the others costs more.
 inline constexpr std::int64_t calling_thread_sites = 2048;
 
-/// Runs body(0) .. body(count - 1) on a host space: on its threads, or, when there is little to do
-/// for spaces that finish a kernel before they return, on the calling thread.
-template <class Exec, class Body>
-void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
-                   std::int64_t sites, Body const& body) {
+/// A host space that has finished a kernel when the launch returns, and so little to do.
+template <class Exec>
+bool runs_on_calling_thread(std::int64_t sites) {
 #if defined(KOKKOS_ENABLE_SERIAL)
-  bool synchronous = false;
+  bool synchronous = std::is_same_v<Exec, Kokkos::Serial>;
 #if defined(KOKKOS_ENABLE_OPENMP)
   synchronous = synchronous || std::is_same_v<Exec, Kokkos::OpenMP>;
 #endif
 #if defined(KOKKOS_ENABLE_THREADS)
   synchronous = synchronous || std::is_same_v<Exec, Kokkos::Threads>;
 #endif
-  if (synchronous && sites <= calling_thread_sites) {
+  return synchronous && sites <= calling_thread_sites;
+#else
+  return false;
+#endif
+}
+
+/// Runs body(0) .. body(count - 1) on a host space: on its threads, or, when there is little to do
+/// for spaces that finish a kernel before they return, on the calling thread.
+template <class Exec, class Body>
+void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
+                   std::int64_t sites, Body const& body) {
+#if defined(KOKKOS_ENABLE_SERIAL)
+  if (runs_on_calling_thread<Exec>(sites)) {
     using Policy = Kokkos::RangePolicy<Kokkos::Serial, Kokkos::IndexType<std::int64_t>>;
     Kokkos::parallel_for(label, Policy(0, count), body);
     return;

@@ -39,6 +39,10 @@ class EffectiveField<> {
   EffectiveField prepare_rate(Exec const&, Spins const&, double, double) const {
     return {};
   }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
     return zero<typename Stencil::value_type>();
@@ -86,6 +90,10 @@ class EffectiveField<First, Rest...> {
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     return join(detail::prepare_rate(first_, exec, rates, t, dt),
                 rest_.prepare_rate(exec, rates, t, dt));
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return detail::is_stationary(first_, exec, spins) && rest_.is_stationary(exec, spins);
   }
 
   template <class Stencil>

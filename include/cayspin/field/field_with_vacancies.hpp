@@ -145,6 +145,10 @@ class FieldWithVacancies {
     detail::require_lattice_of(spins, occupation_, "cayspin::FieldWithVacancies");
     return among(detail::prepare_term(field_, exec, spins, t));
   }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return detail::is_stationary(field_, exec, spins);
+  }
   template <class Exec, class Rates>
   auto prepare_rate(Exec const& exec, Rates const& rates, double t, double dt) const {
     return among(detail::prepare_rate(field_, exec, rates, t, dt));

@@ -110,6 +110,11 @@ class SiteDependentExchange {
     return prepared;
   }
 
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
  private:
   ScalarField<Real, MemorySpace> constants_;
 };

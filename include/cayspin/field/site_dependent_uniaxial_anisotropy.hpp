@@ -106,6 +106,11 @@ class SiteDependentUniaxialAnisotropy {
                                              std::remove_const_t<decltype(axis)>>{constant, axis};
   }
 
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
  private:
   template <class Real, class MemorySpace>
   static void require_unit(SiteField<Real, 3, MemorySpace> const& axes) {

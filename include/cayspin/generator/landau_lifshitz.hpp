@@ -40,6 +40,10 @@ class LandauLifshitz {
   }
 
   template <class Exec, class Spins>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return detail::is_stationary(field_, exec, spins);
+  }
+  template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     return of(detail::prepare_rate(field_, exec, rates, t, dt));
   }

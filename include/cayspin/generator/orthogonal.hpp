@@ -55,6 +55,10 @@ class Orthogonal {
     return Orthogonal<decltype(prepared)>(std::move(prepared));
   }
   template <class Exec, class Spins>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return detail::is_stationary(generator_, exec, spins);
+  }
+  template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     auto prepared = detail::prepare_rate(generator_, exec, rates, t, dt);
     return Orthogonal<decltype(prepared)>(std::move(prepared));

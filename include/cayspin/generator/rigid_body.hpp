@@ -155,6 +155,11 @@ class RigidBodyEnsemble {
     return Prepared{{}, tensors_.array()};
   }
 
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
  private:
   Tensors tensors_;
 };

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// integrate() takes several steps of few spins in one launch; nobody sees a difference.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+
+#include <cmath>
+
+namespace cayspin::test {
+namespace {
+
+/// Keeps the spins' numbers at the steps it is called at, every seventh from the third.
+template <class Spins>
+struct Keep {
+  std::vector<std::pair<std::int64_t, std::vector<double>>>* kept;
+
+  bool due(Step const& step) const { return step.last || step.number % 7 == 3; }
+  template <class Exec>
+  void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
+    exec.fence();
+    kept->emplace_back(step.number, numbers_of(spins));
+  }
+};
+
+template <class Backend>
+class Batches : public ::testing::Test {
+ protected:
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec exec;
+  Lattice lattice = Lattice::square(13, 5);
+
+  Spins start() const { return spins_of<Spins>(lattice, random_directions(lattice.sites(), 5)); }
+
+  auto generator() const {
+    return LandauLifshitz(
+        EffectiveField{Exchange(lattice, 1), UniaxialAnisotropy(0.5, {0, 0.6, 0.8}),
+                       Zeeman{{0.1, 0, 0.3}}},
+        0.1);
+  }
+
+  // The same run by integrate and by hand.
+  template <class Stepper, class Generator>
+  void expect_same(Generator const& generator, bool batches) {
+    Times const times{0.25, 0.01, 60};
+    auto spins = start();
+    Stepper stepper(spins), by_hand(spins);
+    constexpr bool host = detail::is_host_execution<typename Backend::Exec>;
+    EXPECT_EQ(stepper.takes_batches(exec, generator, spins), batches && host);
+    std::vector<std::pair<std::int64_t, std::vector<double>>> kept, expected;
+    auto const summary = integrate(exec, stepper, generator, spins, times, Keep<Spins>{&kept});
+    EXPECT_EQ(summary.steps, 60);
+    EXPECT_EQ(summary.evaluations, 60 * Stepper::evaluations);
+    auto other = start();
+    Keep<Spins> const keep{&expected};
+    for (std::int64_t n = 0; n <= times.steps; ++n) {
+      Step const now{n, times.at(n), times.dt, n == times.steps};
+      if (keep.due(now)) keep(exec, now, other);
+      if (!now.last) by_hand.step(exec, generator, other, now.time, times.dt);
+    }
+    EXPECT_EQ(kept, expected);
+    EXPECT_EQ(kept.size(), 10u);
+  }
+};
+TYPED_TEST_SUITE(Batches, Backends, BackendName);
+
+TYPED_TEST(Batches, AreStepsToTheBit) {
+  using Spins = typename TypeParam::Spins;
+  this->template expect_same<LieEuler<Spins>>(this->generator(), true);
+  this->template expect_same<LieHeun<Spins>>(orthogonal(this->generator()), true);
+  this->template expect_same<Rkmk4<Spins>>(this->generator(), true);
+}
+
+TYPED_TEST(Batches, AreNotTakenWhereTheGeneratorChanges) {
+  using Spins = typename TypeParam::Spins;
+  auto const turning = [](double t) { return Vec3<double>{std::cos(t), std::sin(t), 0}; };
+  LandauLifshitz const generator(EffectiveField{TimeDependentZeeman(turning)}, 0.1);
+  this->template expect_same<Rkmk4<Spins>>(generator, false);
+  LayerAveragedSlabDemag<typename TypeParam::MemorySpace> const layers(this->lattice, 0);
+  this->template expect_same<LieEuler<Spins>>(LandauLifshitz(EffectiveField{layers}, 0.1), false);
+}
+
+}  // namespace
+}  // namespace cayspin::test
