@@ -16,6 +16,13 @@ namespace cayspin::test {
 template <class Real>
 inline constexpr double step_tolerance = 1e-13 / epsilon<double>* epsilon<Real>;
 
+/// Of two ways to write the same sigma.
+inline void expect_same(std::vector<double> const& a, std::vector<double> const& b, double bound,
+                        std::string const& where) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], bound) << where;
+}
+
 /// Both precisions where steps run by default: the spaces agree bit for bit (tests/backends).
 using OracleBackends = ::testing::Types<Backend<float, Kokkos::DefaultExecutionSpace>,
                                         Backend<double, Kokkos::DefaultExecutionSpace>>;
