@@ -190,7 +190,7 @@ TEST(Labels, WorkMemory) {
   expect_work_memory<ImplicitLieEuler<Field, Analytic>>("ImplicitLieEuler", 4);
   expect_work_memory<ImplicitMidpoint<Field>>("ImplicitMidpoint", 2);
   expect_work_memory<Rkmk4<Field>>("Rkmk4", 4);
-  expect_work_memory<StereographicRungeKutta<Field, tableau::Heun>>("StereographicRungeKutta", 2);
+  expect_work_memory<StereographicRungeKutta<Field, tableau::Heun>>("StereographicRungeKutta", 1);
   expect_work_memory<Series4<Field>>("Series4", 1);
 }
 

@@ -88,7 +88,7 @@ class RungeKutta {
 
  private:
   static constexpr int stages = Tableau::stages;
-  static constexpr int level_count = stages < 3 ? 1 : 2;
+  static constexpr int level_count = detail::level_fields<Tableau, Update>();
 
   template <int Stage>
   Spins const& level(Spins const& spins) const {
@@ -111,7 +111,9 @@ class RungeKutta {
                   .increment = {},
                   .next = next.output(streaming_ && !in_place),
                   .dt = static_cast<Real>(dt)};
-    for (int i = 0; i < Stage; ++i) kernel.increments[i] = increments_[i].array();
+    constexpr bool recovers = detail::recovers_increments<Tableau, Update>();
+    for (int i = 0; i < Stage; ++i)
+      kernel.increments[i] = recovers ? levels_[i].array() : increments_[i].array();
     if constexpr (!last)
       kernel.increment = increments_[Stage].output(streaming_ && (Stage == 0 || !keeps_sum));
     if constexpr (keeps_sum) kernel.sum = sum_.output(streaming_);

@@ -29,10 +29,18 @@ inline constexpr bool keeps_sum = Tableau::stages > 2 &&
                                   is_chain<Tableau>() && Update::increment_needs_argument &&
                                   !Update::keeps_generators;
 
+/// In a chain on a chart, each increment is read back from the spins of the stage after it: stages
+/// store their spins alone.
+template <class Tableau, class Update>
+constexpr bool recovers_increments() {
+  if constexpr (requires { Update::has_chart; }) return Tableau::stages > 1 && is_chain<Tableau>();
+  return false;
+}
+
 /// Does stage `stage` (or the end of the step behind the last one) read the increment of `source`?
 template <class Tableau, class Update>
 constexpr bool reads_increment(int stage, int source) {
-  if (source >= stage) return false;
+  if (source >= stage || recovers_increments<Tableau, Update>()) return false;
   if (keeps_sum<Tableau, Update>) return source == stage - 1;
   bool const last = stage == Tableau::stages - 1;
   if (last && (Tableau::b[source] != 0 || Update::keeps_generators)) return true;
@@ -59,8 +67,13 @@ constexpr bool reads_sum(int stage) {
 
 /// Fields of three numbers per site that a method needs beside the spins.
 template <class Tableau, class Update>
+constexpr int level_fields() {
+  if (recovers_increments<Tableau, Update>()) return Tableau::stages - 1;
+  return Tableau::stages < 3 ? 1 : 2;
+}
+template <class Tableau, class Update>
 constexpr int work_fields() {
-  int const levels = Tableau::stages < 3 ? 1 : 2;
+  int const levels = level_fields<Tableau, Update>();
   if (keeps_sum<Tableau, Update>) return levels + 2;
   int increments = 0;
   for (int stage = 0; stage + 1 < Tableau::stages; ++stage)
@@ -134,7 +147,7 @@ struct RungeKuttaStage {
   Isotropy isotropy;
   SiteArray<Real, 3> start;                                    // spins at the begin of the step
   SiteArray<Real, 3> level;                                    // spins of this stage
-  SiteArray<Real, 3> increments[stages > 1 ? stages - 1 : 1];  // of earlier stages
+  SiteArray<Real, 3> increments[stages > 1 ? stages - 1 : 1];  // of earlier stages, or spins
   OutputArray<Real, 3> sum;                                    // of weighted increments
   OutputArray<Real, 3> increment;                              // of this stage
   OutputArray<Real, 3> next;  // spins of the next stage, or of the end
@@ -146,6 +159,11 @@ struct RungeKuttaStage {
     Stencil<Site, Real> const stencil(site, level);
     Vec3<Value> const m0 = StageIndex == 0 ? stencil.center() : site.load(start);
     Vec3<Value> const a = Value(dt) * xi(stencil.center(), evaluate(generator, stencil));
+
+    if constexpr (recovers_increments<Tableau, Update>()) {
+      site.store(on_chart(site, a, stencil.center(), m0), next);
+      return;
+    }
 
     Vec3<Value> f[stages];
     unrolled<StageIndex>([&](auto j) {
@@ -214,6 +232,28 @@ struct RungeKuttaStage {
       return corrected<EnergyCorrectionOf<Tableau, Update>>(generator, site, f, m0, Value(dt));
     } else {
       return f;
+    }
+  }
+
+  // The next stage's spins; at the end the step's, with increment j from the spins after stage j.
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Vec3<Value> const& a,
+                                                   Vec3<Value> const& m,
+                                                   Vec3<Value> const& m0) const {
+    if constexpr (!last) {
+      constexpr double factor = Tableau::a[StageIndex + 1][StageIndex];
+      return Update::advance(Vec3<Value>(Value(static_cast<scalar_t<Value>>(factor)) * a), m, m0);
+    } else {
+      Vec3<Value> sum = weight<Value, StageIndex>() * Update::increment(m0, a, m, m0);
+      unrolled<StageIndex>([&](auto j) {
+        constexpr double factor = Tableau::b[j()] / Tableau::a[j() + 1][j()];
+        if constexpr (factor != 0) {
+          Vec3<Value> const after = j() + 1 == StageIndex ? m : site.load(increments[j()]);
+          sum = multiply_add(Value(static_cast<scalar_t<Value>>(factor)),
+                             Update::coordinates(after, m0), sum);
+        }
+      });
+      return Update::finish(sum, m0);
     }
   }
 

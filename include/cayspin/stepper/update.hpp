@@ -90,6 +90,7 @@ struct Classical {
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool keeps_generators = false;
+  static constexpr bool has_chart = true;  // f can be had back from the spin it moves m0 to
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -112,6 +113,29 @@ struct Stereographic {
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
     return move(f, m0);
+  }
+
+  /// The f of move(f, m0) = m; made of m - m0, it loses nothing where that is small.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> coordinates(Vec3<Value> const& m,
+                                                             Vec3<Value> const& m0) {
+    Vec3<Value> const d = m - m0;
+    Value const square = dot(d, d);
+    Value const r = Value(2) / (Value(4) - square);
+    return r * multiply_add(Value(Value(0.5) * square), m0, d);
+  }
+
+  /// move(increment(..), m0) in one, with one division.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Vec3<Value> const& step_times_a,
+                                                         Vec3<Value> const& m,
+                                                         Vec3<Value> const& m0) {
+    Vec3<Value> const u = cross(step_times_a, m);
+    Vec3<Value> const e = m + m0;
+    Value const e2 = dot(e, e), u2 = dot(u, u);
+    Vec3<Value> const t = multiply_add(Value(Value(-2) * dot(u, m0)), e, Vec3<Value>(e2 * u));
+    Value const scale = Value(4) / detail::multiply_add(e2, e2, Value(Value(4) * u2));
+    return multiply_add(scale, multiply_add(Value(Value(-2) * u2), m0, t), m0);
   }
 };
 
