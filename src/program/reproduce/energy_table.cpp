@@ -23,7 +23,8 @@ std::string order_text(double order) {
 
 std::string place(double paper, Spread const& ours) {
   if (std::isnan(paper)) return "not recoverable";
-  bool const below = paper<ours.low, above = paper> ours.high;
+  bool const below = paper < ours.low;
+  bool const above = paper > ours.high;
   if (!below && !above) return "inside";
   if (paper < 10 * round_off && ours.low < round_off) return "rounding, as ours";
   return below ? fmt::format("below, {:.2f} of its end", paper / ours.low)
@@ -35,8 +36,8 @@ std::string place(double paper, Spread const& ours) {
 EnergyTable::EnergyTable(Context const& context, std::string_view name, std::string_view title)
     : context_(context),
       file_(context.folder, fmt::format("{}.csv", name),
-            "bodies,update,dt,paper,median,low,high,mean_of_ten_low,mean_of_ten_median,"
-            "mean_of_ten_high,order_of_means") {
+            "bodies,update,dt,paper,median,low,high,"
+            "mean_of_ten_low,mean_of_ten_median,mean_of_ten_high,order_of_means") {
   fmt::print("\n{}\n", title);
 }
 

@@ -34,8 +34,7 @@ void errata(Context const& context) {
   Comparison comparison(context);
   fmt::print(
       "\nErrata, each measured as printed and as corrected; medians over {} bodies where no other "
-      "is "
-      "named:\n{}\n",
+      "is named:\n{}\n",
       context.bodies, describe({Law::Shape::triaxial}));
   erratum_sign_of_rigid_body(comparison);
   erratum_sigma(comparison);

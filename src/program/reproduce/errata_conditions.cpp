@@ -26,13 +26,13 @@ auto error_at_2(Choose choose) {
   return [=](double dt) {
     return [=](Body const& body) {
       auto const steps = std::llround(2 / dt);
-      auto const end = run_on_host(body, steps, [&](Vector const& m) {
+      auto const end = take_steps(body, steps, [&](Vector const& m) {
                          Vector const a = default_generator(body, m);
                          Vector const rate = default_generator(body, cross(a, m));
                          return multiply_add(dt * dt / 2, rate + choose(body, m), Vector(dt * a));
                        }).end;
       auto const exact =
-          run_on_host(body, 64 * steps, [&](Vector const& m) {
+          take_steps(body, 64 * steps, [&](Vector const& m) {
             return heun_update([&](Vector const& n) { return default_generator(body, n); }, m,
                                dt / 64);
           }).end;

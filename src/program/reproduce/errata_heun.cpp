@@ -36,7 +36,7 @@ double invariant_sigma_def(Body const& body, Vector const& m) {
 auto energy_error(double factor, int power) {
   return [=](double dt) {
     return [=](Body const& body) {
-      return run_on_host(
+      return take_steps(
                  body, std::llround(end / dt),
                  [&](Vector const& m) {
                    auto const a = [&](Vector const& n) { return default_generator(body, n); };

@@ -41,10 +41,10 @@ void erratum_sign_of_rigid_body(Comparison& comparison) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     auto body = bodies[i];
     auto const step = [&](Vector const& m) { return 0.01 * body.velocity(m); };
-    printed_distances.push_back(distance(run_on_host(body, 1000, step).end, solution[i]));
+    printed_distances.push_back(distance(take_steps(body, 1000, step).end, solution[i]));
     distances.push_back(distance(corrected.ends[i], solution[i]));
     body.start = -1.0 * body.start;
-    printed_errors.push_back(run_on_host(body, 1000, step).energy_error);
+    printed_errors.push_back(take_steps(body, 1000, step).energy_error);
     differences.push_back(std::abs(printed_errors[i] - corrected.energy_errors[i]));
   }
   comparison.row("distance from m' = m x I^-1 m at t = 10, geometric Euler, dt = 0.01",
@@ -73,11 +73,11 @@ void erratum_euler_correction(Comparison& comparison) {
   comparison.row("... only the power corrected", median_of(bodies, difference(2, 1)), not_a_number);
   auto const energy_error = [](int power, double sign, double dt) {
     return [=](Body const& body) {
-      return run_on_host(body, std::llround(10 / dt),
-                         [&](Vector const& m) {
-                           double const sigma = sign * second_form(body, m, power);
-                           return dt * multiply_add(sigma, m, body.velocity(m));
-                         })
+      return take_steps(body, std::llround(10 / dt),
+                        [&](Vector const& m) {
+                          double const sigma = sign * second_form(body, m, power);
+                          return dt * multiply_add(sigma, m, body.velocity(m));
+                        })
           .energy_error;
     };
   };

@@ -47,8 +47,8 @@ Vector printed_norm(Body const& body, Vector const& m) {
 auto energy_error(Form form) {
   return [=](double dt) {
     return [=](Body const& body) {
-      return run_on_host(body, std::llround(end / dt),
-                         [&](Vector const& m) { return dt * form(body, m); })
+      return take_steps(body, std::llround(end / dt),
+                        [&](Vector const& m) { return dt * form(body, m); })
           .energy_error;
     };
   };
@@ -64,7 +64,7 @@ auto local_error(Form form, double dt) {
                          dt / 16);
     };
     Vector const error =
-        Cayley::rotate(Vector(dt * form(body, m)), m) - run_on_host(body, 16, flow).end;
+        Cayley::rotate(Vector(dt * form(body, m)), m) - take_steps(body, 16, flow).end;
     return std::abs(dot(error, w)) / std::sqrt(square(w)) / (dt * dt);
   };
 }
@@ -84,15 +84,15 @@ auto remainder(double dt) {
 auto implicit_energy_error(double sign) {
   return [=](double dt) {
     return [=](Body const& body) {
-      return run_on_host(body, std::llround(end / dt),
-                         [&](Vector const& m) {
-                           Vector xi = default_generator(body, m);
-                           for (int i = 0; i < 30; ++i)
-                             xi = default_generator(body, Cayley::rotate(Vector(dt * xi), m));
-                           double const sigma = sign * default_product(body, m) /
-                                                square(orthogonal_generator(body, m));
-                           return dt * multiply_add(sigma, m, xi);
-                         })
+      return take_steps(body, std::llround(end / dt),
+                        [&](Vector const& m) {
+                          Vector xi = default_generator(body, m);
+                          for (int i = 0; i < 30; ++i)
+                            xi = default_generator(body, Cayley::rotate(Vector(dt * xi), m));
+                          double const sigma = sign * default_product(body, m) /
+                                               square(orthogonal_generator(body, m));
+                          return dt * multiply_add(sigma, m, xi);
+                        })
           .energy_error;
     };
   };

@@ -34,8 +34,7 @@ constexpr Curve curves[]{
 void figure_orders(Context const& context) {
   fmt::print(
       "\n  fig:7, fig:10: order in dt over sigma, the slab at damping 10; fitted over dt = 0.02 .. "
-      "0.00125, and of the finest pair\n"
-      "  {:<24} {:<27} {:>15} {:>15} {:>24}\n",
+      "0.00125, and of the finest pair\n  {:<24} {:<27} {:>15} {:>15} {:>24}\n",
       "", "", "fitted", "finest pair", "error, largest/least");
   NumbersFile file(context.folder, "orders.csv",
                    "sweep,method,sigma,fitted_order,finest_order,error");
@@ -62,18 +61,15 @@ void figure_orders(Context const& context) {
   file.write();
   print_paragraph(
       "The paper: the order varies with sigma, for RKMK4 more than for Heun. Where dt is small "
-      "enough "
-      "it does not (weak field); the error does, by factors of hundreds and more. Fitted from "
-      "steps "
-      "that begin just below the stable one (strong field) it does, and most with the stages as "
-      "printed.");
+      "enough it does not (weak field); the error does, by factors of hundreds and more. Fitted "
+      "from steps that begin just below the stable one (strong field) it does, and most with the "
+      "stages as printed.");
 }
 
 void figure_convergence(Context const& context) {
   fmt::print(
       "\n  fig:7b: RKMK4, sigma = 0: fitted order of the error in m_x of spin 37, and of the "
-      "largest "
-      "error; the paper: 5.6 and 4.03\n");
+      "largest error; the paper: 5.6 and 4.03\n");
   NumbersFile file(context.folder, "convergence.csv", "case,method,dt,error,error_x");
   struct Case {
     std::string_view name;
@@ -104,8 +100,7 @@ void figure_convergence(Context const& context) {
 void figure_norm(Context const& context) {
   fmt::print(
       "\n  fig:9: ln|m| of classical RK4 and of RKMK4 on [0, 1], dt = 0.01, strong field; the "
-      "paper: "
-      "a drift of the order of 1e-6\n");
+      "paper: a drift of the order of 1e-6\n");
   NumbersFile file(context.folder, "norm.csv", "method,damping,time,log_norm");
   for (double const damping : {0.05, 1.0, 2.0, 10.0}) {
     Slab slab = strong_damping_strong_field;
@@ -124,9 +119,8 @@ void figure_norm(Context const& context) {
   }
   file.write();
   print_paragraph(
-      "RK4's drift goes with the damping, which the paper does not give here, and with dt^4; RKMK4 "
-      "has "
-      "none beyond rounding.");
+      "RK4's drift goes with the damping, which the paper does not give here; RKMK4 has none "
+      "beyond rounding.");
 }
 
 }  // namespace cayspin::program::reproduction

@@ -33,7 +33,7 @@ struct HostRun {
 
 /// `update(m)` is F, with the step in it.
 template <class Update>
-HostRun run_on_host(Body const& body, std::int64_t steps, Update const& update) {
+HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
   HostRun run{body.start, 0};
   double const first = body.energy(body.start);
   for (std::int64_t n = 0; n < steps; ++n) {

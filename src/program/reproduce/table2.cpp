@@ -27,8 +27,7 @@ void table2(Context const& context) {
       "The paper does not say how it drew its bodies. Errors go with powers of 1/I, so the laws "
       "here are chosen to give errors of its size: with moments in [1, 3] most of its figures lie "
       "below the ranges. Its axisymmetric ones can only have been close to spheres: F^Eul_orth "
-      "goes "
-      "with the cube of the difference of the moments.");
+      "goes with the cube of the difference of the moments.");
   table.close();
 }
 

@@ -5,9 +5,9 @@
 namespace cayspin::program::reproduction {
 
 void table4(Context const& context) {
-  EnergyTable table(context, "table4",
-                    "Table 4. Largest energy error over [0, 100], fourth order; the paper: mean of "
-                    "ten bodies");
+  EnergyTable table(
+      context, "table4",
+      "Table 4. Largest energy error over [0, 100], fourth order; the paper: mean of ten bodies");
   std::vector<double> const dts{10, 1, 0.1};
   table.add({"triaxial",
              {Law::Shape::triaxial},
@@ -32,14 +32,11 @@ void table4(Context const& context) {
   table.note(
       "Not explained: the paper's F^sy4_def and F^sy4_dcor lie below the ranges at dt = 10 and 1, "
       "and have orders 4.01 and 3.63 from there to 0.1, where F^RK4_def of the same bodies has "
-      "ours. "
-      "Its F^sy4_dcor keeps the error of F^sy4_def at dt = 0.1, as if the correction, which it "
-      "does "
-      "not print, did not act there; ours removes the h^4 part and leaves order 4.98 in every set "
-      "of "
-      "ten. F^RK4 has the orders of the corrected stages (errata, 6), and F^sy4_orth is the "
-      "printed "
-      "form (errata, 7). For an axisymmetric body the corrections vanish, here as there.");
+      "ours. Its F^sy4_dcor keeps the error of F^sy4_def at dt = 0.1, as if the correction, which "
+      "it does not print, did not act there; ours removes the h^4 part and leaves order 4.98 in "
+      "every set of ten. F^RK4 has the orders of the corrected stages (errata, 6), and F^sy4_orth "
+      "is the printed form (errata, 7). For an axisymmetric body the corrections vanish, here as "
+      "there.");
   table.close();
 }
 
