@@ -15,10 +15,12 @@
 
 namespace cayspin {
 
-/// `steps` steps of length dt from `begin`; the time of step n is begin + n dt.
+/// Steps of length dt up to number `steps`; the time of step n is begin + n dt. A run that goes on
+/// begins behind step `first`, at that step's time.
 struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
+  std::int64_t first = 0;
 
   double at(std::int64_t step) const { return begin + static_cast<double>(step) * dt; }
 };
@@ -120,7 +122,7 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
 /// Advances `spins` over `times`; a stepper that remembers steps forgets those of runs before.
 /// Observers see the state before the first step and after each one.
 /// Returns what was done; `spins` holds the state at the end, and the work has finished.
-/// Throws std::invalid_argument when dt is not finite or steps is negative.
+/// Throws std::invalid_argument when dt is not finite or the number of steps is negative.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {
@@ -128,7 +130,7 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
                 "The stepper was made for another type of spin field.");
   if (!std::isfinite(times.dt) || !std::isfinite(times.begin))
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
-  if (times.steps < 0)
+  if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
 
   Summary summary;
@@ -142,7 +144,7 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     batches = stepper.takes_batches(exec, generator, spins);
   exec.fence("cayspin::integrate: begin");
   clock.reset();
-  for (std::int64_t number = 0;;) {
+  for (std::int64_t number = times.first;;) {
     Step const now{number, times.at(number), times.dt, number == times.steps};
     if ((detail::is_due(observers, now) || ...) || now.last) {
       exec.fence("cayspin::integrate: observers");

@@ -17,7 +17,7 @@ struct SceneOptions {
 };
 
 struct RunOptions : SceneOptions {
-  std::optional<std::filesystem::path> output;
+  std::optional<std::filesystem::path> output, restart;
   std::optional<std::string> space;
   std::optional<int> threads, device;
   bool overwrite = false, quiet = false;

@@ -63,7 +63,6 @@ int perform(int argc, char** argv) {
   app.require_subcommand(1);
 
   RunOptions run_options;
-  std::string restart;
   auto* run_command = app.add_subcommand("run", "Run a scene and write its trajectory (HDF5)");
   add_scene_options(*run_command, run_options);
   run_command->add_option("--output", run_options.output, "Trajectory file; wins over output.file");
@@ -73,7 +72,8 @@ int perform(int argc, char** argv) {
       ->check(CLI::Range(1, 65536));
   run_command->add_option("--device", run_options.device, "Number of the device")
       ->check(CLI::Range(0, 65536));
-  run_command->add_option("--restart", restart, "Go on from the last frame of a trajectory file");
+  run_command->add_option("--restart", run_options.restart,
+                          "Go on from the last frame of a trajectory file");
   run_command->add_flag("--quiet", run_options.quiet, "No progress");
 
   CheckOptions check_options;
@@ -100,8 +100,6 @@ int perform(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);
     throw UsageError(fmt::format("{} (see cayspin --help)", error.what()));
   }
-  if (*run_command && run_command->count("--restart") > 0)
-    throw UsageError("--restart: this version cannot restart from a trajectory file yet");
   if (*run_command) return run(run_options);
   if (*check_command) return check(check_options);
   if (*methods_command) return methods();

@@ -12,18 +12,19 @@
 
 namespace cayspin::program {
 
-Progress::Progress(std::int64_t steps, std::int64_t sites, bool quiet)
+Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool quiet)
     : quiet_(quiet),
       terminal_(::isatty(STDOUT_FILENO) == 1),
+      first_(first),
       steps_(steps),
       sites_(sites),
-      next_(quiet ? std::numeric_limits<std::int64_t>::max() : 1) {}
+      next_(quiet ? std::numeric_limits<std::int64_t>::max() : first + 1) {}
 
 void Progress::show(Step const& step) {
   auto const now = Clock::now();
   std::chrono::duration<double> const total = now - begin_, pause = now - shown_;
   double const seconds = std::max(total.count(), 1e-9);
-  double const rate = static_cast<double>(step.number) / seconds;
+  double const rate = static_cast<double>(step.number - first_) / seconds;
   // Looking at the clock costs as much as a small step, so it is done about ten times a second.
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
   if (pause.count() < (terminal_ ? 0.1 : 5)) return;

@@ -12,7 +12,7 @@ namespace cayspin::program {
 /// Tells on standard output how far a run is: a bar on a terminal, otherwise now and then a line.
 class Progress {
  public:
-  Progress(std::int64_t steps, std::int64_t sites, bool quiet);
+  Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool quiet);
 
   bool due(Step const& step) const { return step.number >= next_; }
   void show(Step const& step);
@@ -24,7 +24,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   bool quiet_, terminal_;
-  std::int64_t steps_, sites_, next_;
+  std::int64_t first_, steps_, sites_, next_;
   Clock::time_point begin_ = Clock::now(), shown_ = begin_;
   bool on_line_ = false;
 };

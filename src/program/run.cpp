@@ -4,6 +4,7 @@
 #include "denormals.hpp"
 #include "failure.hpp"
 #include "kokkos_settings.hpp"
+#include "restart.hpp"
 #include "text.hpp"
 #include "watch.hpp"
 
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 namespace cayspin::program {
 namespace {
@@ -53,16 +55,18 @@ io::TrajectoryHeader make_header(io::Scene const& scene, Precision precision, Sp
 }
 
 template <class Real, class Space>
-int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options) {
+int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
+           Restart const* restart) {
   Kokkos::Timer const clock;
   using Job = Simulation<Real, Space>;
   typename Job::Spins const spins("spins", plan.lattice);
-  copy_from_host(io::initial_spins(scene), spins);
+  copy_from_host(restart ? restart->spins() : io::initial_spins(scene), spins);
   Job job{Space(), spins, SceneGenerator<typename Job::Spins>(scene, plan.lattice), plan.times};
+  if (restart) job.times.first = restart->step();
 
   auto const path = output_file(scene, options);
   Watch<Real, Space> watch(
-      scene, job.generator, spins,
+      scene, job.generator, spins, job.times.first,
       [&] {
         return io::TrajectoryFile(path, make_header(scene, options.precision, job.exec),
                                   options.overwrite);
@@ -106,6 +110,15 @@ int run(RunOptions const& options) {
   io::check_files(scene);
   auto const plan = make_plan(scene, options.precision);
   require_memory(scene, plan);
+  std::optional<Restart> restart;
+  if (options.restart) restart.emplace(*options.restart, scene, options.precision);
+  std::error_code ignored;
+  if (restart && std::filesystem::equivalent(restart->path(), output_file(scene, options), ignored))
+    throw UsageError(
+        fmt::format("--restart {}: the run would write into it; accepted: another file"
+                    " for --output",
+                    restart->path().string()));
+  Restart const* const from = restart ? &*restart : nullptr;
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   warn_above_stable_dt(scene, plan);
@@ -114,8 +127,8 @@ int run(RunOptions const& options) {
   EnabledSpaces::for_each([&]<class Space>() {
     if (space_name<Space>() != space) return;
     status = options.precision == Precision::double_precision
-                 ? run_on<double, Space>(scene, plan, options)
-                 : run_on<float, Space>(scene, plan, options);
+                 ? run_on<double, Space>(scene, plan, options, from)
+                 : run_on<float, Space>(scene, plan, options, from);
   });
   return status;
 }

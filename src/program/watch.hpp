@@ -42,15 +42,17 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
   using OpenFile = std::function<io::TrajectoryFile()>;
 
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
+  /// `first`: the step behind which the run begins.
   Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
-        OpenFile open_file, bool quiet)
-      : generator_(generator),
+        std::int64_t first, OpenFile open_file, bool quiet)
+      : first_(first),
+        generator_(generator),
         output_(scene.output),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
         guard_(energy_must_fall(scene), std::numeric_limits<Real>::epsilon(),
                guard_period(spins.sites())),
-        progress_(scene.integrator.steps, spins.sites(), quiet),
+        progress_(first, scene.integrator.steps, spins.sites(), quiet),
         frame_("cayspin::frame", static_cast<std::size_t>(spins.sites())),
         host_frame_(Kokkos::create_mirror_view(frame_)) {
     if (until_torque_) torque_.emplace(generator.precession_alone());
@@ -74,7 +76,7 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
                {}};
     failure_ = guard_.judge(step, now.energy, now.norm_defect);
     if (failure_) return Next::stop;
-    at_rest_ = torque_ && step.number > 0 && now.energy.value < guard_.first_energy() &&
+    at_rest_ = torque_ && step.number > first_ && now.energy.value < guard_.first_energy() &&
                largest_rate(exec, *torque_, spins, step.time) < *until_torque_;
     bool const ends = interrupt || at_rest_;
     interrupted_ = interrupt && !at_rest_ && !step.last;
@@ -93,8 +95,8 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
   Progress& progress() { return progress_; }
 
  private:
-  static bool at(Step const& step, std::int64_t every) {
-    return step.last || step.number % every == 0;
+  bool at(Step const& step, std::int64_t every) const {
+    return step.last || step.number == first_ || step.number % every == 0;
   }
   bool frame_due(Step const& step) const { return at(step, output_.every); }
   bool scalars_due(Step const& step) const { return at(step, output_.scalars_every); }
@@ -110,6 +112,7 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
     last_frame_ = now;
   }
 
+  std::int64_t first_;
   SceneGenerator<Spins> generator_;
   std::optional<SceneGenerator<Spins>> torque_;
   io::Output output_;

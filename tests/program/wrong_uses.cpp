@@ -73,7 +73,7 @@ std::vector<WrongUse> wrong_scenes() {
       {"ThreadsNotANumber", {"--threads", "two"}, "--threads"},
       {"UnknownOption", {"--fast"}, "--fast"},
       {"TwoScenes", {"other.toml"}, "other.toml"},
-      {"Restart", {"--restart", "small.h5"}, "--restart"},
+      {"RestartFromNoTrajectory", {"--restart", "small.h5"}, "small.h5"},
       {"MissingFolder", {"--output", "none/out.h5"}, "none"},
       {"OutputIsAFolder", {"--output", "."}, "."},
   };

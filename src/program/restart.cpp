@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "restart.hpp"
+
+#include "failure.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace cayspin::program {
+
+Restart::Restart(std::filesystem::path path, io::Scene const& scene, Precision precision)
+    : path_(std::move(path)), info_(io::read_info(path_)) {
+  auto const refuse = [&](std::string const& wrong, std::string const& accepted) {
+    throw UsageError(
+        fmt::format("--restart {}: {}; accepted: {}", path_.string(), wrong, accepted));
+  };
+  auto const& [nx, ny, nz] = info_.header.shape;
+  if (info_.header.shape != scene.lattice.shape)
+    refuse(fmt::format("its lattice is {} x {} x {}", nx, ny, nz), "the scene's lattice");
+  if (info_.header.precision != to_string(precision))
+    refuse(fmt::format("its spins are in {} precision", info_.header.precision),
+           fmt::format("--precision {}", info_.header.precision));
+  if (info_.frames == 0) refuse("it holds no frame", "a file with one");
+  double const dt = scene.integrator.dt, time = info_.frame_times.back();
+  if (std::abs(time - static_cast<double>(step()) * dt) > 1e-9 * dt)
+    refuse(fmt::format("its step {} is at t = {}, not at that many steps of dt = {}", step(), time,
+                       dt),
+           "the dt it was run with");
+  if (step() >= scene.integrator.steps)
+    refuse(fmt::format("it ends at step {}, the scene at step {}", step(), scene.integrator.steps),
+           "a scene that goes on");
+}
+
+std::vector<double> Restart::spins() const { return io::read_spins(path_, info_.header.shape); }
+
+}  // namespace cayspin::program
