@@ -5,6 +5,8 @@
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/isotropy/energy.hpp>
+#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <type_traits>
