@@ -67,6 +67,9 @@ void run_hand_written(benchmark::State& state) {
   report(state, static_cast<std::int64_t>(sites), Evaluations);
 }
 
+template <class Spins, class Tableau>
+using Chart = cayspin::StereographicRungeKutta<Spins, Tableau>;
+
 template <class Real>
 void register_cases(std::string const& precision) {
   using Spins = cayspin::SpinField<Real>;
@@ -82,6 +85,8 @@ void register_cases(std::string const& precision) {
   add("LieEuler", run_cayspin<cayspin::LieEuler<Spins>, Real>);
   add("LieHeun", run_cayspin<cayspin::LieHeun<Spins>, Real>);
   add("Rkmk4", run_cayspin<cayspin::Rkmk4<Spins>, Real>);
+  add("ChartHeun", run_cayspin<Chart<Spins, cayspin::tableau::Heun>, Real>);
+  add("ChartRk4", run_cayspin<Chart<Spins, cayspin::tableau::Classical4>, Real>);
   add("ProjectedHeun", run_cayspin<cayspin::ProjectedHeun<Spins>, Real>);
   add("ProjectedRk4", run_cayspin<cayspin::ProjectedRk4<Spins>, Real>);
 }
@@ -95,7 +100,9 @@ int main(int argc, char** argv) {
   MedianTable table("ns/evaluation", {{"LieEuler", "hand-written Heun"},
                                       {"LieHeun", "hand-written Heun"},
                                       {"ProjectedHeun", "hand-written Heun"},
+                                      {"ChartHeun", "hand-written Heun"},
                                       {"Rkmk4", "hand-written RK4"},
+                                      {"ChartRk4", "hand-written RK4"},
                                       {"ProjectedRk4", "hand-written RK4"}});
   return table.run(argc, argv);
 }
