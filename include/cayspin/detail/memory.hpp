@@ -3,6 +3,7 @@
 
 #include <cayspin/detail/pack.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -74,15 +75,20 @@ inline void streaming_fence() {
 #endif
 }
 
+/// What one process may hope to keep in the last cache: all of a small one, a quarter of a large
+/// one, which many cores share.
 inline std::size_t last_level_cache_bytes() {
+  constexpr std::size_t usual = std::size_t(32) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
   static std::size_t const bytes = [] {
     long const reported = sysconf(_SC_LEVEL3_CACHE_SIZE);
-    return reported > 0 ? static_cast<std::size_t>(reported) : std::size_t(32) << 20;
+    if (reported <= 0) return usual;
+    auto const all = static_cast<std::size_t>(reported);
+    return all <= usual ? all : std::max(usual, all / 4);
   }();
   return bytes;
 #else
-  return std::size_t(32) << 20;
+  return usual;
 #endif
 }
 
