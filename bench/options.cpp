@@ -21,17 +21,14 @@ Lattice lattice_of(std::int64_t size) {
   return size == 100 ? Lattice::chain(100) : Lattice::cubic(size, size, size);
 }
 
-auto spins_generator(Lattice const& lattice, double damping) {
-  return LandauLifshitz(
-      EffectiveField(Exchange(lattice, 1), UniaxialAnisotropy(0.5, {0, 0, 1}), Zeeman{{0, 0, 0.3}}),
-      damping);
-}
-
-struct Damped {
-  static auto generator(Lattice const& lattice) { return spins_generator(lattice, 0.1); }
-};
-struct Conservative {
-  static auto generator(Lattice const& lattice) { return spins_generator(lattice, 0); }
+// The damping is computed, and 0: with any other the chain of 100 comes to rest in the time that a
+// repetition takes, and what is timed are denormal numbers.
+struct Coupled {
+  static auto generator(Lattice const& lattice) {
+    return LandauLifshitz(EffectiveField(Exchange(lattice, 1), UniaxialAnisotropy(0.5, {0, 0, 1}),
+                                         Zeeman{{0, 0, 0.3}}),
+                          0);
+  }
 };
 struct Bodies {
   static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
@@ -70,7 +67,7 @@ void run(benchmark::State& state) {
 
 std::vector<std::pair<std::string, std::string>> yardsticks;
 
-template <class Stepper, class System = Damped>
+template <class Stepper, class System = Coupled>
 void add(std::string const& name, std::string const& yardstick = {}) {
   benchmark::RegisterBenchmark(("f64/" + name).c_str(), run<Stepper, System>)
       ->Arg(100)
@@ -85,7 +82,7 @@ void register_euler() {
   using namespace isotropy;
   std::string const euler = "Euler";
   add<LieEuler<Spins>>(euler);
-  add<LieEuler<Spins>, OrthogonalOf<Damped>>("Euler orthogonal", euler);
+  add<LieEuler<Spins>, OrthogonalOf<Coupled>>("Euler orthogonal", euler);
   add<LieEuler<Spins, Constant>>("Euler constant sigma", euler);
   add<LieEuler<Spins, Zero, Exponential>>("Euler exponential", euler);
   add<LieEuler<Spins, Analytic>>("Euler analytic sigma", euler);
@@ -99,7 +96,7 @@ void register_euler() {
 void register_heun() {
   std::string const heun = "Heun", bodies = "Heun of bodies";
   add<LieHeun<Spins>>(heun, "Euler");
-  add<LieHeun<Spins>, OrthogonalOf<Damped>>("Heun orthogonal", heun);
+  add<LieHeun<Spins>, OrthogonalOf<Coupled>>("Heun orthogonal", heun);
   add<LieHeun<Spins, isotropy::Zero, Exponential>>("Heun exponential", heun);
   add<StereographicRungeKutta<Spins, tableau::Heun>>("Heun tangent", heun);
   add<LieHeun<Spins>, Bodies>(bodies);
@@ -111,10 +108,10 @@ void register_heun() {
 void register_order_4() {
   std::string const rkmk4 = "Rkmk4", bodies = "Rkmk4 of bodies";
   add<Rkmk4<Spins>>(rkmk4, "Euler");
-  add<Rkmk4<Spins>, OrthogonalOf<Damped>>("Rkmk4 orthogonal", rkmk4);
+  add<Rkmk4<Spins>, OrthogonalOf<Coupled>>("Rkmk4 orthogonal", rkmk4);
   add<Rkmk4<Spins, isotropy::Zero, Exponential>>("Rkmk4 exponential", rkmk4);
   add<StereographicRungeKutta<Spins, tableau::Classical4>>("Rkmk4 tangent", rkmk4);
-  add<EnergyProjection<Rkmk4<Spins>>, Conservative>("Rkmk4 energy projection", rkmk4);
+  add<EnergyProjection<Rkmk4<Spins>>>("Rkmk4 energy projection", rkmk4);
   add<Series4<Spins>>("Series4", rkmk4);
   add<Rkmk4<Spins>, Bodies>(bodies);
   add<Rkmk4<Spins, isotropy::Energy>, Bodies>("Rkmk4 of bodies dcor", bodies);

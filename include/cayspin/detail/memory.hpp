@@ -78,7 +78,7 @@ inline void streaming_fence() {
 /// What one process may hope to keep in the last cache: all of a small one, a quarter of a large
 /// one, which many cores share.
 inline std::size_t last_level_cache_bytes() {
-  constexpr std::size_t usual = std::size_t(32) << 20;
+  static constexpr std::size_t usual = std::size_t(32) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
   static std::size_t const bytes = [] {
     long const reported = sysconf(_SC_LEVEL3_CACHE_SIZE);
