@@ -75,7 +75,7 @@ inline void streaming_fence() {
 #endif
 }
 
-/// What one process may hope to keep in the last cache: all of a small one, a quarter of a large
+/// What one process may hope to keep in the last cache: all of a small one, a third of a large
 /// one, which many cores share.
 inline std::size_t last_level_cache_bytes() {
   static constexpr std::size_t usual = std::size_t(32) << 20;
@@ -84,7 +84,7 @@ inline std::size_t last_level_cache_bytes() {
     long const reported = sysconf(_SC_LEVEL3_CACHE_SIZE);
     if (reported <= 0) return usual;
     auto const all = static_cast<std::size_t>(reported);
-    return all <= usual ? all : std::max(usual, all / 4);
+    return all <= usual ? all : std::max(usual, all / 3);
   }();
   return bytes;
 #else
