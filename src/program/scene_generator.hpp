@@ -29,6 +29,13 @@ struct SceneGeneratorNow {
     return is_llg ? llg.rate(m, rates) : bodies.rate(m, rates);
   }
 
+  /// With the part along the spin.
+  SceneGeneratorNow bare() const {
+    auto other = *this;
+    other.orthogonal = false;
+    return other;
+  }
+
   // Series of rigid bodies have a generator of their own.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
@@ -78,13 +85,6 @@ class SceneGenerator {
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
   bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }
-
-  /// With the part along the spin.
-  SceneGenerator bare() const {
-    SceneGenerator other = *this;
-    other.orthogonal_ = false;
-    return other;
-  }
 
   /// The effective field alone, as the generator of a precession about it.
   SceneGenerator precession_alone() const;

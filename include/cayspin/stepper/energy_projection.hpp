@@ -115,9 +115,8 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
 
     auto const prepared = detail::prepare_term(generator, exec, begin_, t);
     using Slope = detail::EnergyAlongCoordinates<std::remove_const_t<decltype(prepared)>, Real>;
-    double const slope =
-        detail::reduce_sites<detail::Sum, 1>(exec, this->label("::slope"), spins.layout(),
-                                             Slope{prepared, begin_.array(), spins.array()})[0];
+    double const slope = detail::reduce_sites<detail::Sum, 1>(
+        exec, slope_label_, spins.layout(), Slope{prepared, begin_.array(), spins.array()})[0];
     if (!(slope != 0)) return;
     double epsilon = 0, projected_with = 0;
     double excess = energy(exec, generator, spins, t).value - before;
@@ -138,11 +137,12 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   template <class Exec>
   void project(Exec const& exec, Spins const& end, double epsilon) {
     detail::for_each_site<Real>(
-        exec, this->label("::project"), end.layout(),
+        exec, project_label_, end.layout(),
         detail::ProjectStage<Real>{begin_.array(), end.array(), next_.output(false),
                                    static_cast<Real>(epsilon)});
   }
 
+  std::string slope_label_ = this->label("::slope"), project_label_ = this->label("::project");
   Stepper stepper_;
   int corrections_;
   Spins begin_, next_;

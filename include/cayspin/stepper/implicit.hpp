@@ -118,25 +118,26 @@ class Implicit : public StepperBase<Spins> {
                   static_cast<Real>(dt), to_middle};
     if constexpr (!is_corrected) kernel.isotropy = isotropy_;
     if (corrected) kernel.sigma = rates_.along();
-    for_each_site<Real>(exec, this->label("::iterate"), start.layout(), kernel);
+    for_each_site<Real>(exec, iterate_label_, start.layout(), kernel);
     ++evaluations_done_;
   }
 
   template <class Exec, class Generator>
   void compute_sigma(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                      double dt) {
-    auto const plain = bare(generator);
     bool orthogonal = false;
     if constexpr (requires { generator.is_orthogonal(); }) orthogonal = generator.is_orthogonal();
-    rates_.compute(exec, this->label("::rates"), plain, spins, t);
-    auto prepared = prepare_rate(plain, exec, rates_.field(), t, dt);
+    rates_.compute(exec, rates_label_, generator, spins, t);
+    auto prepared = bare(prepare_rate(generator, exec, rates_.field(), t, dt));
     for_each_site<Real>(
-        exec, this->label("::sigma"), spins.layout(),
+        exec, sigma_label_, spins.layout(),
         ImplicitSigmaStage<decltype(prepared), Real>{
             std::move(prepared), rates_.array(), spins.array(), rates_.along_output(), orthogonal});
     evaluations_done_ += 2;
   }
 
+  std::string iterate_label_ = this->label("::iterate"), rates_label_ = this->label("::rates"),
+              sigma_label_ = this->label("::sigma");
   Isotropy isotropy_;
   ImplicitOptions options_;
   Spins level_, next_;

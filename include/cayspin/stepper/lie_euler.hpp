@@ -67,16 +67,16 @@ requires(std::same_as<Isotropy, isotropy::Analytic> ||
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins, rates_.field());
-    auto const bare = detail::bare(generator);
-    rates_.compute(exec, this->label("::rates"), bare, spins, t);
-    auto prepared = detail::prepare_rate(bare, exec, rates_.field(), t, dt);
+    rates_.compute(exec, rates_label_, generator, spins, t);
+    auto prepared = detail::bare(detail::prepare_rate(generator, exec, rates_.field(), t, dt));
     using Kernel = detail::CorrectedEulerStage<Isotropy, Rotation, decltype(prepared), Real>;
     Kernel const kernel{std::move(prepared), isotropy_,           rates_.array(),
                         rates_.along(),      spins.output(false), static_cast<Real>(dt)};
-    detail::for_each_site<Real>(exec, this->label("::rotate"), spins.layout(), kernel);
+    detail::for_each_site<Real>(exec, rotate_label_, spins.layout(), kernel);
   }
 
  private:
+  std::string rates_label_ = this->label("::rates"), rotate_label_ = this->label("::rotate");
   Isotropy isotropy_;
   detail::Rates<Spins> rates_;
 };

@@ -48,13 +48,14 @@ KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Connection, Vec3<Va
   return guarded_quotient(dot(second, cross(m, x)), dot(x, x));
 }
 
-/// The generator whose derivative is taken: sigma completes A_o, whatever part along m it has.
+/// The prepared generator whose derivative is taken: sigma completes A_o, whatever part along m it
+/// has.
 template <class Generator>
-auto bare(Generator const& generator) {
-  if constexpr (requires { generator.bare(); })
-    return generator.bare();
+auto bare(Generator const& prepared) {
+  if constexpr (requires { prepared.bare(); })
+    return prepared.bare();
   else
-    return generator;
+    return prepared;
 }
 
 template <class Generator, class Value, class Stencil>
@@ -89,7 +90,7 @@ class Rates {
   template <class Exec, class Generator>
   void compute(Exec const& exec, std::string const& label, Generator const& generator,
                Spins const& spins, double t) const {
-    auto prepared = prepare_term(generator, exec, spins, t);
+    auto prepared = bare(prepare_term(generator, exec, spins, t));
     for_each_site<Real>(
         exec, label, spins.layout(),
         RateStage<decltype(prepared), Real>{std::move(prepared), spins.array(),

@@ -46,7 +46,7 @@ class Series4 : public detail::StepperBase<Spins> {
       using Kernel =
           detail::LocalSeriesStage<Series, Isotropy, std::remove_const_t<decltype(prepared)>, Real>;
       detail::for_each_site<Real>(
-          exec, this->label("::step"), spins.layout(),
+          exec, step_label_, spins.layout(),
           Kernel{prepared, spins.array(), next_.output(false), static_cast<Real>(dt)});
     } else {
       static_assert(std::is_same_v<Isotropy, isotropy::Zero>,
@@ -82,12 +82,13 @@ class Series4 : public detail::StepperBase<Spins> {
     for (int k = 0; k <= K; ++k) kernel.spins[k] = (k == 0 ? spins : derivatives_[k - 1]).array();
     for (int k = 0; k <= K && k < 3; ++k) kernel.sources[k] = sources_[k].output(false);
     if constexpr (K < 3) kernel.next = derivatives_[K].output(false);
-    detail::for_each_site<Real>(exec, this->label(names[K]), spins.layout(), kernel);
+    detail::for_each_site<Real>(exec, labels_[K], spins.layout(), kernel);
     if constexpr (K < 3) stage<K + 1>(exec, generator, spins, t, dt);
   }
 
-  static constexpr char const* names[] = {"::derivative_1", "::derivative_2", "::derivative_3",
-                                          "::rotate"};
+  std::string step_label_ = this->label("::step");
+  std::array<std::string, 4> labels_{this->label("::derivative_1"), this->label("::derivative_2"),
+                                     this->label("::derivative_3"), this->label("::rotate")};
   Spins next_;
   std::array<Spins, 3> derivatives_, sources_;
 };

@@ -42,15 +42,16 @@ class TwoPoint : public detail::StepperBase<Spins> {
     auto const region = this->begin_step(exec, spins, next_);
     if constexpr (Method::remembers) {
       if (last_dt_ != 0) {
-        stage(exec, generator, "::step", method_.next(dt / last_dt_), spins, spins, next_, t, dt);
+        stage(exec, generator, step_label_, method_.next(dt / last_dt_), spins, spins, next_, t,
+              dt);
         swap(spins, next_);
         last_dt_ = dt;
         return;
       }
       last_dt_ = dt;
     }
-    stage(exec, generator, "::predict", method_.predict(), spins, spins, next_, t, dt);
-    stage(exec, generator, "::correct", method_.correct(), spins, next_, spins, t + dt, dt);
+    stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
+    stage(exec, generator, correct_label_, method_.correct(), spins, next_, spins, t + dt, dt);
   }
 
   /// Forgets the step before: the next one starts anew. cayspin::integrate does it for each run.
@@ -61,13 +62,13 @@ class TwoPoint : public detail::StepperBase<Spins> {
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                 double dt) requires(Method::remembers) {
     auto const region = this->begin_step(exec, spins, next_);
-    stage(exec, generator, "::remember", method_.predict(), spins, spins, next_, t, dt);
+    stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
     last_dt_ = dt;
   }
 
  private:
   template <class Exec, class Generator, class Rule>
-  void stage(Exec const& exec, Generator const& generator, char const* name, Rule rule,
+  void stage(Exec const& exec, Generator const& generator, std::string const& label, Rule rule,
              Spins const& start, Spins const& level, Spins const& next, double t, double dt) {
     auto prepared = detail::prepare_term(generator, exec, level, t);
     using Kernel = detail::TwoPointStage<Rule, Isotropy, Rotation, decltype(prepared), Real>;
@@ -79,9 +80,11 @@ class TwoPoint : public detail::StepperBase<Spins> {
                         kept_.output(false),
                         next.output(false),
                         static_cast<Real>(dt)};
-    detail::for_each_site<Real>(exec, this->label(name), start.layout(), kernel);
+    detail::for_each_site<Real>(exec, label, start.layout(), kernel);
   }
 
+  std::string predict_label_ = this->label("::predict"), correct_label_ = this->label("::correct"),
+              step_label_ = this->label("::step");
   Method method_;
   Isotropy isotropy_;
   Spins next_, kept_;
