@@ -69,21 +69,16 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
     if (!recorded && !guard_.due(step)) return Next::proceed;
 
-    Sample now{step.number,
-               step.time,
-               energy(exec, generator_, spins, step.time),
-               norm_defect(exec, spins),
-               {}};
+    Sample const now = torque_ ? sample(exec, generator_, step, spins, *torque_)
+                               : sample(exec, generator_, step, spins);
     failure_ = guard_.judge(step, now.energy, now.norm_defect);
     if (failure_) return Next::stop;
     at_rest_ = torque_ && step.number > first_ && now.energy.value < guard_.first_energy() &&
-               largest_rate(exec, *torque_, spins, step.time) < *until_torque_;
+               now.largest_rate < *until_torque_;
     bool const ends = interrupt || at_rest_;
     interrupted_ = interrupt && !at_rest_ && !step.last;
-    if (recorded || ends) {
-      now.magnetization = magnetization(exec, spins);
+    if (recorded || ends)
       write(exec, now, spins, frame_due(step) || ends, scalars_due(step) || ends);
-    }
     return ends ? Next::stop : Next::proceed;
   }
 

@@ -53,6 +53,29 @@ TYPED_TEST(Scalars, AgainstPlainLoops) {
   }
 }
 
+// One pass finds what a pass for each finds, over one block of rows and over many.
+TYPED_TEST(Scalars, ASampleIsAllOfThem) {
+  using Spins = typename TypeParam::Spins;
+  for (auto const& lattice : {Lattice::chain(5), Lattice::cubic(37, 29, 23)}) {
+    auto const spins = spins_of<Spins>(lattice, uneven(lattice, 29));
+    EffectiveField const field(Exchange(lattice, 0.8), Zeeman{{0.3, -0.4, 1.2}});
+    LandauLifshitz const generator(field, 0.2);
+    Sample const seen = sample(this->exec, field, {7, 3.5, 0.5, false}, spins, generator);
+    EXPECT_EQ(seen.step, 7);
+    EXPECT_EQ(seen.time, 3.5);
+    auto const total = energy(this->exec, field, spins);
+    EXPECT_DOUBLE_EQ(seen.energy.value, total.value);
+    EXPECT_DOUBLE_EQ(seen.energy.magnitude, total.magnitude);
+    EXPECT_EQ(seen.norm_defect, norm_defect(this->exec, spins));
+    EXPECT_EQ(seen.largest_rate, largest_rate(this->exec, generator, spins));
+    auto const mean = magnetization(this->exec, spins);
+    EXPECT_DOUBLE_EQ(seen.magnetization.x, mean.x);
+    EXPECT_DOUBLE_EQ(seen.magnetization.y, mean.y);
+    EXPECT_DOUBLE_EQ(seen.magnetization.z, mean.z);
+    EXPECT_EQ(sample(this->exec, field, {}, spins).energy.value, seen.energy.value);
+  }
+}
+
 TYPED_TEST(Scalars, AFieldAtRest) {
   typename TypeParam::Spins const spins("spins", Lattice::square(13, 2));
   LandauLifshitz const generator(EffectiveField(Zeeman{{0, 0, 2}}), 0.5);

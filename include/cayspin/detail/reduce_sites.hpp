@@ -2,30 +2,53 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/unrolled.hpp>
+#include <cayspin/detail/widening_load.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
+#include <cstdint>
 #include <string>
 
-// Sums and maxima over sites in double, in an order that depends on the lattice alone: lanes of a
-// pack in a fixed tree, packs of a task in order, tasks in order. The result has the same bits on
-// every host space and for any number of threads.
+// Sums and maxima over sites in double. On host spaces their order depends on the lattice alone:
+// packs of a block of tasks in order, the lanes of a pack in a fixed tree, blocks in order. The
+// result has the same bits on every host space and for any number of threads.
 namespace cayspin::detail {
 
 struct Sum {
+  template <int>
+  using of = Sum;
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value combine(Value const& a, Value const& b) {
     return a + b;
   }
 };
 
-/// The larger one; NaN once there is a NaN. Of numbers that are not negative.
+/// The larger one, but at least 0; NaN once there is a NaN.
 struct Maximum {
+  template <int>
+  using of = Maximum;
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value combine(Value const& a, Value const& b) {
     return select<Value>(b == b, select<Value>(a < b, b, a), b);
   }
 };
+
+/// Of several values, the first ones are summed up, of the others the maxima are taken.
+template <int Sums>
+struct SumsThenMaxima {
+  template <int Index>
+  using of = std::conditional_t<(Index < Sums), Sum, Maximum>;
+};
+
+/// total <- total and value, combined one by one.
+template <class Combine, int Count, class Value>
+KOKKOS_FORCEINLINE_FUNCTION void combine_values(Value* total, Value const* value) {
+  unrolled<Count>([&](auto i) {
+    using One = typename Combine::template of<i()>;
+    total[i()] = One::combine(total[i()], value[i()]);
+  });
+}
 
 template <class Combine, class Value>
 KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
@@ -41,59 +64,98 @@ KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
   }
 }
 
-/// Collects functor(site), Count values, over the sites of a task.
+/// Collects functor(site, Count values) over sites.
 template <class Combine, int Count, class Functor, class Value>
 struct Collect {
   Functor const& functor;
   Value total[Count];
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) {
+  template <bool AtEdge>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site<Value, AtEdge> const& site) {
     Value value[Count];
     functor(site, value);
-    auto const is_site = Value(0.5) < site.inside();
-    for (int i = 0; i < Count; ++i)
-      total[i] = Combine::combine(total[i], select<Value>(is_site, value[i], Value(0.0)));
+    if constexpr (AtEdge) {
+      auto const is_site = Value(0.5) < site.inside();
+      for (int i = 0; i < Count; ++i) value[i] = select<Value>(is_site, value[i], Value(0.0));
+    }
+    combine_values<Combine, Count>(total, value);
   }
 };
 
-template <class Value, class Combine, int Count, class Functor>
-struct ReduceTask {
+/// A host reduction has at most this many partial results: they fit a stack.
+inline constexpr std::int64_t largest_blocks = 1024;
+
+template <class Combine, int Count, class Functor>
+struct ReduceBlock {
   Functor functor;
   RowLayout layout;
   std::int32_t per_row;
-  double* partial;  // [task][Count]
+  std::int64_t tasks, blocks;
+  double* partial;  // [block][Count]
 
-  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
-    Collect<Combine, Count, Functor, Value> collect{functor, {}};
+  CAYSPIN_DETAIL_NOINLINE void operator()(std::int64_t block) const {
+    using Value = Pack<double>;
+    Functor const local = functor;
+    Collect<Combine, Count, Functor, Value> collect{local, {}};
     for (int i = 0; i < Count; ++i) collect.total[i] = Value(0.0);
-    for_each_pack<Value>(layout, task, per_row, collect);
-    for (int i = 0; i < Count; ++i)
-      partial[task * Count + i] = combine_lanes<Combine>(collect.total[i]);
+    std::int64_t const end = tasks * (block + 1) / blocks;
+    for (std::int64_t task = tasks * block / blocks; task < end; ++task)
+      for_each_pack<Value>(layout, task, per_row, collect);
+    unrolled<Count>([&](auto i) {
+      using One = typename Combine::template of<i()>;
+      partial[block * Count + i()] = combine_lanes<One>(collect.total[i()]);
+    });
   }
 };
 
-/// Combines what functor(site, values) puts into values[0 .. Count) over all sites; waits.
+/// The device's reduction is Kokkos' own.
+template <class Combine, int Count, class Functor>
+struct ReduceOnDevice {
+  struct value_type {
+    double of[Count];
+  };
+  Functor functor;
+  RowLayout layout;
+
+  KOKKOS_FUNCTION void operator()(std::int64_t index, value_type& total) const {
+    Row const row(layout, index / layout.nx);
+    double value[Count];
+    functor(Site<double, true>(row, static_cast<std::int32_t>(index % layout.nx)), value);
+    combine_values<Combine, Count>(total.of, value);
+  }
+  KOKKOS_FUNCTION void init(value_type& total) const {
+    for (int i = 0; i < Count; ++i) total.of[i] = 0;
+  }
+  KOKKOS_FUNCTION void join(value_type& total, value_type const& other) const {
+    combine_values<Combine, Count>(total.of, other.of);
+  }
+};
+
+/// Combines what functor(site, values) puts into values[0 .. Count) over all sites; waits. Takes no
+/// memory from the heap on host spaces, and may run in several instances at once.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, Count> reduce_sites(Exec const& exec, std::string const& label,
                                        RowLayout const& layout, Functor const& functor) {
-  using Value = std::conditional_t<is_host_execution<Exec>, Pack<double>, double>;
-  std::int32_t const per_row = tasks_per_row(layout);
-  std::int64_t const tasks = layout.rows() * per_row;
-  Kokkos::View<double*, typename Exec::memory_space> const partial(
-      Kokkos::view_alloc(exec, Kokkos::WithoutInitializing, label + "::partial"), tasks * Count);
-  ReduceTask<Value, Combine, Count, Functor> const body{functor, layout, per_row, partial.data()};
+  std::array<double, Count> total{};
   if constexpr (is_host_execution<Exec>) {
-    for_each_task(exec, label, tasks, layout.sites(), body);
+    std::int32_t const per_row = tasks_per_row(layout);
+    std::int64_t const tasks = layout.rows() * per_row;
+    std::int64_t const blocks =
+        std::min({tasks, largest_blocks, layout.sites() / calling_thread_sites + 1});
+    double partial[largest_blocks * Count];
+    using Body = ReduceBlock<Combine, Count, Functor>;
+    for_each_task(exec, label, blocks, layout.sites(),
+                  Body{functor, layout, per_row, tasks, blocks, partial});
+    exec.fence(label);
+    for (std::int64_t block = 0; block < blocks; ++block)
+      combine_values<Combine, Count>(total.data(), partial + block * Count);
   } else {
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
-    Kokkos::parallel_for(label, Policy(exec, 0, tasks), body);
+    using Body = ReduceOnDevice<Combine, Count, Functor>;
+    typename Body::value_type result;
+    Kokkos::parallel_reduce(label, Policy(exec, 0, layout.sites()), Body{functor, layout}, result);
+    std::copy(result.of, result.of + Count, total.begin());
   }
-  auto const host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), partial);
-  exec.fence(label);
-  std::array<double, Count> total{};
-  for (std::int64_t task = 0; task < tasks; ++task)
-    for (int i = 0; i < Count; ++i) total[i] = Combine::combine(total[i], host(task * Count + i));
   return total;
 }
 

@@ -4,6 +4,9 @@
 #include <cayspin/integrate.hpp>
 #include <cayspin/observer/scalars.hpp>
 
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,12 +19,57 @@ struct Sample {
   Energy energy;
   double norm_defect = 0;
   Vec3<double> magnetization{0, 0, 0};
+  double largest_rate = 0;  // where a generator was given for it
 };
 
-template <class Exec, class Source, class Spins>
-Sample sample(Exec const& exec, Source const& source, Step const& step, Spins const& spins) {
-  return {step.number, step.time, energy(exec, source, spins, step.time), norm_defect(exec, spins),
-          magnetization(exec, spins)};
+namespace detail {
+
+struct NoGenerator {};
+
+/// All that a Sample holds, from one look at each spin.
+template <class Source, class Generator, class Real>
+struct SampleOfSites {
+  static constexpr bool with_rate = !std::is_same_v<Generator, NoGenerator>;
+  static constexpr int sums = 5, count = with_rate ? 8 : 7;
+  Source source;
+  Generator generator;
+  SiteArray<Real, 3> spins;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, spins);
+    Vec3<Value> const m = stencil.center();
+    energy_at(source, stencil, values);
+    values[2] = m.x;
+    values[3] = m.y;
+    values[4] = m.z;
+    off_the_sphere(m, values + sums);
+    if constexpr (with_rate) values[7] = squared_torque(generator, stencil);
+  }
+};
+
+}  // namespace detail
+
+/// A Sample of `spins`, in one pass. `source`: what the energy is taken from (an EffectiveField, a
+/// field term or a generator); `generator`: what the largest rate is taken from, where it is asked
+/// for.
+template <class Exec, class Source, class Real, class MemorySpace,
+          class Generator = detail::NoGenerator>
+Sample sample(Exec const& exec, Source const& source, Step const& step,
+              SpinField<Real, MemorySpace> const& spins, Generator const& generator = {}) {
+  detail::check_access<Exec, MemorySpace>();
+  auto energies = detail::prepare_term(source, exec, spins, step.time);
+  auto rates = detail::prepare_term(generator, exec, spins, step.time);
+  using Look = detail::SampleOfSites<decltype(energies), decltype(rates), Real>;
+  auto const found = detail::reduce_sites<detail::SumsThenMaxima<Look::sums>, Look::count>(
+      exec, "cayspin::sample", spins.layout(),
+      Look{std::move(energies), std::move(rates), spins.array()});
+  auto const sites = static_cast<double>(spins.sites());
+  Sample sample{step.number, step.time, {found[0], found[1]}};
+  sample.magnetization = {found[2] / sites, found[3] / sites, found[4] / sites};
+  sample.norm_defect = detail::norm_defect_of(found[5], found[6]);
+  if constexpr (Look::with_rate) sample.largest_rate = std::sqrt(found[7]);
+  return sample;
 }
 
 /// An observer that keeps a Sample for each call; wrap it in Every to thin it out.

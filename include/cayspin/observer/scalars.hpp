@@ -15,6 +15,17 @@ namespace cayspin {
 
 namespace detail {
 
+/// The energy density and the sum of its terms' absolute values.
+template <class Source, class Stencil, class Value>
+KOKKOS_FORCEINLINE_FUNCTION void energy_at(Source const& source, Stencil const& stencil,
+                                           Value* values) {
+  values[0] = source.energy_density(stencil);
+  if constexpr (requires { source.energy_magnitude(stencil); })
+    values[1] = source.energy_magnitude(stencil);
+  else
+    values[1] = Kokkos::abs(values[0]);
+}
+
 template <class Source, class Real>
 struct EnergyOfSites {
   Source source;
@@ -22,14 +33,21 @@ struct EnergyOfSites {
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    Stencil<Site, Real> const stencil(site, spins);
-    values[0] = source.energy_density(stencil);
-    if constexpr (requires { source.energy_magnitude(stencil); })
-      values[1] = source.energy_magnitude(stencil);
-    else
-      values[1] = Kokkos::abs(values[0]);
+    energy_at(source, Stencil<Site, Real>(site, spins), values);
   }
 };
+
+/// How far m.m is above and below 1: of the largest of these over sites, one root gives the largest
+/// | |m| - 1 |.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION void off_the_sphere(Vec3<Value> const& m, Value* values) {
+  Value const square = dot(m, m);
+  values[0] = square - Value(1.0);
+  values[1] = Value(1.0) - square;
+}
+inline double norm_defect_of(double above, double below) {
+  return Maximum::combine(std::sqrt(1 + above) - 1, 1 - std::sqrt(1 - below));
+}
 
 template <class Real>
 struct NormDefectOfSites {
@@ -37,8 +55,7 @@ struct NormDefectOfSites {
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    auto const m = site.load(spins);
-    values[0] = Kokkos::abs(Value(square_root<Value>(dot(m, m)) - Value(1.0)));
+    off_the_sphere(site.load(spins), values);
   }
 };
 
@@ -68,6 +85,14 @@ struct WeightedSpinOfSites {
   }
 };
 
+/// |A x m|^2
+template <class Generator, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION auto squared_torque(Generator const& generator,
+                                                Stencil const& stencil) {
+  auto const torque = cross(generator(stencil), stencil.center());
+  return dot(torque, torque);
+}
+
 template <class Generator, class Real>
 struct TorqueOfSites {
   Generator generator;
@@ -75,9 +100,7 @@ struct TorqueOfSites {
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    Stencil<Site, Real> const stencil(site, spins);
-    auto const torque = cross(generator(stencil), stencil.center());
-    values[0] = dot(torque, torque);
+    values[0] = squared_torque(generator, Stencil<Site, Real>(site, spins));
   }
 };
 
@@ -106,9 +129,9 @@ Energy energy(Exec const& exec, Source const& source, SpinField<Real, MemorySpac
 template <class Exec, class Real, class MemorySpace>
 double norm_defect(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();
-  return detail::reduce_sites<detail::Maximum, 1>(
-      exec, "cayspin::norm_defect", spins.layout(),
-      detail::NormDefectOfSites<Real>{spins.array()})[0];
+  auto const largest = detail::reduce_sites<detail::Maximum, 2>(
+      exec, "cayspin::norm_defect", spins.layout(), detail::NormDefectOfSites<Real>{spins.array()});
+  return detail::norm_defect_of(largest[0], largest[1]);
 }
 
 /// The mean of m over the sites.

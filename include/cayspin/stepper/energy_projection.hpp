@@ -25,7 +25,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coordinates_between(Vec3<Value> const& m
   return guarded_quotient(Value(4), dot(middle, middle)) * cross(m0, m1);
 }
 
-/// <dE/dm, f> = -<A, f> of coordinates f orthogonal to the spins.
+/// <dE/dm, f> = -<A, f> of coordinates f orthogonal to the spins; and E at their begin.
 template <class Generator, class Real>
 struct EnergyAlongCoordinates {
   Generator generator;
@@ -36,6 +36,7 @@ struct EnergyAlongCoordinates {
     Stencil<Site, Real> const stencil(site, begin);
     Vec3<Value> const f = coordinates_between(stencil.center(), site.load(end));
     values[0] = Value(0.0) - dot(evaluate(generator, stencil), f);
+    values[1] = generator.energy_density(stencil);
   }
 };
 
@@ -110,13 +111,12 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
       throw std::invalid_argument(
           "cayspin::EnergyProjection: the generator does not conserve its energy (damping 0 does)");
     Kokkos::deep_copy(exec, begin_.allocation(), spins.allocation());
-    double const before = energy(exec, generator, begin_, t).value;
     stepper_.step(exec, generator, spins, t, dt);
 
     auto const prepared = detail::prepare_term(generator, exec, begin_, t);
     using Slope = detail::EnergyAlongCoordinates<std::remove_const_t<decltype(prepared)>, Real>;
-    double const slope = detail::reduce_sites<detail::Sum, 1>(
-        exec, slope_label_, spins.layout(), Slope{prepared, begin_.array(), spins.array()})[0];
+    auto const [slope, before] = detail::reduce_sites<detail::Sum, 2>(
+        exec, slope_label_, spins.layout(), Slope{prepared, begin_.array(), spins.array()});
     if (!(slope != 0)) return;
     double epsilon = 0, projected_with = 0;
     double excess = energy(exec, generator, spins, t).value - before;
