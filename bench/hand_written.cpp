@@ -56,6 +56,17 @@ void for_each(Cube<Real> const& cube, Body body) {
 }  // namespace
 
 template <class Real>
+void fill(Vectors<Real>& vectors, std::vector<double> const& from) {
+  std::size_t const sites = from.size() / 3;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < sites; ++i) {
+    vectors.x.data[i] = static_cast<Real>(from[3 * i]);
+    vectors.y.data[i] = static_cast<Real>(from[3 * i + 1]);
+    vectors.z.data[i] = static_cast<Real>(from[3 * i + 2]);
+  }
+}
+
+template <class Real>
 void Heun<Real>::step(Vectors<Real>& m, Real dt) {
   Cube<Real> const cube = cube_;
   Vectors<Real>&v = v_, &k = k_;
@@ -112,6 +123,8 @@ void RungeKutta4<Real>::step(Vectors<Real>& m, Real dt) {
   });
 }
 
+template void fill(Vectors<float>&, std::vector<double> const&);
+template void fill(Vectors<double>&, std::vector<double> const&);
 template class Heun<float>;
 template class Heun<double>;
 template class RungeKutta4<float>;

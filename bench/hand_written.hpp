@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <new>
+#include <vector>
 
 // What a good engineer writes in a day for exactly one scene, without a library: separate component
 // arrays, OpenMP over rows, a vectorised inner loop, one fused loop per stage, renormalised at the
@@ -26,6 +27,10 @@ struct Vectors {
   explicit Vectors(std::size_t n) : x(n), y(n), z(n) {}
   Array<Real> x, y, z;
 };
+
+/// From (sites, 3); each thread touches first what it works on.
+template <class Real>
+void fill(Vectors<Real>& vectors, std::vector<double> const& from);
 
 /// n x n x n sites and the coefficients of the scene.
 template <class Real>

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What each option of the integrators costs: nanoseconds per spin and step, beside the plain form
-// of the same method, in one run. Size 100 is a chain, the others are cubes.
-#include "median_table.hpp"
-#include "random_spins.hpp"
-
-#include <cayspin/cayspin.hpp>
-
-#include <benchmark/benchmark.h>
+// What each option of the integrators costs: nanoseconds per spin and step of a chain of 100 spins,
+// of cubes, and of a lattice that the second cache holds. Cases are named f64/METHOD, OPTION/SIZE.
+#include "context.hpp"
+#include "scene.hpp"
+#include "stream.hpp"
+#include "systems.hpp"
 
 #include <string>
 
@@ -14,118 +12,84 @@ namespace {
 
 using Spins = cayspin::SpinField<double>;
 using namespace cayspin;
+using scene::Default, scene::Orthogonal;
+using namespace systems;
 
-constexpr double dt = 0.02;
-
-Lattice lattice_of(std::int64_t size) {
-  return size == 100 ? Lattice::chain(100) : Lattice::cubic(size, size, size);
+template <class Run>
+void on_sizes(std::string const& name, Run run) {
+  auto const on = [&](Lattice const& lattice, char const* size) {
+    scene::add("f64/" + name + "/" + size, [=](benchmark::State& state) { run(state, lattice); });
+  };
+  on(Lattice::chain(100), "100");
+  on(scene::in_l2(), "L2");
+  on(scene::cube(32), "32");
+  on(scene::cube(128), "128");
 }
 
-// The damping is computed, and 0: with any other the chain of 100 comes to rest in the time that a
-// repetition takes, and what is timed are denormal numbers.
-struct Coupled {
-  static auto generator(Lattice const& lattice) {
-    return LandauLifshitz(EffectiveField(Exchange(lattice, 1), UniaxialAnisotropy(0.5, {0, 0, 1}),
-                                         Zeeman{{0, 0, 0.3}}),
-                          0);
-  }
-};
-struct Bodies {
-  static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
-};
-template <class Of>
-struct OrthogonalOf {
-  static auto generator(Lattice const& lattice) { return orthogonal(Of::generator(lattice)); }
-};
-
-template <class Stepper>
-Stepper make(Spins const& like) {
-  if constexpr (requires { typename Stepper::stepper_type; })
-    return Stepper(like, typename Stepper::stepper_type(like));
-  else
-    return Stepper(like);
-}
-
-template <class Stepper, class System>
-void run(benchmark::State& state) {
-  auto const lattice = lattice_of(state.range(0));
-  Spins spins("spins", lattice);
-  copy_from_host(random_spins(lattice.sites()), spins);
-  auto const generator = System::generator(lattice);
-  auto stepper = make<Stepper>(spins);
-  Kokkos::DefaultExecutionSpace const exec;
-  for (int i = 0; i < 2; ++i) stepper.step(exec, generator, spins, 0, dt);
-  exec.fence();
-  for (auto _ : state) {
-    stepper.step(exec, generator, spins, 0, dt);
-    exec.fence();
-  }
-  state.counters["ns/step"] = benchmark::Counter(
-      static_cast<double>(state.iterations()) * static_cast<double>(lattice.sites()) * 1e-9,
-      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
-std::vector<std::pair<std::string, std::string>> yardsticks;
-
-template <class Stepper, class System = Coupled>
-void add(std::string const& name, std::string const& yardstick = {}) {
-  benchmark::RegisterBenchmark(("f64/" + name).c_str(), run<Stepper, System>)
-      ->Arg(100)
-      ->Arg(32)
-      ->Arg(128)
-      ->UseRealTime()
-      ->Unit(benchmark::kMillisecond);
-  if (!yardstick.empty()) yardsticks.emplace_back(name, yardstick);
+/// `words`: numbers that a step moves per spin and pass over memory; 0 where nothing is said.
+template <class Stepper, class System = Default>
+void add(std::string const& name, double words) {
+  on_sizes(name, [=](benchmark::State& state, Lattice const& lattice) {
+    scene::time_steps<Stepper, System>(state, lattice, words);
+  });
 }
 
 void register_euler() {
   using namespace isotropy;
-  std::string const euler = "Euler";
-  add<LieEuler<Spins>>(euler);
-  add<LieEuler<Spins>, OrthogonalOf<Coupled>>("Euler orthogonal", euler);
-  add<LieEuler<Spins, Constant>>("Euler constant sigma", euler);
-  add<LieEuler<Spins, Zero, Exponential>>("Euler exponential", euler);
-  add<LieEuler<Spins, Analytic>>("Euler analytic sigma", euler);
-  add<LieEuler<Spins, FiniteDifference>>("Euler forward difference", euler);
-  add<LieEuler<Spins, FiniteDifferenceBackward>>("Euler backward difference", euler);
-  add<LieAdamsBashforth2<Spins>>("Adams-Bashforth 2", euler);
-  add<ImplicitLieEuler<Spins>>("implicit Euler", euler);
-  add<ImplicitMidpoint<Spins>>("implicit midpoint", euler);
+  using Euler = LieEuler<Spins>;
+  add<Euler>("Euler", 6);
+  add<Euler, Orthogonal<Default>>("Euler, orthogonal", 6);
+  add<LieEuler<Spins, Constant>>("Euler, constant sigma", 6);
+  add<LieEuler<Spins, Zero, Exponential>>("Euler, exponential", 6);
+  add<LieEuler<Spins, Analytic>>("Euler, sigma from the derivative", 17);
+  add<LieEuler<Spins, FiniteDifference>>("Euler, sigma by forward differences", 21);
+  add<LieEuler<Spins, FiniteDifferenceBackward>>("Euler, sigma by backward differences", 12);
+  add<Euler, FieldOfTime>("Euler, field of time", 6);
+  add<Euler, HostDemag>("Euler, demag on the host", 15);
+  add<Euler, AnisotropyOfSites>("Euler, anisotropy per site", 10);
+  add<Euler, ExchangeOfSites>("Euler, exchange per site", 7);
+  add<Euler, DampingOfSites>("Euler, damping per site", 7);
+  on_sizes("Euler, observers each step", time_observed_steps<Euler>);
+  add<LieAdamsBashforth2<Spins>>("Adams-Bashforth 2", 12);
+  add<ImplicitLieEuler<Spins>>("implicit Euler", 0);
+  add<ImplicitMidpoint<Spins>>("implicit midpoint", 0);
 }
 
 void register_heun() {
-  std::string const heun = "Heun", bodies = "Heun of bodies";
-  add<LieHeun<Spins>>(heun, "Euler");
-  add<LieHeun<Spins>, OrthogonalOf<Coupled>>("Heun orthogonal", heun);
-  add<LieHeun<Spins, isotropy::Zero, Exponential>>("Heun exponential", heun);
-  add<StereographicRungeKutta<Spins, tableau::Heun>>("Heun tangent", heun);
-  add<LieHeun<Spins>, Bodies>(bodies);
-  add<LieHeun<Spins>, OrthogonalOf<Bodies>>("Heun of bodies orthogonal", bodies);
-  add<LieHeun<Spins, isotropy::Energy>, Bodies>("Heun of bodies dcor", bodies);
-  add<LieHeun<Spins, isotropy::Energy>, OrthogonalOf<Bodies>>("Heun of bodies ocor", bodies);
+  using Heun = LieHeun<Spins>;
+  add<Heun>("Heun", 21);
+  add<Heun, Orthogonal<Default>>("Heun, orthogonal", 21);
+  add<LieHeun<Spins, isotropy::Zero, Exponential>>("Heun, exponential", 21);
+  add<StereographicRungeKutta<Spins, tableau::Heun>>("Heun, tangent", 15);
+  add<Heun, FieldOfTime>("Heun, field of time", 21);
+  add<Heun, Bodies>("Heun of bodies", 21);
+  add<Heun, Orthogonal<Bodies>>("Heun of bodies, orthogonal", 21);
+  add<LieHeun<Spins, isotropy::Energy>, Bodies>("Heun of bodies, dcor", 21);
+  add<LieHeun<Spins, isotropy::Energy>, Orthogonal<Bodies>>("Heun of bodies, ocor", 21);
 }
 
 void register_order_4() {
-  std::string const rkmk4 = "Rkmk4", bodies = "Rkmk4 of bodies";
-  add<Rkmk4<Spins>>(rkmk4, "Euler");
-  add<Rkmk4<Spins>, OrthogonalOf<Coupled>>("Rkmk4 orthogonal", rkmk4);
-  add<Rkmk4<Spins, isotropy::Zero, Exponential>>("Rkmk4 exponential", rkmk4);
-  add<StereographicRungeKutta<Spins, tableau::Classical4>>("Rkmk4 tangent", rkmk4);
-  add<EnergyProjection<Rkmk4<Spins>>>("Rkmk4 energy projection", rkmk4);
-  add<Series4<Spins>>("Series4", rkmk4);
-  add<Rkmk4<Spins>, Bodies>(bodies);
-  add<Rkmk4<Spins, isotropy::Energy>, Bodies>("Rkmk4 of bodies dcor", bodies);
-  add<Series4<Spins>, Bodies>("Series4 of bodies", bodies);
-  add<Series4<Spins, isotropy::Energy>, Bodies>("Series4 of bodies dcor", bodies);
+  using Order4 = Rkmk4<Spins>;
+  add<Order4>("RKMK4", 57);
+  add<Order4, Orthogonal<Default>>("RKMK4, orthogonal", 57);
+  add<Rkmk4<Spins, isotropy::Zero, Exponential>>("RKMK4, exponential", 57);
+  add<StereographicRungeKutta<Spins, tableau::Classical4>>("RKMK4, tangent", 39);
+  add<EnergyProjection<Order4>>("RKMK4, projected to its energy", 0);
+  add<Series4<Spins>>("RKMK4, series", 0);
+  add<Order4, Bodies>("RKMK4 of bodies", 57);
+  add<Rkmk4<Spins, isotropy::Energy>, Bodies>("RKMK4 of bodies, dcor", 57);
+  add<Series4<Spins>, Bodies>("RKMK4 of bodies, series", 0);
+  add<Series4<Spins, isotropy::Energy>, Bodies>("RKMK4 of bodies, series and dcor", 0);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
+  stream::Arrays arrays;
+  stream::register_copies(arrays);
   register_euler();
   register_heun();
   register_order_4();
-  MedianTable table("ns/step", yardsticks, MedianTable::Ratio::cost);
-  return table.run(argc, argv);
+  return run_benchmarks(argc, argv);
 }

@@ -3,11 +3,15 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <vector>
 
-/// Spins uniform on the sphere, (sites, 3), the same on every machine.
-inline std::vector<double> random_spins(std::int64_t sites) {
-  std::vector<double> spins(static_cast<std::size_t>(sites) * 3);
+/// Spins uniform on the sphere, (sites, 3), the same on every machine; made once for each number.
+inline std::vector<double> const& random_spins(std::int64_t sites) {
+  static std::map<std::int64_t, std::vector<double>> made;
+  auto& spins = made[sites];
+  if (!spins.empty()) return spins;
+  spins.resize(static_cast<std::size_t>(sites) * 3);
   std::uint64_t state = 1;
   auto const uniform = [&state] {
     state = state * 6364136223846793005u + 1442695040888963407u;

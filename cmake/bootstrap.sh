@@ -10,7 +10,7 @@ Usage: bash cmake/bootstrap.sh deps|build|test|demo|bench [--preset NAME]
   build  deps, then the program into build/NAME/bin
   test   build everything and run the tests
   demo   build the program, run the example scenes and draw them
-  bench  build and run the benchmarks
+  bench  build and run the benchmarks; print and draw them beside their goals
 NAME is a preset of CMakePresets.json; the default is release.
 TXT
 }
@@ -67,15 +67,6 @@ choose_python() {
   fail "no python3 with h5py and matplotlib"
 }
 
-run_benchmarks() {
-  local program
-  for program in "$build_dir"/bin/bench_*; do
-    [ -x "$program" ] || fail "no benchmark in $build_dir/bin"
-    say "run $program"
-    "$program"
-  done
-}
-
 [ $# -ge 1 ] || { usage >&2; exit 2; }
 verb=$1
 shift
@@ -100,5 +91,5 @@ case $verb in
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
   test) build all; ctest --preset "$preset" -j "$(nproc)" ;;
   demo) choose_python; build cayspin_program; bash scenes/demo.sh "$build_dir" ;;
-  bench) build all; run_benchmarks ;;
+  bench) choose_python; build bench; bash bench/run.sh "$build_dir" ;;
 esac

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Runs all benchmarks with all cores and, where threads are compared, with one; then prints the
+# table and draws it. Usage: PYTHON=python3 bash bench/run.sh BUILD_DIR
+set -euo pipefail
+
+build_dir=$1
+results=$build_dir/bench-results
+export OMP_PROC_BIND=${OMP_PROC_BIND:-spread} OMP_PLACES=${OMP_PLACES:-cores}
+threads=${OMP_NUM_THREADS:-$(nproc)}
+
+# run NAME THREADS PROGRAM OPTION...
+run() {
+  local name=$1 threads=$2 program=$3 seconds=$SECONDS
+  shift 3
+  printf 'cayspin: bench_%s, %s ' "$program" "$name"
+  OMP_NUM_THREADS=$threads KOKKOS_NUM_THREADS=$threads "$build_dir/bin/bench_$program" \
+    --benchmark_out="$results/$name.json" "$@" >"$results/$name.txt" 2>&1 ||
+    { tail -n 5 "$results/$name.txt" >&2; exit 1; }
+  printf '(%d s)\n' $((SECONDS - seconds))
+}
+
+# throughput NAME THREADS SIZES OPTION...: the memory's speed is measured among the cases.
+throughput() {
+  local name=$1 threads=$2 sizes=$3
+  shift 3
+  run "$name" "$threads" throughput "--benchmark_filter=^stream|/($sizes)/" "$@"
+}
+
+rm -rf "$results"
+mkdir -p "$results"
+throughput small "$threads" '5|10|16|24|32|48|64|L2' --benchmark_repetitions=7
+throughput medium "$threads" '96|128|L2' --benchmark_repetitions=7
+throughput large "$threads" '192|256|L2'
+throughput largest "$threads" '292' --benchmark_repetitions=3
+throughput one_thread 1 '16|32|64|128|L2'
+run few_spins "$threads" few_spins --benchmark_repetitions=9
+run options "$threads" options
+"$PYTHON" python/plot_bench.py "$results"

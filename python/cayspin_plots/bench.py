@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Reads what bench/run.sh left: medians over repetitions, and what bounds a step."""
+
+import json
+import statistics
+
+
+class Results:
+    """Cases of the JSON files of a folder, by file: small, medium, .. and one_thread."""
+
+    def __init__(self, folder):
+        self.context = {}
+        self.values = {}  # (file, case): {counter: [..]}
+        paths = sorted(folder.glob("*.json"))
+        if not paths:
+            raise SystemExit(f"{folder}: no result of a benchmark")
+        for path in paths:
+            try:
+                content = json.loads(path.read_text(encoding="utf-8"))
+                self._add(path.stem, content)
+            except (OSError, ValueError, KeyError) as error:
+                raise SystemExit(f"{path}: cannot read the result: {error}") from None
+
+    def _add(self, file, content):
+        self.context[file] = content["context"]
+        for run in content["benchmarks"]:
+            if run["run_type"] != "iteration":
+                continue
+            case = run["run_name"].removesuffix("/real_time")
+            counters = self.values.setdefault((file, case), {})
+            for name, value in run.items():
+                if isinstance(value, float):
+                    counters.setdefault(name, []).append(value)
+
+    def files(self, case):
+        return [file for file, name in self.values if name == case and file != "one_thread"]
+
+    def median(self, case, counter, file=None):
+        """None where the case was not measured."""
+        file = file or next(iter(self.files(case)), None)
+        found = self.values.get((file, case), {}).get(counter)
+        return statistics.median(found) if found else None
+
+    def threads(self, file):
+        return int(self.context[file]["threads"])
+
+    def copy_rate(self, file, kind="stream copy, non-temporal"):
+        """Bytes per second, read and written."""
+        return 1e9 * self.median(kind, "GB/s", file)
+
+    def limit(self, case):
+        """ns per spin and step that no such step goes below, and what sets it: memory for the
+        numbers it must move, or the same kernels with all fields in the second cache."""
+        precision, method, _ = case.split("/")
+        file = next(iter(self.files(case)), None)
+        words = self.median(case, "words", file)
+        inside = self.median(f"{precision}/{method}/L2", "ns/spin", file)
+        if not words or inside is None:
+            return None
+        size = 8 if precision == "f64" else 4
+        memory = 1e9 * words * size / self.copy_rate(file)
+        return max((memory, "memory"), (inside / self.threads(file), "arithmetic"))

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""The goals of the benchmarks, and what was measured beside them."""
+
+PRECISIONS = ("f64", "f32")
+METHODS = ("Euler", "Heun", "RKMK4", "Euler orthogonal", "Heun orthogonal", "RKMK4 orthogonal",
+           "Heun tangent", "RKMK4 tangent")
+BEYOND_CACHE = (128, 256)
+IN_CACHE = (32, 64)
+
+
+def yardstick(method):
+    return "hand-written RK4" if "RKMK4" in method else "hand-written Heun"
+
+
+class Goal:
+    """One line: a ratio, of which more is better, or less where `at_most`."""
+
+    def __init__(self, text, value, goal, floor=None, at_most=False):
+        self.text, self.value, self.goal, self.at_most = text, value, goal, at_most
+        self.floor = goal if floor is None else floor
+
+    def _passes(self, bound):
+        return self.value <= bound if self.at_most else self.value >= bound
+
+    def verdict(self):
+        if self.value is None:
+            return "not measured"
+        if self._passes(self.goal):
+            return "met"
+        return "above the floor" if self._passes(self.floor) else "missed"
+
+    def row(self):
+        def number(value):
+            return "-" if value is None else f"{value:.2f}"
+        sign = "<=" if self.at_most else ">="
+        return (f"{self.text:<58}{number(self.value):>8}{sign:>4}{number(self.goal):>6}"
+                f"{number(self.floor):>7}   {self.verdict()}")
+
+
+def ratio(above, below):
+    return None if above is None or below is None else above / below
+
+
+def worst(text, values, goal, at_most=False):
+    """The worst of {case: value}, named."""
+    values = {case: value for case, value in values.items() if value is not None}
+    if not values:
+        return Goal(text, None, goal, at_most=at_most)
+    case = (max if at_most else min)(values, key=values.get)
+    return Goal(f"{text}: {case}", values[case], goal, at_most=at_most)
+
+
+def speedup(results, precision, method, size):
+    return ratio(results.median(f"{precision}/{yardstick(method)}/{size}", "ns/spin"),
+                 results.median(f"{precision}/{method}/{size}", "ns/spin"))
+
+
+def against_hand_written(results):
+    """Each method beyond the caches: goal, and floor in f64 and f32."""
+    for method, goal, *floors in (("Heun tangent", 2, 1.8, 1.8), ("RKMK4 tangent", 2.2, 1.9, 2),
+                                  ("Heun", 1.5, 1.3, 1.3), ("RKMK4", 1.5, 1.3, 1.3),
+                                  ("Heun orthogonal", 1.5, 1.3, 1.3),
+                                  ("RKMK4 orthogonal", 1.5, 1.3, 1.3)):
+        for precision, floor in zip(PRECISIONS, floors):
+            for size in BEYOND_CACHE:
+                yield Goal(f"{method}, {size}^3, {precision}, x {yardstick(method)}",
+                           speedup(results, precision, method, size), goal, floor)
+    for size in IN_CACHE:
+        for precision in PRECISIONS:
+            yield worst(f"in cache, {size}^3, {precision}, x hand-written",
+                        {method: speedup(results, precision, method, size)
+                         for method in METHODS}, 1.2)
+
+
+def against_limits(results):
+    for size in IN_CACHE + BEYOND_CACHE:
+        found = {}
+        for precision in PRECISIONS:
+            for method in METHODS:
+                case = f"{precision}/{method}/{size}"
+                bound = results.limit(case)
+                if bound:
+                    found[f"{precision} {method} ({bound[1]})"] = (
+                        results.median(case, "ns/spin") / bound[0])
+        yield worst(f"ns / limit, {size}^3", found, 1.25, at_most=True)
+
+
+def against_itself(results):
+    for size in BEYOND_CACHE:
+        yield worst(f"f32 against f64, {size}^3", {
+            method: ratio(results.median(f"f64/{method}/{size}", "ns/spin"),
+                          results.median(f"f32/{method}/{size}", "ns/spin"))
+            for method in METHODS}, 1.9)
+    for size in IN_CACHE:
+        yield worst(f"all threads against 1, {size}^3", {
+            f"{precision} {method}": ratio(
+                results.median(f"{precision}/{method}/{size}", "ns/spin", "one_thread"),
+                results.median(f"{precision}/{method}/{size}", "ns/spin"))
+            for method in METHODS for precision in PRECISIONS}, 1.9)
+
+
+def few_spins(results):
+    for method, goal in (("Euler", 6), ("Heun", 2.5), ("RKMK4", 1.1)):
+        for file, case in sorted(results.values):
+            if file == "few_spins" and case.startswith(f"f64/{method}/"):
+                yield Goal(f"100 spins, {method}, {case.split('/')[2]}, M steps/s",
+                           results.median(case, "steps/s", file) / 1e6, goal)
+
+
+def memory(results):
+    for method, goal in (("Heun tangent", 32), ("RKMK4", 80), ("RKMK4 tangent", 80)):
+        yield Goal(f"work memory, {method}, 256^3, f64, bytes per site",
+                   results.median(f"f64/{method}/256", "work_bytes"), goal, at_most=True)
+
+
+def goals(results):
+    for part in (against_hand_written, against_limits, against_itself, few_spins, memory):
+        yield from part(results)

@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Prints the tables of a run of the benchmarks beside their goals, and draws it."""
+
+import argparse
+import pathlib
+
+from cayspin_plots import bench_goals
+from cayspin_plots.bench import Results
+
+STREAM = ("stream copy", "stream copy, non-temporal")
+
+
+def print_context(results):
+    context = next(iter(results.context.values()))
+    threads = sorted({results.threads(file) for file in results.context})
+    print(f"{context['processor']}, L2 {int(context['l2_bytes']) >> 10} KiB, "
+          f"L3 {int(context['l3_bytes']) >> 20} MiB; threads {threads}; Kokkos "
+          f"{context['kokkos_version']}, {context['execution_space']}; commit "
+          f"{context['git_commit'][:12]}{' and changes' if context['git_dirty'] == 'yes' else ''}")
+
+
+def print_stream(results):
+    print(f"\n{'GB/s, read and written, median (lowest .. highest)':<58}ordinary stores     "
+          "non-temporal stores")
+    for file in results.context:
+        rates = [results.values.get((file, case), {}).get("GB/s") for case in STREAM]
+        if all(rates):
+            print(f"  {file}, {results.threads(file)} threads".ljust(56), *(
+                f"{results.median(case, 'GB/s', file):7.1f} ({min(rate):.1f} .. {max(rate):.1f})"
+                for case, rate in zip(STREAM, rates)))
+
+
+def print_goals(results):
+    print(f"\n{'medians of interleaved repetitions':<58}{'measured':>8}{'goal':>10}{'floor':>7}")
+    for goal in bench_goals.goals(results):
+        print(goal.row())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=pathlib.Path, metavar="DIR",
+                        help="where bench/run.sh left its results")
+    results = Results(parser.parse_args().folder)
+    print_context(results)
+    print_stream(results)
+    print_goals(results)
+
+
+if __name__ == "__main__":
+    main()
