@@ -5,7 +5,7 @@
 packages=(
   g++ cmake ninja-build git ca-certificates pkg-config python3 python3-pip
   libeigen3-dev libhdf5-dev libtomlplusplus-dev libcli11-dev libfmt-dev libmuparser-dev
-  libgtest-dev libbenchmark-dev nlohmann-json3-dev python3-h5py python3-matplotlib
+  libgtest-dev libbenchmark-dev nlohmann-json3-dev python3-h5py python3-matplotlib valgrind
 )
 
 is_installed() {
