@@ -15,18 +15,37 @@ namespace cayspin {
 
 namespace detail {
 
+/// A field's first numbers: tasks are its rows and then its margins, before, between and behind the
+/// components. Packs at the ends of rows read a few numbers there that belong to no site; they are
+/// discarded, but must not trap or be denormal.
 template <class Real>
-struct FillRows {
+struct FillField {
   Real* data;
   RowLayout layout;
   int components;
   Real last_component;
-  KOKKOS_FUNCTION void operator()(std::int64_t row) const {
-    for (int c = 0; c < components; ++c) {
-      Real const value = c + 1 == components ? last_component : Real(0);
-      Real* const begin = data + layout.origin + c * layout.component_stride + row * layout.pitch;
-      for (std::ptrdiff_t x = 0; x < layout.pitch; ++x) begin[x] = value;
+
+  std::int64_t tasks() const { return layout.rows() + 1 + components; }
+
+  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
+    if (task < layout.rows()) {
+      for (int c = 0; c < components; ++c)
+        fill(component(c) + task * layout.pitch, component(c) + (task + 1) * layout.pitch,
+             c + 1 == components ? last_component : Real(0));
+    } else {
+      auto const margin = static_cast<int>(task - layout.rows());
+      std::ptrdiff_t const begin =
+          margin == 0 ? 0 : component(margin - 1) + layout.rows() * layout.pitch;
+      fill(begin, component(margin) + (margin == components ? layout.origin : 0), Real(0));
     }
+  }
+
+ private:
+  KOKKOS_FUNCTION std::ptrdiff_t component(int c) const {
+    return layout.origin + c * layout.component_stride;
+  }
+  KOKKOS_FUNCTION void fill(std::ptrdiff_t begin, std::ptrdiff_t end, Real value) const {
+    for (std::ptrdiff_t i = begin; i < end; ++i) data[i] = value;
   }
 };
 
@@ -75,11 +94,8 @@ class SiteField {
     if constexpr (detail::is_host_execution<Exec>)
       detail::advise_huge_pages(data_.data(), data_.size() * sizeof(Real));
     Exec const exec;
-    Kokkos::parallel_for(
-        "cayspin::SiteField::fill",
-        Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, layout_.rows()),
-        detail::FillRows<Real>{data_.data(), layout_, Components, last_component});
-    fill_margins(exec);
+    detail::FillField<Real> const fill{data_.data(), layout_, Components, last_component};
+    detail::for_each_task(exec, "cayspin::SiteField::fill", fill.tasks(), layout_.sites(), fill);
     exec.fence("cayspin::SiteField: filled");
   }
 
@@ -121,22 +137,6 @@ class SiteField {
   static Lattice const& validated(Lattice const& lattice) {
     lattice.validate();
     return lattice;
-  }
-
-  // Packs at the ends of the first and last row, and between components, read a few numbers that
-  // belong to no site; they are discarded, but must not trap or be denormal.
-  template <class Exec>
-  void fill_margins(Exec const& exec) const {
-    auto const fill = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-      Kokkos::deep_copy(exec, Kokkos::subview(data_, std::pair(begin, end)), Real(0));
-    };
-    std::ptrdiff_t const used = layout_.rows() * layout_.pitch;
-    fill(0, layout_.origin);
-    for (int c = 0; c < Components; ++c)
-      fill(layout_.origin + c * layout_.component_stride + used,
-           layout_.origin + (c + 1) * layout_.component_stride);
-    fill(layout_.origin + Components * layout_.component_stride,
-         static_cast<std::ptrdiff_t>(data_.size()));
   }
 
   Lattice lattice_;

@@ -18,37 +18,63 @@ inline constexpr bool is_host_execution =
 /// Up to this many sites a host kernel runs on the calling thread: waking the others costs more.
 inline constexpr std::int64_t calling_thread_sites = 2048;
 
-/// A host space that has finished a kernel when the launch returns, and so little to do.
+/// A host space that has finished a kernel when the launch returns.
+template <class Exec>
+inline constexpr bool is_synchronous =
+#if defined(KOKKOS_ENABLE_SERIAL)
+    std::is_same_v<Exec, Kokkos::Serial> ||
+#endif
+#if defined(KOKKOS_ENABLE_OPENMP)
+    std::is_same_v<Exec, Kokkos::OpenMP> ||
+#endif
+#if defined(KOKKOS_ENABLE_THREADS)
+    std::is_same_v<Exec, Kokkos::Threads> ||
+#endif
+    false;
+
+/// Such a space, with so little to do that the calling thread does it.
 template <class Exec>
 bool runs_on_calling_thread(std::int64_t sites) {
 #if defined(KOKKOS_ENABLE_SERIAL)
-  bool synchronous = std::is_same_v<Exec, Kokkos::Serial>;
-#if defined(KOKKOS_ENABLE_OPENMP)
-  synchronous = synchronous || std::is_same_v<Exec, Kokkos::OpenMP>;
-#endif
-#if defined(KOKKOS_ENABLE_THREADS)
-  synchronous = synchronous || std::is_same_v<Exec, Kokkos::Threads>;
-#endif
-  return synchronous && sites <= calling_thread_sites;
+  return is_synchronous<Exec> && sites <= calling_thread_sites;
 #else
   return false;
 #endif
 }
+
+/// Any body, by its address: what Kokkos compiles for a launch it compiles once for all kernels.
+struct HostTask {
+  void const* body;
+  void (*run)(void const* body, std::int64_t task);
+
+  void operator()(std::int64_t task) const { run(body, task); }
+
+  template <class Body>
+  static HostTask of(Body const& body) {
+    return {&body, [](void const* address, std::int64_t task) {
+              (*static_cast<Body const*>(address))(task);
+            }};
+  }
+};
 
 /// Runs body(0) .. body(count - 1) on a host space: on its threads, or, when there is little to do
 /// for spaces that finish a kernel before they return, on the calling thread.
 template <class Exec, class Body>
 void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
                    std::int64_t sites, Body const& body) {
+  using Index = Kokkos::IndexType<std::int64_t>;
+  if constexpr (is_synchronous<Exec>) {
+    auto const task = HostTask::of(body);
 #if defined(KOKKOS_ENABLE_SERIAL)
-  if (runs_on_calling_thread<Exec>(sites)) {
-    using Policy = Kokkos::RangePolicy<Kokkos::Serial, Kokkos::IndexType<std::int64_t>>;
-    Kokkos::parallel_for(label, Policy(0, count), body);
-    return;
-  }
+    if (runs_on_calling_thread<Exec>(sites)) {
+      Kokkos::parallel_for(label, Kokkos::RangePolicy<Kokkos::Serial, Index>(0, count), task);
+      return;
+    }
 #endif
-  using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
-  Kokkos::parallel_for(label, Policy(exec, 0, count), body);
+    Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Index>(exec, 0, count), task);
+  } else {
+    Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Index>(exec, 0, count), body);
+  }
 }
 
 template <class Exec, class MemorySpace>
