@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps per second of a chain of 100 spins through cayspin::integrate, with an observer every 100
-// steps. Cases are named PRECISION/METHOD/EXECUTION SPACE.
+// steps. Cases are named few spins/METHOD/EXECUTION SPACE.
 #include "context.hpp"
 #include "scene.hpp"
 
@@ -10,8 +10,7 @@
 
 namespace {
 
-template <class Real>
-using Spins = cayspin::SpinField<Real, Kokkos::HostSpace>;
+using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
 
 template <class Stepper, class Exec>
 void run(benchmark::State& state) {
@@ -35,25 +34,19 @@ void run(benchmark::State& state) {
 template <class Stepper>
 void add(std::string const& name) {
   using Default = Kokkos::DefaultHostExecutionSpace;
-  scene::add(name + "/" + Default::name(), run<Stepper, Default>);
+  scene::add("few spins/" + name + "/" + Default::name(), run<Stepper, Default>);
 #if defined(KOKKOS_ENABLE_SERIAL)
   if constexpr (!std::is_same_v<Default, Kokkos::Serial>)
-    scene::add(name + "/Serial", run<Stepper, Kokkos::Serial>);
+    scene::add("few spins/" + name + "/Serial", run<Stepper, Kokkos::Serial>);
 #endif
-}
-
-template <class Real>
-void register_methods(std::string const& precision) {
-  add<cayspin::LieEuler<Spins<Real>>>(precision + "/Euler");
-  add<cayspin::LieHeun<Spins<Real>>>(precision + "/Heun");
-  add<cayspin::Rkmk4<Spins<Real>>>(precision + "/RKMK4");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
-  register_methods<double>("f64");
-  register_methods<float>("f32");
+  add<cayspin::LieEuler<Spins>>("Euler");
+  add<cayspin::LieHeun<Spins>>("Heun");
+  add<cayspin::Rkmk4<Spins>>("RKMK4");
   return run_benchmarks(argc, argv);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What each option of the integrators costs: nanoseconds per spin and step of a chain of 100 spins,
-// of cubes, and of a lattice that the second cache holds. Cases are named f64/METHOD, OPTION/SIZE.
+// of cubes, and of a lattice that the second cache holds. Cases are named options/METHOD,
+// OPTION/SIZE.
 #include "context.hpp"
 #include "scene.hpp"
 #include "stream.hpp"
@@ -18,7 +19,8 @@ using namespace systems;
 template <class Run>
 void on_sizes(std::string const& name, Run run) {
   auto const on = [&](Lattice const& lattice, char const* size) {
-    scene::add("f64/" + name + "/" + size, [=](benchmark::State& state) { run(state, lattice); });
+    scene::add("options/" + name + "/" + size,
+               [=](benchmark::State& state) { run(state, lattice); });
   };
   on(Lattice::chain(100), "100");
   on(scene::in_l2(), "L2");
@@ -26,7 +28,7 @@ void on_sizes(std::string const& name, Run run) {
   on(scene::cube(128), "128");
 }
 
-/// `words`: numbers that a step moves per spin and pass over memory; 0 where nothing is said.
+/// `words`: see scene::words_moved; 0 where nothing is foretold.
 template <class Stepper, class System = Default>
 void add(std::string const& name, double words) {
   on_sizes(name, [=](benchmark::State& state, Lattice const& lattice) {

@@ -20,20 +20,22 @@ run() {
   printf '(%d s)\n' $((SECONDS - seconds))
 }
 
-# throughput NAME THREADS SIZES OPTION...: the memory's speed is measured among the cases.
+# throughput NAME THREADS CASES OPTION...: the memory's speed is measured among the cases.
 throughput() {
-  local name=$1 threads=$2 sizes=$3
+  local name=$1 threads=$2 cases=$3
   shift 3
-  run "$name" "$threads" throughput "--benchmark_filter=^stream|/($sizes)/" "$@"
+  run "$name" "$threads" throughput "--benchmark_filter=^stream|$cases" "$@"
 }
 
 rm -rf "$results"
 mkdir -p "$results"
-throughput small "$threads" '5|10|16|24|32|48|64|L2' --benchmark_repetitions=7
-throughput medium "$threads" '96|128|L2' --benchmark_repetitions=7
-throughput large "$threads" '192|256|L2'
-throughput largest "$threads" '292' --benchmark_repetitions=3
-throughput one_thread 1 '16|32|64|128|L2'
+drawn='/(hand-written .*|Euler|Heun|RKMK4|.* tangent)' # over all sizes; the others at some
+throughput smallest "$threads" "$drawn/(5|10|16|24)/"
+throughput small "$threads" "/(32|64|L2)/|$drawn/48/" --benchmark_repetitions=7
+throughput medium "$threads" "/(128|L2)/|$drawn/96/"
+throughput large "$threads" '/(256|L2)/'
+throughput larger "$threads" "$drawn/(192|292)/" --benchmark_repetitions=3
+throughput one_thread 1 '/(32|64|128|L2)/' --benchmark_repetitions=3
 run few_spins "$threads" few_spins --benchmark_repetitions=9
 run options "$threads" options
 "$PYTHON" python/plot_bench.py "$results"

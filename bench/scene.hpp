@@ -65,9 +65,27 @@ Stepper make_stepper(typename Stepper::spins_type const& like) {
     return Stepper(like);
 }
 
-/// Times step after step; `words`: numbers that a step moves per spin where no cache holds them.
+/// Numbers that a step moves per spin where no cache holds them: `of_passes` where each stage is a
+/// pass over memory; a sweep reads and writes the spins.
+template <class Stepper>
+double words_moved(Stepper const& stepper, double of_passes) {
+  if constexpr (requires { stepper.path(); })
+    return stepper.path() == decltype(stepper.path())::sweep ? 6 : of_passes;
+  else
+    return of_passes;
+}
+
+template <class Stepper>
+double work_bytes(Stepper const& stepper) {
+  if constexpr (requires { stepper.work_bytes(); })
+    return static_cast<double>(stepper.work_bytes());
+  else
+    return 0;
+}
+
+/// Times step after step.
 template <class Stepper, class System>
-void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double words) {
+void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double words_of_passes) {
   auto spins = random<typename Stepper::spins_type>(lattice);
   auto const generator = System::generator(lattice);
   auto stepper = make_stepper<Stepper>(spins);
@@ -78,10 +96,7 @@ void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double
     stepper.step(exec, generator, spins, 0, dt);
     exec.fence();
   }
-  double work_bytes = 0;
-  if constexpr (requires { stepper.work_bytes(); })
-    work_bytes = static_cast<double>(stepper.work_bytes());
-  report(state, lattice.sites(), words, work_bytes);
+  report(state, lattice.sites(), words_moved(stepper, words_of_passes), work_bytes(stepper));
 }
 
 template <class Run>

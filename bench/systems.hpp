@@ -78,8 +78,7 @@ struct DampingOfSites {
   }
 };
 
-/// Steps through integrate with energy, norm defect and magnetization taken after each: they read
-/// the spins three times.
+/// Steps through integrate with energy, norm defect and magnetization taken after each.
 template <class Stepper>
 void time_observed_steps(benchmark::State& state, cayspin::Lattice const& lattice) {
   auto spins = scene::random<typename Stepper::spins_type>(lattice);
@@ -88,7 +87,7 @@ void time_observed_steps(benchmark::State& state, cayspin::Lattice const& lattic
   std::vector<cayspin::Sample> samples;
   cayspin::Record record(scene::Default::field(lattice), samples);
   Kokkos::DefaultExecutionSpace const exec;
-  constexpr std::int64_t steps = 4;
+  constexpr std::int64_t steps = 8;
   std::int64_t done = 0;
   for (auto _ : state) {
     samples.clear();
@@ -96,7 +95,7 @@ void time_observed_steps(benchmark::State& state, cayspin::Lattice const& lattic
                        {.begin = 0, .dt = scene::dt, .steps = done + steps, .first = done}, record);
     done += steps;
   }
-  double const words_of_step = 6, words_of_sample = 9;
+  double const words_of_step = 6, words_of_sample = 3;
   scene::report(state, lattice.sites() * steps,
                 words_of_step + words_of_sample * (steps + 1) / steps, 0);
 }

@@ -37,7 +37,7 @@ class Register {
   explicit Register(std::string const& precision) : prefix_(precision + "/") {
     using cayspin::StereographicRungeKutta, cayspin::tableau::Heun, cayspin::tableau::Classical4;
     using Orthogonal = scene::Orthogonal<scene::Default>;
-    // Words: numbers read and written per spin and step, each stage a pass over memory.
+    // Numbers read and written per spin and step where each stage is a pass over memory.
     hand_written<hand_written::Heun>("hand-written Heun", 27);
     hand_written<hand_written::RungeKutta4>("hand-written RK4", 63);
     add<cayspin::LieEuler<Spins>>("Euler", 6);

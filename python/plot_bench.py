@@ -5,7 +5,7 @@
 import argparse
 import pathlib
 
-from cayspin_plots import bench_goals
+from cayspin_plots import bench_figures, bench_goals, bench_options
 from cayspin_plots.bench import Results
 
 STREAM = ("stream copy", "stream copy, non-temporal")
@@ -13,11 +13,13 @@ STREAM = ("stream copy", "stream copy, non-temporal")
 
 def print_context(results):
     context = next(iter(results.context.values()))
+    caches = ", ".join(f"L{cache['level']} {cache['size'] >> 10} KiB" for cache in
+                       context["caches"] if cache["type"] != "Instruction")
     threads = sorted({results.threads(file) for file in results.context})
-    print(f"{context['processor']}, L2 {int(context['l2_bytes']) >> 10} KiB, "
-          f"L3 {int(context['l3_bytes']) >> 20} MiB; threads {threads}; Kokkos "
+    print(f"{context.get('processor', context['host_name'])}, {caches}; threads {threads}; Kokkos "
           f"{context['kokkos_version']}, {context['execution_space']}; commit "
-          f"{context['git_commit'][:12]}{' and changes' if context['git_dirty'] == 'yes' else ''}")
+          f"{context['git_commit'][:12]}{' and changes' if context['git_dirty'] == 'yes' else ''}; "
+          f"load before the first run {context['load_avg'][0]:.1f}")
 
 
 def print_stream(results):
@@ -37,14 +39,25 @@ def print_goals(results):
         print(goal.row())
 
 
+def print_options(results):
+    if "options" in results.context:
+        print("\nWhat options cost: 100 spins, 32^3 and 128^3, double; at 128^3 beside their limit")
+        for row in bench_options.rows(results):
+            print(row)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=pathlib.Path, metavar="DIR",
                         help="where bench/run.sh left its results")
-    results = Results(parser.parse_args().folder)
+    folder = parser.parse_args().folder
+    results = Results(folder)
     print_context(results)
     print_stream(results)
     print_goals(results)
+    print_options(results)
+    bench_figures.draw_sizes(results, folder / "bench_sizes.png")
+    bench_figures.draw_threads(results, folder / "bench_threads.png")
 
 
 if __name__ == "__main__":

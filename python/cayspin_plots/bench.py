@@ -23,7 +23,7 @@ class Results:
 
     def _add(self, file, content):
         self.context[file] = content["context"]
-        for run in content["benchmarks"]:
+        for run in sorted(content["benchmarks"], key=lambda run: run["family_index"]):
             if run["run_type"] != "iteration":
                 continue
             case = run["run_name"].removesuffix("/real_time")
@@ -57,6 +57,6 @@ class Results:
         inside = self.median(f"{precision}/{method}/L2", "ns/spin", file)
         if not words or inside is None:
             return None
-        size = 8 if precision == "f64" else 4
+        size = 4 if precision == "f32" else 8
         memory = 1e9 * words * size / self.copy_rate(file)
         return max((memory, "memory"), (inside / self.threads(file), "arithmetic"))
