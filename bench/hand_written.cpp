@@ -2,8 +2,23 @@
 #include "hand_written.hpp"
 
 #include <cmath>
+#include <cstdint>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace hand_written {
+
+void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__)
+  constexpr std::uintptr_t page = std::uintptr_t(2) << 20;
+  auto const address = reinterpret_cast<std::uintptr_t>(begin);
+  std::uintptr_t const first = (address + page - 1) / page * page;
+  std::uintptr_t const last = (address + bytes) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
+}
 
 namespace {
 

@@ -12,10 +12,15 @@
 // on its own with the flags that serve it best.
 namespace hand_written {
 
+/// Asks for 2 MiB pages; without them the loop waits for address translation beyond the caches.
+void advise_huge_pages(void* begin, std::size_t bytes);
+
 template <class Real>
 struct Array {
   explicit Array(std::size_t n)
-      : data(static_cast<Real*>(::operator new(n * sizeof(Real), std::align_val_t(64)))) {}
+      : data(static_cast<Real*>(::operator new(n * sizeof(Real), std::align_val_t(64)))) {
+    advise_huge_pages(data, n * sizeof(Real));
+  }
   ~Array() { ::operator delete(data, std::align_val_t(64)); }
   Array(Array const&) = delete;
   Array& operator=(Array const&) = delete;
