@@ -5,12 +5,13 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh deps|build|test|demo|bench [--preset NAME]
-  deps   install what is missing: Debian packages, and Kokkos into .deps/
-  build  deps, then the program into build/NAME/bin
-  test   build everything and run the tests
-  demo   build the program, run the example scenes and draw them
-  bench  build and run the benchmarks; print and draw them beside their goals
+Usage: bash cmake/bootstrap.sh deps|build|compile|test|demo|bench [--preset NAME]
+  deps     install what is missing: Debian packages, and Kokkos into .deps/
+  build    deps, then the program into build/NAME/bin
+  compile  build everything and run nothing: for a GPU that is elsewhere
+  test     build everything and run the tests
+  demo     build the program, run the example scenes and draw them
+  bench    build and run the benchmarks; print and draw them beside their goals
 NAME is a preset of CMakePresets.json; the default is release.
 TXT
 }
@@ -42,6 +43,10 @@ configure() {
     [ -z "$kokkos_prefix" ] || options+=("-DKokkos_ROOT=$kokkos_prefix")
   else
     options+=("-DCAYSPIN_KOKKOS_SOURCE=$kokkos_source")
+  fi
+  if [ "$preset" = cuda ]; then
+    provide_nvcc
+    options+=("-DCMAKE_CXX_COMPILER=$kokkos_source/bin/nvcc_wrapper")
   fi
   say "configure $preset"
   logged configure cmake --preset "$preset" "${options[@]}"
@@ -78,7 +83,7 @@ while [ $# -gt 0 ]; do
   esac
 done
 case $verb in
-  deps | build | test | demo | bench) ;;
+  deps | build | compile | test | demo | bench) ;;
   -h | --help) usage; exit 0 ;;
   *) usage >&2; exit 2 ;;
 esac
@@ -89,6 +94,7 @@ provide_kokkos
 case $verb in
   deps) say "everything needed is there" ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
+  compile) build all; say "compiled for the preset $preset: $build_dir" ;;
   test) build all; ctest --preset "$preset" -j "$(nproc)" ;;
   demo) choose_python; build cayspin_program; bash scenes/demo.sh "$build_dir" ;;
   bench) choose_python; build bench; bash bench/run.sh "$build_dir" ;;
