@@ -31,7 +31,8 @@ struct Copy {
   KOKKOS_FUNCTION void operator()(std::int64_t task) const {
     if constexpr (cayspin::detail::is_host_execution<Exec>) {
       using Pack = cayspin::detail::Pack<double>;
-      for (std::int64_t i = task * block; i < (task + 1) * block; i += Pack::size()) {
+      constexpr int lanes = cayspin::detail::lanes_of<Pack>;
+      for (std::int64_t i = task * block; i < (task + 1) * block; i += lanes) {
         Pack const value = cayspin::detail::load<Pack>(from + i);
         if constexpr (NonTemporal)
           cayspin::detail::store_streaming(value, to + i);
