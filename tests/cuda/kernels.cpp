@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The kernels of every stepper, isotropy policy, generator, field term and scalar, compiled in both
+// precisions for the device that Kokkos is configured for. Nothing is run.
+#include <cayspin/cayspin.hpp>
+
+#include <tuple>
+
+namespace cayspin::test {
+
+using Exec = Kokkos::DefaultExecutionSpace;
+using MemorySpace = Exec::memory_space;
+static_assert(!detail::is_host_execution<Exec>);
+
+/// A step of each of the steppers.
+template <class Generator, class Spins, class... Steppers>
+void step_each(Generator const& generator, Spins& spins, std::tuple<Steppers...>& steppers) {
+  std::apply([&](auto&... stepper) { (stepper.step(Exec(), generator, spins, 0, 0.1), ...); },
+             steppers);
+}
+
+template <class Real>
+struct Steppers {
+  using S = SpinField<Real, MemorySpace>;
+  using Field = EffectiveField<Exchange, UniaxialAnisotropy, Zeeman>;
+
+  std::tuple<
+      LieEuler<S>, LieEuler<S, isotropy::Constant>, LieEuler<S, isotropy::Analytic>,
+      LieEuler<S, isotropy::Connection>, LieEuler<S, isotropy::FiniteDifference>,
+      LieEuler<S, isotropy::FiniteDifferenceBackward>, LieEuler<S, isotropy::Zero, Exponential>,
+      LieEuler<S, isotropy::Zero, OverflowSafeCayley>, LieHeun<S>, LieAdamsBashforth2<S>,
+      Rkmk<S, tableau::Kutta3>, Rkmk4<S>, Rkmk4<S, isotropy::Zero, Exponential>, Rkmk4AsPrinted<S>,
+      StereographicRungeKutta<S, tableau::Heun>, StereographicRungeKutta<S, tableau::Classical4>,
+      Series4<S>, Series4Paper<S>, EnergyProjection<LieHeun<S>>, ImplicitLieEuler<S>,
+      ImplicitLieEuler<S, isotropy::Analytic>, ImplicitMidpoint<S>, ClassicalEuler<S>,
+      ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>, ProjectedHeun<S>, ProjectedRk4<S>>
+      of_spins;
+  std::tuple<LieHeun<S, isotropy::Energy>, Rkmk4<S, isotropy::Energy>, Series4<S, isotropy::Energy>,
+             Series4Paper<S, isotropy::Energy>>
+      of_bodies;
+
+  void step(LandauLifshitz<Field> const& generator, RigidBody const& body, S& spins) {
+    step_each(generator, spins, of_spins);
+    step_each(body, spins, of_bodies);
+  }
+};
+
+template struct Steppers<float>;
+template struct Steppers<double>;
+
+template <class Real>
+struct Generators {
+  using S = SpinField<Real, MemorySpace>;
+  using Numbers = ScalarField<Real, MemorySpace>;
+  using Vectors = SiteField<Real, 3, MemorySpace>;
+  using Slab = EffectiveField<Exchange, UniaxialAnisotropy, SlabDemag, Zeeman>;
+  using PerSite = EffectiveField<SiteDependentExchange<Real, MemorySpace>,
+                                 SiteDependentUniaxialAnisotropy<Numbers, Vectors>>;
+  using Prepared =
+      EffectiveField<LayerAveragedSlabDemag<MemorySpace>,
+                     TimeDependentZeeman<Vec3<double> (*)(double)>, HostField<S, SlabDemagOnHost>>;
+
+  std::tuple<LandauLifshitz<Slab>, Orthogonal<LandauLifshitz<Slab>>,
+             LandauLifshitz<PerSite, Numbers>, LandauLifshitz<Prepared>,
+             LandauLifshitz<FieldWithVacancies<Slab, Real, MemorySpace>>, RigidBody,
+             RigidBodyEnsemble<Real, MemorySpace>>
+      generators;
+
+  double use(LieEuler<S>& stepper, S& spins, Numbers const& weights) const {
+    auto const one = [&](auto const& generator) {
+      stepper.step(Exec(), generator, spins, 0, 0.1);
+      return energy(Exec(), generator, spins).value + largest_rate(Exec(), generator, spins);
+    };
+    return std::apply([&](auto const&... generator) { return (one(generator) + ...); },
+                      generators) +
+           norm_defect(Exec(), spins) + magnetization(Exec(), spins).x +
+           magnetization(Exec(), spins, weights).x;
+  }
+};
+
+template struct Generators<float>;
+template struct Generators<double>;
+
+}  // namespace cayspin::test
