@@ -62,7 +62,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Term const& term, Vec3<Value>
     return linear_field(term, rates);
 }
 
-/// Said by a term or generator whose numbers change with t alone.
+/// Said by a term or generator whose numbers change with t, and not with the spins.
 template <class Term>
 inline constexpr bool depends_on_time = [] {
   if constexpr (requires { Term::depends_on_time; }) return Term::depends_on_time;
@@ -77,6 +77,15 @@ bool is_stationary(Term const& term, Exec const& exec, Spins const& spins) {
     return term.is_stationary(exec, spins);
   else
     return !requires { term.prepare(exec, spins, 0.0); };
+}
+
+/// Can one evaluation be made ready knowing t alone, before the spins it is for are there?
+template <class Term, class Exec, class Spins>
+bool needs_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.needs_time_alone(exec, spins); })
+    return term.needs_time_alone(exec, spins);
+  else
+    return depends_on_time<Term> || is_stationary(term, exec, spins);
 }
 
 /// The device-callable form of a term or generator for one evaluation at time t: what its

@@ -7,13 +7,13 @@ namespace cayspin {
 
 /// What a field term or generator sees: the spin of a site (of several sites at once on the host)
 /// and its neighbours along the axes of the lattice.
-template <class Site, class Real>
+template <class Site, class Real, class Spins = detail::SiteArray<Real, 3>>
 class Stencil {
  public:
   using value_type = typename Site::value_type;
   using vector_type = Vec3<value_type>;
 
-  KOKKOS_FORCEINLINE_FUNCTION Stencil(Site const& site, detail::SiteArray<Real, 3> const& spins)
+  KOKKOS_FORCEINLINE_FUNCTION Stencil(Site const& site, Spins const& spins)
       : site_(site), spins_(spins), center_(site.load_center(spins)) {}
 
   KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return center_; }
@@ -34,7 +34,7 @@ class Stencil {
 
  private:
   Site const& site_;
-  detail::SiteArray<Real, 3> const& spins_;
+  Spins const& spins_;
   vector_type center_;
 };
 

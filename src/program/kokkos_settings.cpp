@@ -7,6 +7,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <thread>
+#include <type_traits>
+
 namespace cayspin::program {
 namespace {
 
@@ -28,6 +32,20 @@ Kokkos::InitializationSettings settings(std::string const& space, std::optional<
 }
 
 }  // namespace
+
+int expected_threads() {
+  if (Kokkos::is_initialized()) return Kokkos::DefaultHostExecutionSpace().concurrency();
+#if defined(KOKKOS_ENABLE_OPENMP)
+  if (std::is_same_v<Kokkos::DefaultHostExecutionSpace, Kokkos::OpenMP>)
+    return omp_get_max_threads();
+#endif
+  int const all = static_cast<int>(std::thread::hardware_concurrency());
+  bool serial = false;
+#if defined(KOKKOS_ENABLE_SERIAL)
+  serial = std::is_same_v<Kokkos::DefaultHostExecutionSpace, Kokkos::Serial>;
+#endif
+  return serial ? 1 : std::max(1, all);
+}
 
 std::string chosen_space(std::optional<std::string> const& asked) {
   if (!asked) return space_name<Kokkos::DefaultExecutionSpace>();

@@ -21,6 +21,9 @@ std::string space_name() {
 /// The word asked for, or Kokkos' default. Throws UsageError when it is not compiled in.
 std::string chosen_space(std::optional<std::string> const& asked);
 
+/// Threads of the default space on hosts: how many there are, or will be by default.
+int expected_threads();
+
 /// Kokkos, from here to the end of the scope.
 class KokkosSession {
  public:

@@ -34,9 +34,11 @@ struct MethodEntry {
   MethodKey key;
   int order;
   int evaluations;   // of the generator, per step; 0 where it iterates
-  int work_fields;   // spin fields of work memory
+  int work_fields;   // spin fields of work memory, where stages go one by one
   bool exponential;  // rotations that it may take: Cayley alone, or both
 
+  /// Of work memory, for the scene's lattice; by_time_alone: its field needs no spins beforehand.
+  std::int64_t (*work_bytes)(Lattice const& lattice, bool by_time_alone, bool twice);
   /// cayspin::largest_stable_step of the method; infinity where no bound is known.
   double (*stable_step)(double field_bound, double damping, bool precession,
                         MethodOptions const& options);

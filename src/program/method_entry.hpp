@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "kokkos_settings.hpp"
 #include "method.hpp"
 
 #include <cayspin/rotation/cayley.hpp>
@@ -39,18 +40,44 @@ struct Entry {
     });
   }
 
+  static std::int64_t work_bytes(Lattice const& lattice, bool by_time_alone, bool twice) {
+    return twice ? work_bytes_of<double>(lattice, by_time_alone)
+                 : work_bytes_of<float>(lattice, by_time_alone);
+  }
+
   static Summary advance(AnySimulation any, MethodOptions const& options) {
     return std::visit([&](auto* simulation) { return advance_one(*simulation, options); }, any);
   }
 
   static MethodEntry make(MethodKey const& key) {
-    int work_fields = Standard::work_fields;
-    if constexpr (requires { Family::work_fields; }) work_fields = Family::work_fields;
-    return {key,         Standard::order, Standard::evaluations, work_fields, Family::exponential,
-            stable_step, advance};
+    return {key,
+            Standard::order,
+            Standard::evaluations,
+            work_fields(),
+            Family::exponential,
+            work_bytes,
+            stable_step,
+            advance};
   }
 
  private:
+  static constexpr int work_fields() {
+    if constexpr (requires { Family::work_fields; })
+      return Family::work_fields;
+    else
+      return Standard::work_fields;
+  }
+
+  template <class Real>
+  static std::int64_t work_bytes_of(Lattice const& lattice, bool by_time_alone) {
+    using Stepper = typename Family::template Stepper<SpinField<Real>, Cayley>;
+    if constexpr (requires { Stepper::work_bytes(lattice, by_time_alone, 1); })
+      return static_cast<std::int64_t>(
+          Stepper::work_bytes(lattice, by_time_alone, expected_threads()));
+    auto const layout = cayspin::detail::RowLayout::of<Real>(lattice);
+    return static_cast<std::int64_t>(work_fields() * layout.allocation(3) * sizeof(Real));
+  }
+
   template <class Simulation>
   static Summary advance_one(Simulation& simulation, MethodOptions const& options) {
     return with_rotation<Family>(options.rotation, [&]<class Rotation>(Rotation) {

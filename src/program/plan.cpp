@@ -62,6 +62,12 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
   return bound;
 }
 
+// As SceneField says of itself.
+bool by_time_alone(io::Scene const& scene) {
+  auto const& slab = scene.field.slab_demag;
+  return !slab || !(slab->on_host || slab->average_layer);
+}
+
 template <class Real>
 std::int64_t field_bytes(Lattice const& lattice, int components) {
   return static_cast<std::int64_t>(
@@ -72,7 +78,8 @@ template <class Real>
 Memory memory_of(io::Scene const& scene, Lattice const& lattice, MethodEntry const& method) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
-  memory.work = method.work_fields * memory.spins;
+  bool const twice = std::is_same_v<Real, double>;
+  memory.work = method.work_bytes(lattice, by_time_alone(scene), twice);
   if (auto const& slab = scene.field.slab_demag) {
     if (slab->on_host) memory.field += memory.spins;
     if (slab->average_layer) memory.field += 8 * std::ranges::max(lattice.shape);

@@ -149,7 +149,8 @@ class SceneField {
     return now;
   }
 
-  bool is_stationary() const { return !applied_.depends_on_time() && !layers_ && !stored_; }
+  bool is_stationary() const { return !applied_.depends_on_time() && needs_time_alone(); }
+  bool needs_time_alone() const { return !layers_ && !stored_; }
 
   /// The same for rates of spins, the applied field's own rate in place of the field.
   template <class Exec>

@@ -82,6 +82,10 @@ class SceneGenerator {
   bool is_stationary(Exec const&, Spins const&) const {
     return !is_llg_ || llg_.field().is_stationary();
   }
+  template <class Exec>
+  bool needs_time_alone(Exec const&, Spins const&) const {
+    return !is_llg_ || llg_.field().needs_time_alone();
+  }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
   bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }

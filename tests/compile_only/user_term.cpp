@@ -5,6 +5,18 @@
 
 namespace cayspin::test {
 
+#if !defined(__CUDA_ARCH__) && !defined(__HIP_DEVICE_COMPILE__) && !defined(__SYCL_DEVICE_ONLY__)
+// Host loops work on whole registers, also where the default execution space, which Kokkos' own
+// choice of a pack follows, is a device.
+#if defined(KOKKOS_ARCH_AVX512XEON)
+static_assert(sizeof(detail::Pack<double>) == 64 && sizeof(detail::Pack<float>) == 64);
+#elif defined(KOKKOS_ARCH_AVX2)
+static_assert(sizeof(detail::Pack<double>) == 32 && sizeof(detail::Pack<float>) == 32);
+#elif defined(KOKKOS_ARCH_ARM_NEON)
+static_assert(sizeof(detail::Pack<double>) == 16 && sizeof(detail::Pack<float>) == 16);
+#endif
+#endif
+
 /// H = -c (m.m) m, E = c (m.m)^2 / 4
 struct Quartic {
   double c;

@@ -48,7 +48,8 @@ template <class Real>
 class Kokkos::View<Real*, cayspin::instructions::Memory> {
  public:
   View() = default;
-  View(std::string const&, std::size_t size) : numbers_(size + line) {}
+  template <class Allocation>
+  View(Allocation const&, std::size_t size) : numbers_(size + line) {}
   std::size_t size() const { return numbers_.empty() ? 0 : numbers_.size() - line; }
   Real* data() const {
     auto const address = reinterpret_cast<std::uintptr_t>(numbers_.data());

@@ -26,6 +26,7 @@ template <class Stepper>
 void count_step(char const* name) {
   typename Stepper::spins_type spins("spins", lattice);
   Stepper stepper(spins);
+  stepper.take(Path::pass);
   CALLGRIND_ZERO_STATS;
   stepper.step(Here(), generator, spins, 0, 0.01);
   CALLGRIND_DUMP_STATS_AT(name);

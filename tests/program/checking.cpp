@@ -138,9 +138,12 @@ TEST_F(Checking, CountsMemory) {
         .at("bytes_per_site")
         .get<double>();
   };
-  EXPECT_NEAR(bytes("rkmk4", "double") / (5 * 24), 1, 0.15);
-  EXPECT_NEAR(bytes("rkmk4", "single") / (5 * 12), 1, 0.3);
-  EXPECT_NEAR(bytes("euler", "double") / bytes("rkmk4", "double"), 2. / 5, 1e-12);
+  EXPECT_NEAR(bytes("euler", "double") / (2 * 24), 1, 0.15);
+  EXPECT_NEAR(bytes("euler", "single") / (2 * 12), 1, 0.3);
+  EXPECT_NEAR(bytes("euler", "double") / bytes("series4", "double"), 2. / 8, 1e-12);
+  // A sweep's two fields and its buffers, or, where the cores' caches are large, the five of passes.
+  EXPECT_GT(bytes("rkmk4", "double"), bytes("euler", "double"));
+  EXPECT_LE(bytes("rkmk4", "double"), 5. / 2 * bytes("euler", "double") * (1 + 1e-12));
 }
 
 // As the system counts it, for runs of one step. Buffers on the host, which the C library may keep
@@ -160,14 +163,16 @@ TEST_F(Checking, MemoryIsWhatARunTakes) {
     return Bytes{predicted, outcome.peak_bytes};
   };
   auto const small = take("euler", "[16,16,16]"), euler = take("euler", "[96,96,96]"),
-             rkmk4 = take("rkmk4", "[96,96,96]");
-  EXPECT_NEAR((rkmk4.measured - euler.measured) / (rkmk4.predicted - euler.predicted), 1, 0.05);
+             rkmk4 = take("rkmk4", "[96,96,96]"), series4 = take("series4", "[96,96,96]");
+  EXPECT_NEAR((series4.measured - euler.measured) / (series4.predicted - euler.predicted), 1, 0.05);
+  EXPECT_NEAR(rkmk4.measured - euler.measured, rkmk4.predicted - euler.predicted,
+              0.05 * rkmk4.predicted);
   EXPECT_NEAR((euler.measured - small.measured) / (euler.predicted - small.predicted), 1, 0.2);
 }
 
 TEST_F(Checking, HugeLatticesAreCheckedWithoutAllocating) {
   auto const numbers = check(chain_scene(), {"--set", "lattice.shape=[100000,100000,1000]"});
-  EXPECT_GT(numbers.at("memory_bytes").get<double>(), 1e15);
+  EXPECT_GT(numbers.at("memory_bytes").get<double>(), 9e14);
 }
 
 TEST_F(Checking, TextNamesWhatIsModelled) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/execution.hpp>
 
 #include <cstdint>
 #include <string>
@@ -9,38 +9,38 @@
 
 namespace cayspin::detail {
 
-/// Several kernels over the sites of a small lattice, one after the other, `count` times.
-template <class Real, class... Kernels>
-struct RepeatKernels {
-  std::tuple<RowLoop<Real, Kernels>...> kernels;
-  std::int64_t tasks, count;
+/// Several host loops over a small lattice, one after the other, `count` times.
+template <class... Loops>
+struct RepeatLoops {
+  std::tuple<Loops...> loops;
+  std::int64_t count;
 
   void operator()(std::int64_t) const {
+    auto const at_once =
+        std::apply([](auto const&... loop) { return std::tuple(loop.task_at(0)...); }, loops);
     for (std::int64_t i = 0; i < count; ++i)
-      std::apply([&](auto const&... kernel) { (run(kernel), ...); }, kernels);
+      std::apply(
+          [&](auto const&... loop) {
+            std::apply([&](auto const&... first) { (run(loop, first), ...); }, at_once);
+          },
+          loops);
   }
 
  private:
-  template <class Kernel>
-  void run(Kernel const& kernel) const {
-    for (std::int64_t task = 0; task < tasks; ++task) kernel(task);
+  template <class Loop, class Task>
+  static void run(Loop const& loop, Task const& first) {
+    first();
+    std::int64_t const tasks = loop.tasks();
+    for (std::int64_t task = 1; task < tasks; ++task) loop(task);
   }
 };
 
 /// Launches them once, on the calling thread.
-template <class Real, class... Kernels>
-void repeat_on_calling_thread(std::string const& label, RowLayout const& layout, std::int64_t count,
-                              std::tuple<Kernels...> const& kernels) {
+template <class... Loops>
+void repeat_on_calling_thread(std::string const& label, std::int64_t count,
+                              std::tuple<Loops...> const& loops) {
 #if defined(KOKKOS_ENABLE_SERIAL)
-  std::int32_t const per_row = tasks_per_row(layout);
-  RepeatKernels<Real, Kernels...> const body{
-      std::apply(
-          [&](auto const&... kernel) {
-            return std::tuple(RowLoop<Real, Kernels>{kernel, layout, per_row}...);
-          },
-          kernels),
-      layout.rows() * per_row, count};
-  Kokkos::parallel_for(label, Kokkos::RangePolicy<Kokkos::Serial>(0, 1), body);
+  for_each_task(Kokkos::Serial(), label, 1, 1, RepeatLoops<Loops...>{loops, count});
 #endif
 }
 

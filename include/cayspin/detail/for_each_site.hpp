@@ -5,37 +5,85 @@
 #include <cayspin/detail/site.hpp>
 
 #include <algorithm>
+#include <concepts>
+#include <cstdint>
 #include <string>
 
 namespace cayspin::detail {
 
-/// Host tasks are rows, or pieces of rows this many sites long, so that one long row is shared too.
+/// Rows are cut into pieces this many sites long, so that one long row is shared too.
 inline constexpr std::int32_t sites_per_task = 4096;
 
 inline std::int32_t tasks_per_row(RowLayout const& layout) {
   return std::max<std::int32_t>(1, layout.nx / sites_per_task);
 }
 
-/// Calls functor(site) for all sites of one task, a pack at a time.
+template <std::floating_point Real>
+std::int32_t pack_count(RowLayout const& layout) {
+  return (layout.nx + host_lanes<Real> - 1) / host_lanes<Real>;
+}
+
+/// Calls functor(site) for packs begin .. end - 1 of a row.
 template <class Value, class Functor>
-KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(RowLayout const& layout, std::int64_t task,
-                                               std::int32_t per_row, Functor& functor) {
+KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(Row const& row, std::int32_t begin, std::int32_t end,
+                                               Functor&& functor) {
   constexpr std::int32_t lanes = lanes_of<Value>;
-  Row const row(layout, task / per_row);
-  std::int32_t const packs = (layout.nx + lanes - 1) / lanes;
-  auto const part = static_cast<std::int32_t>(task % per_row);
-  auto const begin = static_cast<std::int32_t>(std::int64_t(packs) * part / per_row);
-  auto const end = static_cast<std::int32_t>(std::int64_t(packs) * (part + 1) / per_row);
   // The ends of the row share one instance of the functor: kernels are large, and compile slowly.
-  std::int32_t const last = packs - 1;
+  std::int32_t const last = (row.nx + lanes - 1) / lanes - 1;
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
 #pragma GCC unroll 1
 #endif
   for (std::int32_t pack = 0; pack <= last; pack += Kokkos::max<std::int32_t>(last, 1))
     if (begin <= pack && pack < end) functor(Site<Value, true>(row, pack * lanes));
-  for (std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1); pack < Kokkos::min(end, last);
-       ++pack)
+  std::int32_t const inner_end = Kokkos::min(end, last);
+  for (std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1); pack < inner_end; ++pack)
     functor(Site<Value, false>(row, pack * lanes));
+}
+
+/// Rows y_begin .. y_end - 1 of plane z, packs pack_begin .. pack_end - 1 of each.
+struct RowBlock {
+  std::int32_t z, y_begin, y_end, pack_begin, pack_end;
+};
+
+/// The blocks that host tasks are: several short rows of a plane, or a part of a long one. Enough
+/// of them for many threads, and large enough that what is done once per block does not count.
+class RowBlocks {
+ public:
+  explicit RowBlocks(RowLayout const& layout, std::int32_t packs)
+      : layout_(layout), packs_(packs), parts_of_row_(tasks_per_row(layout)) {
+    auto const sites = std::clamp<std::int64_t>(layout.sites() / 1024, 512, 16384);
+    auto const blocks = std::int64_t(layout.nx) * layout.ny / sites;
+    parts_of_plane_ = static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(parts_of_row_ > 1 ? layout.ny : blocks, 1, layout.ny));
+  }
+
+  std::int64_t count() const { return std::int64_t(layout_.nz) * parts_of_plane_ * parts_of_row_; }
+
+  RowBlock operator()(std::int64_t task) const {
+    auto const cut = [](std::int32_t extent, std::int64_t part, std::int32_t parts) {
+      return static_cast<std::int32_t>(extent * part / parts);
+    };
+    auto const in_row = task % parts_of_row_, in_plane = task / parts_of_row_ % parts_of_plane_;
+    return {static_cast<std::int32_t>(task / parts_of_row_ / parts_of_plane_),
+            cut(layout_.ny, in_plane, parts_of_plane_),
+            cut(layout_.ny, in_plane + 1, parts_of_plane_), cut(packs_, in_row, parts_of_row_),
+            cut(packs_, in_row + 1, parts_of_row_)};
+  }
+
+ private:
+  RowLayout layout_;
+  std::int32_t packs_, parts_of_row_, parts_of_plane_;
+};
+
+/// The same for part task % per_row of row task / per_row.
+template <class Value, class Functor>
+KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(RowLayout const& layout, std::int64_t task,
+                                               std::int32_t per_row, Functor& functor) {
+  Row const row(layout, task / per_row);
+  std::int64_t const packs = (layout.nx + lanes_of<Value> - 1) / lanes_of<Value>;
+  std::int64_t const part = task % per_row;
+  for_each_pack<Value>(row, static_cast<std::int32_t>(packs * part / per_row),
+                       static_cast<std::int32_t>(packs * (part + 1) / per_row), functor);
 }
 
 #if defined(__GNUC__)
@@ -49,11 +97,13 @@ template <class Real, class Functor>
 struct RowLoop {
   Functor functor;
   RowLayout layout;
-  std::int32_t per_row;
+  RowBlocks blocks;
 
   CAYSPIN_DETAIL_NOINLINE void operator()(std::int64_t task) const {
     Functor local = functor;
-    for_each_pack<Pack<Real>>(layout, task, per_row, local);
+    auto const block = blocks(task);
+    for (std::int32_t y = block.y_begin; y < block.y_end; ++y)
+      for_each_pack<Pack<Real>>(Row(layout, y, block.z), block.pack_begin, block.pack_end, local);
     streaming_fence();
   }
 };
@@ -76,9 +126,9 @@ template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
                    Functor const& functor) {
   if constexpr (is_host_execution<Exec>) {
-    std::int32_t const per_row = tasks_per_row(layout);
-    for_each_task(exec, label, layout.rows() * per_row, layout.sites(),
-                  RowLoop<Real, Functor>{functor, layout, per_row});
+    RowBlocks const blocks(layout, pack_count<Real>(layout));
+    for_each_task(exec, label, blocks.count(), layout.sites(),
+                  RowLoop<Real, Functor>{functor, layout, blocks});
   } else {
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
     Kokkos::parallel_for(label, Policy(exec, 0, layout.sites()),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -75,21 +76,46 @@ inline void streaming_fence() {
 #endif
 }
 
+/// A last cache that is common, and used where none is reported.
+inline constexpr std::size_t usual_cache_bytes = std::size_t(32) << 20;
+
 /// What one process may hope to keep in the last cache: all of a small one, a third of a large
 /// one, which many cores share.
 inline std::size_t last_level_cache_bytes() {
-  static constexpr std::size_t usual = std::size_t(32) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
   static std::size_t const bytes = [] {
     long const reported = sysconf(_SC_LEVEL3_CACHE_SIZE);
-    if (reported <= 0) return usual;
+    if (reported <= 0) return usual_cache_bytes;
     auto const all = static_cast<std::size_t>(reported);
-    return all <= usual ? all : std::max(usual, all / 3);
+    return all <= usual_cache_bytes ? all : std::max(usual_cache_bytes, all / 3);
+  }();
+  return bytes;
+#else
+  return usual_cache_bytes;
+#endif
+}
+
+/// What one thread may count on of the cache next to its core.
+inline std::size_t core_cache_bytes() {
+  static constexpr std::size_t usual = std::size_t(1) << 20;
+#if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
+  static std::size_t const bytes = [] {
+    long const reported = sysconf(_SC_LEVEL2_CACHE_SIZE);
+    return reported > 0 ? static_cast<std::size_t>(reported) : usual;
   }();
   return bytes;
 #else
   return usual;
 #endif
+}
+
+/// Should what is written around the caches, of a method that has so many bytes in hand?
+template <class Exec>
+bool exceeds_caches(std::size_t bytes) {
+  if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>)
+    return bytes > last_level_cache_bytes();
+  else
+    return false;
 }
 
 /// Asks for 2 MiB pages inside [begin, begin + bytes); call before the memory is first touched.

@@ -13,12 +13,13 @@
 #endif
 
 // A Pack is what one iteration of a host loop works on: a register of Kokkos' SIMD types where the
-// configured architecture has one, otherwise one number. Device loops work on plain numbers, and so
-// do host loops beside a device backend, whose compilers take no registers of the host in code they
-// share. Every operation the kernels need is overloaded here for both: kernels are written once.
+// configured architecture has one, otherwise one number. Device loops work on plain numbers, and
+// the passes of a compiler that make device code see no other: nvcc takes no registers of the host
+// in functions for both. Packs are in no kernel's name or arguments, so the passes agree on those.
+// Every operation the kernels need is overloaded here for both: kernels are written once.
 namespace cayspin::detail {
 
-#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
 // no pack type
 #elif defined(KOKKOS_ARCH_AVX512XEON)
 #define CAYSPIN_DETAIL_AVX512

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/row_layout.hpp>
+#include <cayspin/detail/rows.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <type_traits>
@@ -17,10 +18,13 @@ struct Row {
   std::ptrdiff_t pitch;
 
   KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int64_t row)
-      : offset(row * layout.pitch),
+      : Row(layout, static_cast<std::int32_t>(row % layout.ny),
+            static_cast<std::int32_t>(row / layout.ny)) {}
+  KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int32_t at_y, std::int32_t at_z)
+      : offset((std::int64_t(at_z) * layout.ny + at_y) * layout.pitch),
         nx(layout.nx),
-        y(static_cast<std::int32_t>(row % layout.ny)),
-        z(static_cast<std::int32_t>(row / layout.ny)),
+        y(at_y),
+        z(at_z),
         periodic_x(layout.periodic[0]),
         pitch(layout.pitch) {
     step(0, y, layout.ny, layout.pitch, layout.periodic[1]);
@@ -47,6 +51,7 @@ class Site {
 
   KOKKOS_FORCEINLINE_FUNCTION Site(Row const& row, std::int32_t x) : row_(row), x_(x) {}
 
+  KOKKOS_FORCEINLINE_FUNCTION Row const& row() const { return row_; }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return x_; }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return row_.z; }
@@ -69,14 +74,26 @@ class Site {
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
     prefetch(array, offset() + row_.pitch);
-    return load_at(array, offset());
+    return load_at(array.data + row_.offset, array.stride);
   }
   /// The same, of an array whose neighbours are read too: the next row to come from memory is in
   /// the plane behind.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(SiteArray<Real, 3> const& array) const {
     prefetch(array, offset() + row_.to_neighbor[1][1] + row_.pitch);
-    return load_at(array, offset());
+    return load_at(array.data + row_.offset, array.stride);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(RowInput<Real> const& row) const {
+    if constexpr (lanes > 1) {
+      for (int component = 0; component < 3; ++component)
+        detail::prefetch(row.data + component * row.stride + x_ + row.ahead);
+    }
+    return load_at(row.data, row.stride);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(RowStencil<Real> const& rows) const {
+    return load(static_cast<RowInput<Real> const&>(rows));
   }
   template <class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
@@ -91,15 +108,20 @@ class Site {
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
                                          OutputArray<Real, 3> const& array) const {
-    Real* const to = array.data + offset();
-    if (array.streaming) {
+    store(value, RowOutput<Real>{array.data + row_.offset, array.stride, array.streaming});
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
+                                         RowOutput<Real> const& row) const {
+    Real* const to = row.data + x_;
+    if (row.streaming) {
       store_streaming(value.x, to);
-      store_streaming(value.y, to + array.stride);
-      store_streaming(value.z, to + 2 * array.stride);
+      store_streaming(value.y, to + row.stride);
+      store_streaming(value.z, to + 2 * row.stride);
     } else {
       detail::store(value.x, to);
-      detail::store(value.y, to + array.stride);
-      detail::store(value.z, to + 2 * array.stride);
+      detail::store(value.y, to + row.stride);
+      detail::store(value.z, to + 2 * row.stride);
     }
   }
 
@@ -108,20 +130,19 @@ class Site {
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
                                                    Vec3<Value> const& center) const {
-    if constexpr (Axis > 0) {
-      return load_at(array, offset() + row_.to_neighbor[Axis - 1][Direction]);
-    } else {
-      Vec3<Value> found = load_at(array, offset() + (Direction == 0 ? -1 : 1));
-      if constexpr (AtEdge) {
-        if (holds_end<Direction>()) {
-          auto const end = is_end<Direction>();
-          found = {select<Value>(end, past_end<Direction>(array, center.x, 0), found.x),
-                   select<Value>(end, past_end<Direction>(array, center.y, 1), found.y),
-                   select<Value>(end, past_end<Direction>(array, center.z, 2), found.z)};
-        }
-      }
-      return found;
-    }
+    Real const* const row = array.data + row_.offset;
+    if constexpr (Axis > 0)
+      return load_at(row + row_.to_neighbor[Axis - 1][Direction], array.stride);
+    else
+      return beside<Direction>(row, array.stride, center);
+  }
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(RowStencil<Real> const& rows,
+                                                   Vec3<Value> const& center) const {
+    if constexpr (Axis > 0)
+      return load_at(rows.neighbor[Axis - 1][Direction], rows.stride);
+    else
+      return beside<Direction>(rows.data, rows.stride, center);
   }
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value neighbor(SiteArray<Real, 1> const& array,
@@ -132,7 +153,8 @@ class Site {
       Value const found = detail::load<Value>(array.data + offset() + (Direction == 0 ? -1 : 1));
       if constexpr (AtEdge) {
         if (holds_end<Direction>())
-          return select<Value>(is_end<Direction>(), past_end<Direction>(array, center, 0), found);
+          return select<Value>(is_end<Direction>(),
+                               past_end<Direction>(array.data + row_.offset, center), found);
       }
       return found;
     }
@@ -161,21 +183,33 @@ class Site {
   KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
     return lane_numbers<Value>() == Value(static_cast<scalar_type>(end_lane<Direction>()));
   }
-  /// What stands for the neighbour past the end of the row: the other end, or `center`.
-  template <int Direction, class Real, int Components>
-  KOKKOS_FORCEINLINE_FUNCTION Value past_end(SiteArray<Real, Components> const& array,
-                                             Value const& center, int component) const {
-    std::ptrdiff_t const other_end = row_.offset + (Direction == 0 ? row_.nx - 1 : 0);
-    return row_.periodic_x ? Value(scalar_type(array.data[component * array.stride + other_end]))
-                           : center;
+  /// What stands for the neighbour past the end of a row: the other end, or `center`.
+  template <int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value past_end(Real const* row, Value const& center) const {
+    return row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;
   }
 
+  template <int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> beside(Real const* row, std::ptrdiff_t stride,
+                                                 Vec3<Value> const& center) const {
+    Vec3<Value> found = load_at(row + (Direction == 0 ? -1 : 1), stride);
+    if constexpr (AtEdge) {
+      if (holds_end<Direction>()) {
+        auto const end = is_end<Direction>();
+        found = {select<Value>(end, past_end<Direction>(row, center.x), found.x),
+                 select<Value>(end, past_end<Direction>(row + stride, center.y), found.y),
+                 select<Value>(end, past_end<Direction>(row + 2 * stride, center.z), found.z)};
+      }
+    }
+    return found;
+  }
+
+  /// The numbers at x of a row.
   template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(SiteArray<Real, 3> const& array,
-                                                  std::ptrdiff_t offset) const {
-    Real const* const from = array.data + offset;
-    return {detail::load<Value>(from), detail::load<Value>(from + array.stride),
-            detail::load<Value>(from + 2 * array.stride)};
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* row, std::ptrdiff_t stride) const {
+    Real const* const from = row + x_;
+    return {detail::load<Value>(from), detail::load<Value>(from + stride),
+            detail::load<Value>(from + 2 * stride)};
   }
 
   Row const& row_;

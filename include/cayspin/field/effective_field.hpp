@@ -16,7 +16,8 @@ namespace cayspin {
 /// where Value = Stencil::value_type. A term that needs more than neighbours, or depends on time,
 /// has instead
 ///   auto prepare(exec, spins, t) const
-/// which is called on the host before each stage and returns such a struct.
+/// which is called on the host before each stage and returns such a struct; a term whose numbers
+/// then change with t, and not with the spins, says static constexpr bool depends_on_time = true.
 ///
 /// For isotropy::Analytic and Series4 a term also says how its H depends on the spins:
 ///   static constexpr int degree                     2 where H is linear in the spins, 1 where it
@@ -41,6 +42,10 @@ class EffectiveField<> {
   }
   template <class Exec, class Spins>
   bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+  template <class Exec, class Spins>
+  bool needs_time_alone(Exec const&, Spins const&) const {
     return true;
   }
   template <class Stencil>
@@ -94,6 +99,10 @@ class EffectiveField<First, Rest...> {
   template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {
     return detail::is_stationary(first_, exec, spins) && rest_.is_stationary(exec, spins);
+  }
+  template <class Exec, class Spins>
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return detail::needs_time_alone(first_, exec, spins) && rest_.needs_time_alone(exec, spins);
   }
 
   template <class Stencil>

@@ -149,6 +149,10 @@ class FieldWithVacancies {
   bool is_stationary(Exec const& exec, Spins const& spins) const {
     return detail::is_stationary(field_, exec, spins);
   }
+  template <class Exec, class Spins>
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return detail::needs_time_alone(field_, exec, spins);
+  }
   template <class Exec, class Rates>
   auto prepare_rate(Exec const& exec, Rates const& rates, double t, double dt) const {
     return among(detail::prepare_rate(field_, exec, rates, t, dt));

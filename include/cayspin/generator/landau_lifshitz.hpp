@@ -44,6 +44,10 @@ class LandauLifshitz {
     return detail::is_stationary(field_, exec, spins);
   }
   template <class Exec, class Spins>
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return detail::needs_time_alone(field_, exec, spins);
+  }
+  template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     return of(detail::prepare_rate(field_, exec, rates, t, dt));
   }

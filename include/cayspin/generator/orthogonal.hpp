@@ -59,6 +59,10 @@ class Orthogonal {
     return detail::is_stationary(generator_, exec, spins);
   }
   template <class Exec, class Spins>
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return detail::needs_time_alone(generator_, exec, spins);
+  }
+  template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     auto prepared = detail::prepare_rate(generator_, exec, rates, t, dt);
     return Orthogonal<decltype(prepared)>(std::move(prepared));

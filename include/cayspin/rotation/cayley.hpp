@@ -12,10 +12,11 @@ struct Cayley {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
-    Vec3<Value> const h = Value(0.5) * f;
-    Vec3<Value> const c = cross(h, m);
+    Vec3<Value> const c = cross(f, m);
     // Written as m plus a small change: the quotient form of the same map drifts off the sphere.
-    return multiply_add(Value(Value(2) / (Value(1) + dot(h, h))), c + cross(h, c), m);
+    Value const four_and_f2 = detail::multiply_add(
+        f.x, f.x, detail::multiply_add(f.y, f.y, detail::multiply_add(f.z, f.z, Value(4))));
+    return multiply_add(Value(Value(4) / four_and_f2), multiply_add(Value(0.5), cross(f, c), c), m);
   }
 
   /// dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4)
@@ -30,8 +31,8 @@ struct Cayley {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_tangent(Vec3<Value> const& f,
                                                                  Vec3<Value> const& y) {
-    Vec3<Value> const h = Value(0.5) * f;
-    return multiply_add(dot(h, y), h, y - cross(h, y));
+    return multiply_add(Value(Value(0.25) * dot(f, y)), f,
+                        multiply_add(Value(-0.5), cross(f, y), y));
   }
 };
 

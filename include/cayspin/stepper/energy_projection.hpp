@@ -88,6 +88,15 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
         next_("EnergyProjection::next", like.lattice()) {}
 
   std::size_t work_bytes() const { return stepper_.work_bytes() + 2 * begin_.bytes(); }
+  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone,
+                                int threads) requires requires {
+    Stepper::work_bytes(lattice, by_time_alone, threads);
+  }
+  {
+    auto const layout = detail::RowLayout::of<Real>(lattice);
+    return Stepper::work_bytes(lattice, by_time_alone, threads) +
+           2 * layout.allocation(3) * sizeof(Real);
+  }
 
   /// Forgets what the stepper remembers of the step before.
   void reset() {

@@ -79,7 +79,10 @@ class Rates {
  public:
   Rates() = default;
   Rates(std::string const& name, Lattice const& lattice)
-      : rates_(name + "::rates", lattice), along_(name + "::generator_along_spin", lattice) {}
+      : rates_(name + "::rates", lattice),
+        along_(name + "::generator_along_spin", lattice),
+        streaming_(exceeds_caches<typename Spins::memory_space::execution_space>(rates_.bytes() +
+                                                                                 bytes())) {}
 
   std::size_t bytes() const { return rates_.bytes() + along_.bytes(); }
   Spins const& field() const { return rates_; }
@@ -94,12 +97,13 @@ class Rates {
     for_each_site<Real>(
         exec, label, spins.layout(),
         RateStage<decltype(prepared), Real>{std::move(prepared), spins.array(),
-                                            rates_.output(false), along_.output(false)});
+                                            rates_.output(streaming_), along_.output(false)});
   }
 
  private:
   Spins rates_;
   Along along_;
+  bool streaming_ = false;  // stores of rates go around the caches
 };
 
 /// Geometric Euler with sigma: m <- cay(dt (A_o + sigma m)) m, in place.

@@ -6,80 +6,13 @@
 #include <cayspin/isotropy/energy.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
+#include <cayspin/stepper/runge_kutta_memory.hpp>
 #include <cayspin/stepper/tableau.hpp>
 #include <cayspin/stepper/update.hpp>
 
 #include <type_traits>
 
 namespace cayspin::detail {
-
-/// Every stage starts from the increment before it alone, as in the classical Runge-Kutta methods.
-template <class Tableau>
-constexpr bool is_chain() {
-  for (int i = 0; i < Tableau::stages; ++i)
-    for (int j = 0; j < i; ++j)
-      if ((Tableau::a[i][j] != 0) != (j == i - 1)) return false;
-  return true;
-}
-
-/// In a chain that needs its increments as arguments, one array holds the last increment and one
-/// the weighted sum, brought up to date at every second stage: the least that can be moved.
-template <class Tableau, class Update>
-inline constexpr bool keeps_sum = Tableau::stages > 2 &&
-                                  is_chain<Tableau>() && Update::increment_needs_argument &&
-                                  !Update::keeps_generators;
-
-/// In a chain on a chart, each increment is read back from the spins of the stage after it: stages
-/// store their spins alone.
-template <class Tableau, class Update>
-constexpr bool recovers_increments() {
-  if constexpr (requires { Update::has_chart; }) return Tableau::stages > 1 && is_chain<Tableau>();
-  return false;
-}
-
-/// Does stage `stage` (or the end of the step behind the last one) read the increment of `source`?
-template <class Tableau, class Update>
-constexpr bool reads_increment(int stage, int source) {
-  if (source >= stage || recovers_increments<Tableau, Update>()) return false;
-  if (keeps_sum<Tableau, Update>) return source == stage - 1;
-  bool const last = stage == Tableau::stages - 1;
-  if (last && (Tableau::b[source] != 0 || Update::keeps_generators)) return true;
-  if (!last && Tableau::a[stage + 1][source] != 0) return true;
-  return Update::increment_needs_argument && Tableau::a[stage][source] != 0;
-}
-
-template <class Tableau, class Update>
-constexpr bool stores_increment(int source) {
-  for (int stage = source + 1; stage < Tableau::stages; ++stage)
-    if (reads_increment<Tableau, Update>(stage, source)) return true;
-  return false;
-}
-
-template <class Tableau, class Update>
-constexpr bool writes_sum(int stage) {
-  return keeps_sum<Tableau, Update> && stage % 2 == 1 && stage + 1 < Tableau::stages;
-}
-template <class Tableau, class Update>
-constexpr bool reads_sum(int stage) {
-  return keeps_sum<Tableau, Update> && stage > 1 &&
-         (stage % 2 == 1 || stage + 1 == Tableau::stages);
-}
-
-/// Fields of three numbers per site that a method needs beside the spins.
-template <class Tableau, class Update>
-constexpr int level_fields() {
-  if (recovers_increments<Tableau, Update>()) return Tableau::stages - 1;
-  return Tableau::stages < 3 ? 1 : 2;
-}
-template <class Tableau, class Update>
-constexpr int work_fields() {
-  int const levels = level_fields<Tableau, Update>();
-  if (keeps_sum<Tableau, Update>) return levels + 2;
-  int increments = 0;
-  for (int stage = 0; stage + 1 < Tableau::stages; ++stage)
-    increments += stores_increment<Tableau, Update>(stage);
-  return levels + increments;
-}
 
 /// sum of Weights<j> * v[j] over those j < Count with a weight.
 template <class Weights, int Count, class Value>
@@ -118,6 +51,15 @@ struct FinalWeights {
   }
 };
 
+/// A chain's increments, b[i] times each, in terms of the coordinates of the spins after them.
+template <class Tableau>
+struct ChartWeights {
+  static constexpr double last = Tableau::b[Tableau::stages - 1];
+  KOKKOS_FUNCTION static constexpr double spin(int j) {
+    return Tableau::b[j] / Tableau::a[j + 1][j];
+  }
+};
+
 /// isotropy::Energy's formula for a method.
 template <class Tableau, class Update>
 struct EnergyCorrection {
@@ -145,30 +87,38 @@ struct RungeKuttaStage {
 
   Generator generator;
   Isotropy isotropy;
-  SiteArray<Real, 3> start;                                    // spins at the begin of the step
-  SiteArray<Real, 3> level;                                    // spins of this stage
-  SiteArray<Real, 3> increments[stages > 1 ? stages - 1 : 1];  // of earlier stages, or spins
-  OutputArray<Real, 3> sum;                                    // of weighted increments
-  OutputArray<Real, 3> increment;                              // of this stage
-  OutputArray<Real, 3> next;  // spins of the next stage, or of the end
   Real dt;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    Stencil<Site, Real> const stencil(site, level);
-    Vec3<Value> const m0 = StageIndex == 0 ? stencil.center() : site.load(start);
-    Vec3<Value> const a = Value(dt) * xi(stencil.center(), evaluate(generator, stencil));
+  using value_type = Real;
+  using Rows = StageRows<Real, stages>;
+  static constexpr bool recovers = recovers_increments<Tableau, Update>();
+  static constexpr bool reads_start = StageIndex > 0;
+  static constexpr bool reads_sum = detail::reads_sum<Tableau, Update>(StageIndex);
+  static constexpr bool writes_sum = detail::writes_sum<Tableau, Update>(StageIndex);
+  static constexpr bool stores_increment =
+      !last && detail::stores_increment<Tableau, Update>(StageIndex);
+  /// Increment j, or in its place the spins of stage j + 1.
+  static constexpr bool reads_increment(int j) {
+    return recovers ? last && j + 1 < StageIndex
+                    : detail::reads_increment<Tableau, Update>(StageIndex, j);
+  }
 
-    if constexpr (recovers_increments<Tableau, Update>()) {
-      site.store(on_chart(site, a, stencil.center(), m0), next);
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Rows const& rows) const {
+    using Value = typename Site::value_type;
+    Stencil<Site, Real, RowStencil<Real>> const stencil(site, rows.level);
+    Vec3<Value> const& m = stencil.center();
+    Vec3<Value> const m0 = StageIndex == 0 ? m : site.load(rows.start);
+    Vec3<Value> const xi = completed_by_isotropy(m, evaluate(generator, stencil));
+    if constexpr (recovers) {
+      site.store(on_chart(site, rows, xi, m, m0), rows.next);
       return;
     }
+    Vec3<Value> const a = Value(dt) * xi;
 
     Vec3<Value> f[stages];
     unrolled<StageIndex>([&](auto j) {
-      if constexpr (reads_increment<Tableau, Update>(StageIndex, j()))
-        f[j()] = site.load(increments[j()]);
+      if constexpr (reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
     });
     Vec3<Value> argument{Value(0), Value(0), Value(0)};
     if constexpr (Update::increment_needs_argument && StageIndex > 0)
@@ -179,26 +129,25 @@ struct RungeKuttaStage {
     } else if constexpr (Update::keeps_generators && !last) {
       f[StageIndex] = a;
     } else {
-      f[StageIndex] = Update::increment(argument, a, stencil.center(), m0);
+      f[StageIndex] = Update::increment(argument, a, m, m0);
     }
 
     if constexpr (last) {
       if constexpr (Update::keeps_generators) increments_from_generators(f, m0);
-      site.store(Update::finish(completed(site, total(site, f), m0), m0), next);
+      site.store(Update::finish(completed(site, total(site, rows, f), m0), m0), rows.next);
     } else {
-      if constexpr (writes_sum<Tableau, Update>(StageIndex))
-        site.store(sum_up_to_here(site, f), sum);
-      if constexpr (stores_increment<Tableau, Update>(StageIndex))
-        site.store(f[StageIndex], increment);
+      if constexpr (writes_sum) site.store(sum_up_to_here(site, rows, f), rows.sum);
+      if constexpr (stores_increment) site.store(f[StageIndex], rows.increment);
       site.store(
           Update::move(weighted_sum<StageWeights<Tableau, StageIndex + 1>, StageIndex + 1>(f), m0),
-          next);
+          rows.next);
     }
   }
 
  private:
   template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> xi(Vec3<Value> const& m, Vec3<Value> const& a) const {
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> completed_by_isotropy(Vec3<Value> const& m,
+                                                                Vec3<Value> const& a) const {
     if constexpr (std::is_same_v<Isotropy, isotropy::Energy>) {
       return a;  // completed at the end of the step
     } else {
@@ -217,9 +166,10 @@ struct RungeKuttaStage {
   }
 
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, Vec3<Value> const* f) const {
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, Rows const& rows,
+                                                Vec3<Value> const* f) const {
     if constexpr (keeps_sum<Tableau, Update>) {
-      return sum_up_to_here(site, f);
+      return sum_up_to_here(site, rows, f);
     } else {
       return weighted_sum<FinalWeights<Tableau>, stages>(f);
     }
@@ -237,34 +187,28 @@ struct RungeKuttaStage {
 
   // The next stage's spins; at the end the step's, with increment j from the spins after stage j.
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Vec3<Value> const& a,
-                                                   Vec3<Value> const& m,
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Rows const& rows,
+                                                   Vec3<Value> const& a, Vec3<Value> const& m,
                                                    Vec3<Value> const& m0) const {
     if constexpr (!last) {
       constexpr double factor = Tableau::a[StageIndex + 1][StageIndex];
-      return Update::advance(Vec3<Value>(Value(static_cast<scalar_t<Value>>(factor)) * a), m, m0);
+      return Update::advance(Value(static_cast<Real>(factor) * dt), a, m, m0);
     } else {
-      Vec3<Value> sum = weight<Value, StageIndex>() * Update::increment(m0, a, m, m0);
-      unrolled<StageIndex>([&](auto j) {
-        constexpr double factor = Tableau::b[j()] / Tableau::a[j() + 1][j()];
-        if constexpr (factor != 0) {
-          Vec3<Value> const after = j() + 1 == StageIndex ? m : site.load(increments[j()]);
-          sum = multiply_add(Value(static_cast<scalar_t<Value>>(factor)),
-                             Update::coordinates(after, m0), sum);
-        }
-      });
-      return Update::finish(sum, m0);
+      Vec3<Value> spins[StageIndex];
+      unrolled<StageIndex - 1>([&](auto j) { spins[j()] = site.load(rows.increments[j()]); });
+      spins[StageIndex - 1] = m;
+      return Update::template arrive<ChartWeights<Tableau>, StageIndex>(Value(dt), a, spins, m0);
     }
   }
 
   // The stored sum, the increment before this one where an even stage left it out, and this one.
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site,
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Rows const& rows,
                                                          Vec3<Value> const* f) const {
     Vec3<Value> total = weight<Value, StageIndex>() * f[StageIndex];
     if constexpr (StageIndex % 2 == 1)
       total = multiply_add(weight<Value, StageIndex - 1>(), f[StageIndex - 1], total);
-    if constexpr (reads_sum<Tableau, Update>(StageIndex)) total = total + site.load(sum);
+    if constexpr (reads_sum) total = total + site.load(rows.sum_before);
     return total;
   }
 

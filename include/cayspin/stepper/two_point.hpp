@@ -29,7 +29,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
         method_(method),
         isotropy_(isotropy),
         next_(name + "::next", like.lattice()),
-        kept_(name + "::kept_generator", like.lattice()) {}
+        kept_(name + "::kept_generator", like.lattice()),
+        streaming_(detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes())) {}
 
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
@@ -67,19 +68,22 @@ class TwoPoint : public detail::StepperBase<Spins> {
   }
 
  private:
+  using DefaultExec = typename Spins::memory_space::execution_space;
+
   template <class Exec, class Generator, class Rule>
   void stage(Exec const& exec, Generator const& generator, std::string const& label, Rule rule,
              Spins const& start, Spins const& level, Spins const& next, double t, double dt) {
     auto prepared = detail::prepare_term(generator, exec, level, t);
     using Kernel = detail::TwoPointStage<Rule, Isotropy, Rotation, decltype(prepared), Real>;
-    Kernel const kernel{std::move(prepared),
-                        isotropy_,
-                        rule,
-                        start.array(),
-                        level.array(),
-                        kept_.output(false),
-                        next.output(false),
-                        static_cast<Real>(dt)};
+    Kernel const kernel{
+        std::move(prepared),
+        isotropy_,
+        rule,
+        start.array(),
+        level.array(),
+        kept_.output(streaming_ && !Rule::reads),
+        next.output(streaming_ && next.allocation().data() != start.allocation().data()),
+        static_cast<Real>(dt)};
     detail::for_each_site<Real>(exec, label, start.layout(), kernel);
   }
 
@@ -88,6 +92,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
   Method method_;
   Isotropy isotropy_;
   Spins next_, kept_;
+  bool streaming_;  // stores of what is only written go around the caches
   double last_dt_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/unrolled.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <type_traits>
@@ -115,27 +116,69 @@ struct Stereographic {
     return move(f, m0);
   }
 
-  /// The f of move(f, m0) = m; made of m - m0, it loses nothing where that is small.
+  /// move(increment(step a, m, m0), m0) for unit spins, with one division.
   template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> coordinates(Vec3<Value> const& m,
-                                                             Vec3<Value> const& m0) {
-    Vec3<Value> const d = m - m0;
-    Value const square = dot(d, d);
-    Value const r = Value(2) / (Value(4) - square);
-    return r * multiply_add(Value(Value(0.5) * square), m0, d);
-  }
-
-  /// move(increment(..), m0) in one, with one division.
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Vec3<Value> const& step_times_a,
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
                                                          Vec3<Value> const& m,
                                                          Vec3<Value> const& m0) {
-    Vec3<Value> const u = cross(step_times_a, m);
-    Vec3<Value> const e = m + m0;
-    Value const e2 = dot(e, e), u2 = dot(u, u);
-    Vec3<Value> const t = multiply_add(Value(Value(-2) * dot(u, m0)), e, Vec3<Value>(e2 * u));
-    Value const scale = Value(4) / detail::multiply_add(e2, e2, Value(Value(4) * u2));
-    return multiply_add(scale, multiply_add(Value(Value(-2) * u2), m0, t), m0);
+    Vec3<Value> const u = cross(a, m);
+    Value const e2 = detail::multiply_add(Value(2), dot(m, m0), Value(2));  // |m + m0|^2
+    Value const reach = step * dot(u, u), step4 = Value(4) * step;
+    Value const scale = step4 / detail::multiply_add(e2, e2, Value(step4 * reach));
+    Value const minus = Value(-2) * scale, along = minus * dot(u, m0);
+    return multiply_add(
+        along, m,
+        multiply_add(Value(scale * e2), u,
+                     multiply_add(detail::multiply_add(minus, reach, along), m0, m0)));
+  }
+
+  /// move(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m, m0),
+  /// where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. Made of
+  /// differences from m0, it loses nothing where these are small.
+  template <class Weights, int Count, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
+                                                        Vec3<Value> const* spins,
+                                                        Vec3<Value> const& m0) {
+    using Scalar = detail::scalar_t<Value>;
+    constexpr int own = Count - 1;
+    Vec3<Value> d[Count];
+    Value square[Count], rest[Count];  // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
+    Value others(1);                   // all rests but that of m
+    detail::unrolled<Count>([&](auto j) {
+      if constexpr (j() < own && Weights::spin(j()) == 0) return;
+      d[j()] = spins[j()] - m0;
+      square[j()] = dot(d[j()], d[j()]);
+      rest[j()] = Value(4) - square[j()];
+      if constexpr (j() < own) others = others * rest[j()];
+    });
+    Value const e2 = rest[own];  // |m + m0|^2
+    Value const e4 = e2 * e2, denominator = others * e4;
+
+    Vec3<Value> const u = cross(a, spins[own]);
+    Value const twice = Value(static_cast<Scalar>(2 * Weights::last)) * step * others;
+    Value const along = Value(-2) * twice * dot(u, m0);
+    Value const of_own = Value(static_cast<Scalar>(Weights::spin(own))) * others * e2;
+    Value of_start = detail::multiply_add(of_own, square[own], Value(along + along));
+    Vec3<Value> f = multiply_add(detail::multiply_add(Value(2), of_own, along), d[own],
+                                 Vec3<Value>(Value(twice * e2) * u));
+    detail::unrolled<own>([&](auto j) {
+      constexpr double weight = Weights::spin(j());
+      if constexpr (weight != 0) {
+        Value factor = Value(static_cast<Scalar>(weight)) * e4;
+        detail::unrolled<own>([&](auto other) {
+          if constexpr (other() != j() && Weights::spin(other()) != 0)
+            factor = factor * rest[other()];
+        });
+        of_start = detail::multiply_add(factor, square[j()], of_start);
+        f = multiply_add(Value(factor + factor), d[j()], f);
+      }
+    });
+    f = multiply_add(of_start, m0, f);
+
+    Value const s = dot(f, f);
+    Value const scale = Value(2) / detail::multiply_add(denominator, denominator, s);
+    return multiply_add(Value(scale * denominator), f,
+                        multiply_add(Value(Value(0) - scale * s), m0, m0));
   }
 };
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+// Rows of spins, wherever they lie: in a field, or in the buffers of a sweep. What a Runge-Kutta
+// stage works on.
+namespace cayspin::detail {
+
+/// The first site of a row: component c of site x is data[c * stride + x].
+template <class Real>
+struct RowInput {
+  Real const* data = nullptr;
+  std::ptrdiff_t stride = 0;
+  std::ptrdiff_t ahead = 0;  // from a site to the one whose memory will be wanted soon
+};
+
+/// A row and its neighbours along y and z; where there is none, the row itself.
+template <class Real>
+struct RowStencil : RowInput<Real> {
+  Real const* neighbor[2][2] = {};  // [axis - 1][previous, next]
+};
+
+template <class Real>
+struct RowOutput {
+  Real* data = nullptr;
+  std::ptrdiff_t stride = 0;
+  bool streaming = false;
+};
+
+/// Numbers of planes, or rows, along an axis; a period further up and down they come again.
+struct Axis {
+  std::int32_t extent = 1;
+  bool wraps = false;
+
+  Axis() = default;
+  Axis(RowLayout const& layout, int axis)
+      : extent(axis == 1 ? layout.ny : layout.nz), wraps(layout.periodic[axis] && extent > 1) {}
+
+  /// The neighbours of i; at an open end i itself.
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t previous(std::int32_t i) const {
+    return i > 0 || wraps ? i - 1 : i;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t next(std::int32_t i) const {
+    return i + 1 < extent || wraps ? i + 1 : i;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t wrapped(std::int32_t i) const {
+    if (0 <= i && i < extent) return i;
+    std::int32_t const rest = i % extent;
+    return rest < 0 ? rest + extent : rest;
+  }
+};
+
+/// The rows of one plane: those in [first, last) from `middle` on, those before and behind them
+/// elsewhere.
+template <class Real>
+struct PlaneRows {
+  Real *low = nullptr, *middle = nullptr, *high = nullptr;  // rows `first`, `first`, `last`
+  std::int32_t first = 0, last = 0;
+  std::ptrdiff_t pitch = 0, stride = 0;
+
+  KOKKOS_FORCEINLINE_FUNCTION Real* row(std::int32_t y) const {
+    if (y < first) return low + (y - first) * pitch;
+    return y < last ? middle + (y - first) * pitch : high + (y - last) * pitch;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(std::int32_t y, std::ptrdiff_t ahead) const {
+    return {row(y), stride, ahead};
+  }
+  KOKKOS_FORCEINLINE_FUNCTION RowOutput<Real> output(std::int32_t y, bool streaming) const {
+    return {row(y), stride, streaming};
+  }
+};
+
+/// Plane z of a field; rows one lattice further up and down are those a period away.
+template <class Real>
+PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array, RowLayout const& layout,
+                           std::int32_t z) {
+  Real* const plane = array.data + std::ptrdiff_t(z) * layout.ny * layout.pitch;
+  return {plane + layout.ny * layout.pitch, plane, plane, 0, layout.ny, layout.pitch, array.stride};
+}
+
+}  // namespace cayspin::detail

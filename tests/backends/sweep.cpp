@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A sweep of all stages through the lattice writes the bits of one kernel per stage.
+#include "../support/coefficients.hpp"
+#include "equal_bits.hpp"
+
+#include <cmath>
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+template <class Real>
+struct Sweep : ::testing::Test {
+  using Field = SpinField<Real, Kokkos::HostSpace>;
+};
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(Sweep, Precisions);
+
+/// Odd ones, and such with long rows, which a sweep cuts into many blocks.
+std::vector<Lattice> lattices() {
+  auto lattices = odd_lattices();
+  std::array<std::int64_t, 3> const wide[] = {{2003, 41, 3}, {3001, 53, 1}, {1003, 17, 13}};
+  for (auto const& shape : wide)
+    for (Boundary const b : {Boundary::open, Boundary::periodic})
+      lattices.push_back({shape, {1, 0.9, 1.1}, {b, b, b}});
+  lattices.push_back(
+      {{301, 37, 5}, {1, 1, 1}, {Boundary::open, Boundary::periodic, Boundary::open}});
+  lattices.push_back(
+      {{301, 5, 37}, {1, 1, 1}, {Boundary::periodic, Boundary::open, Boundary::periodic}});
+  return lattices;
+}
+
+bool can_sweep(Lattice const& lattice, int stages) {
+  auto const rows = lattice.shape[1];
+  return lattice.boundary[1] == Boundary::open || rows == 1 || rows >= stages;
+}
+
+template <class Exec, class Stepper, class Generator>
+auto numbers_after_steps(Path path, Generator const& generator,
+                         typename Stepper::spins_type const& start) {
+  Exec const exec;
+  auto spins = copy_of(start);
+  Stepper stepper(spins);
+  stepper.take(path);
+  for (int n = 0; n < 2; ++n) stepper.step(exec, generator, spins, n * 0.1, 0.1);
+  exec.fence();
+  EXPECT_EQ(stepper.path(), path);
+  return copy_to_host(spins);
+}
+
+template <class Stepper, class Choose>
+void expect_same_on_both_paths(Choose const& choose) {
+  using Field = typename Stepper::spins_type;
+  for (Lattice const& lattice : lattices()) {
+    if (!can_sweep(lattice, Stepper::evaluations)) continue;
+    auto const generator = choose(every_term(lattice));
+    auto const start = random_spins<Field>(lattice, 13);
+    auto const passed = numbers_after_steps<Threaded, Stepper>(Path::pass, generator, start);
+    ASSERT_NE(passed, copy_to_host(start)) << "nothing moved: " << name_of(lattice);
+    expect_equal_bits(passed, numbers_after_steps<Threaded, Stepper>(Path::sweep, generator, start),
+                      name_of(lattice));
+    expect_equal_bits(passed,
+                      numbers_after_steps<Kokkos::Serial, Stepper>(Path::sweep, generator, start),
+                      name_of(lattice) + "on Serial");
+  }
+}
+
+/// Every term, and a field that turns.
+auto turning(Slab const& slab) {
+  return LandauLifshitz(EffectiveField(Exchange(slab.lattice, slab.exchange),
+                                       UniaxialAnisotropy(slab.anisotropy, slab.axis),
+                                       TimeDependentZeeman([](double t) {
+                                         return Vec3<double>{std::cos(t), std::sin(t), 0.3};
+                                       })),
+                        slab.damping);
+}
+
+TYPED_TEST(Sweep, LieHeun) {
+  expect_same_on_both_paths<LieHeun<typename TestFixture::Field>>(turning);
+}
+
+TYPED_TEST(Sweep, Rkmk4) { expect_same_on_both_paths<Rkmk4<typename TestFixture::Field>>(turning); }
+
+TYPED_TEST(Sweep, StagesThatReadAllBeforeThem) {
+  expect_same_on_both_paths<Rkmk<typename TestFixture::Field, tableau::ThreeEighths4>>(turning);
+}
+
+TYPED_TEST(Sweep, StereographicRungeKutta) {
+  expect_same_on_both_paths<
+      StereographicRungeKutta<typename TestFixture::Field, tableau::Classical4>>(turning);
+}
+
+// Coefficients and vacancies are read where the lattice has them, not where the buffers are.
+TYPED_TEST(Sweep, SiteDependentCoefficients) {
+  using Field = typename TestFixture::Field;
+  expect_same_on_both_paths<LieHeun<Field>>([](Slab const& slab) {
+    auto const& lattice = slab.lattice;
+    return LandauLifshitz(
+        FieldWithVacancies(
+            EffectiveField(SiteDependentExchange(numbers_on<Field>(
+                               lattice, [](auto site) { return 0.1 * (site % 8); })),
+                           Zeeman{slab.applied}),
+            numbers_on<Field>(lattice, [](auto site) { return site % 6 == 1 ? 0 : 1; })),
+        numbers_on<Field>(lattice, [](auto site) { return 0.05 * (site % 5); }));
+  });
+}
+
+// A field made of all spins of a stage cannot be had in the midst of a sweep.
+TYPED_TEST(Sweep, LeavesOffUnderANonlocalField) {
+  using Field = typename TestFixture::Field;
+  auto const lattice = Lattice::cubic(70, 20, 20);
+  LandauLifshitz const generator(
+      EffectiveField(Exchange(lattice, 1),
+                     LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.7)),
+      0.1);
+  auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
+  LieHeun<Field> passing(one), sweeping(other);
+  passing.take(Path::pass);
+  sweeping.take(Path::sweep);
+  Threaded const exec;
+  passing.step(exec, generator, one, 0, 0.1);
+  sweeping.step(exec, generator, other, 0, 0.1);
+  EXPECT_EQ(sweeping.path(), Path::pass);
+  EXPECT_EQ(sweeping.work_bytes(), passing.work_bytes());
+  expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
+}
+
+TYPED_TEST(Sweep, ChosenAndForetoldBySize) {
+  using Field = typename TestFixture::Field;
+  using Stepper = Rkmk4<Field>;
+  int const threads = Threaded().concurrency();
+  for (auto const& [n, path] : {std::pair(8, Path::pass), std::pair(150, Path::sweep)}) {
+    auto const lattice = Lattice::cubic(n, n, n);
+    Stepper const stepper{Field("spins", lattice)};
+    EXPECT_EQ(stepper.path(), path) << n;
+    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << n;
+    if (path == Path::pass) continue;
+    std::size_t const field = Field("spins", lattice).bytes();
+    EXPECT_LT(stepper.work_bytes(), 2 * field);
+    EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), 4 * field);
+  }
+}
+
+TEST(SweepRefusals, OneStageAndFewPeriodicRows) {
+  using Field = SpinField<double, Kokkos::HostSpace>;
+  auto const lattice = Lattice::cubic(9, 3, 3, 1, Boundary::periodic);
+  Field const like("spins", lattice);
+  LieEuler<Field> euler(like);
+  EXPECT_THROW(euler.take(Path::sweep), std::invalid_argument);
+  Rkmk4<Field> rkmk4(like);
+  EXPECT_THROW(rkmk4.take(Path::sweep), std::invalid_argument);
+  LieHeun<Field>(like).take(Path::sweep);
+}
+
+}  // namespace
