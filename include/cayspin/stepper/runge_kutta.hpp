@@ -75,8 +75,8 @@ class RungeKutta {
   std::size_t work_bytes() const {
     std::size_t bytes = sum_.bytes() + buffers_.size() * sizeof(Real);
     for (auto const& level : levels_) bytes += level.bytes();
-    if constexpr (detail::keeps_sum<Tableau, Update>) return bytes + increments_[0].bytes();
-    for (auto const& increment : increments_) bytes += increment.bytes();
+    constexpr int distinct = detail::keeps_sum<Tableau, Update> ? 1 : stages;
+    for (int i = 0; i < distinct; ++i) bytes += increments_[i].bytes();
     return bytes;
   }
   /// The same, foretold, for so many threads, and for generators that are made ready knowing the
