@@ -15,6 +15,7 @@ function(cayspin_add_test name)
 
   add_executable(test_${name} ${arg_SOURCES})
   target_link_libraries(test_${name} PRIVATE cayspin_test_main ${arg_LIBRARIES})
+  target_compile_options(test_${name} PRIVATE ${CAYSPIN_TEST_OPTIONS})
   target_precompile_headers(test_${name} REUSE_FROM cayspin_test_main)
 
   if(arg_THREADS AND (Kokkos_ENABLE_OPENMP OR Kokkos_ENABLE_THREADS))

@@ -14,7 +14,7 @@ namespace cayspin::test {
 /// One of the lists in tests/data/oracles.json: inputs are doubles, results decimal strings of 32
 /// digits from 70-digit arithmetic.
 inline nlohmann::json oracles(std::string const& list) {
-  std::string const path = std::string(CAYSPIN_TEST_DATA) + "/oracles.json";
+  std::string const path = CAYSPIN_TEST_DATA "/oracles.json";
   std::ifstream file(path);
   if (!file) throw std::runtime_error("cannot read " + path);
   auto const all = nlohmann::json::parse(file);
