@@ -39,7 +39,7 @@ struct SweepPlan {
   RowLayout layout;
   std::int32_t stages = 1, buffers = 0;
   std::int32_t parts_y = 1, parts_z = 1;
-  std::int32_t block = 1;  // rows, at most
+  std::int32_t block = 1;  // rows, at least; less than twice as many
   std::int32_t ring_rows = 0, seam_planes = 0;
   std::ptrdiff_t pitch = 0, row = 0;  // component to component in a buffer's row, row to row
   std::ptrdiff_t part_size = 0;       // numbers of memory per part
