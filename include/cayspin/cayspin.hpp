@@ -29,7 +29,9 @@
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
+#include <cayspin/stepper/adaptive_runge_kutta.hpp>
 #include <cayspin/stepper/classical.hpp>
+#include <cayspin/stepper/commutator_free4.hpp>
 #include <cayspin/stepper/energy_projection.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/lie_adams_bashforth2.hpp>

@@ -4,6 +4,7 @@
 #include <cayspin/lattice/lattice.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
+#include <cayspin/stepper/runge_kutta_memory.hpp>
 #include <cayspin/stepper/update.hpp>
 
 #include <algorithm>
@@ -99,6 +100,19 @@ struct LinearUpdate<update::Classical<Renormalise>> {
   static Complex growth(NearAxis const& f) { return f.transverse; }
 };
 
+/// Growth by the rotation of these coordinates, and then the second one where the tableau has it:
+/// row `stages` for the end of the step.
+template <class Tableau, class Linear, class Coordinates>
+Complex growth_to(int row, NearAxis const& first, Coordinates const& kept) {
+  Complex const growth = Linear::growth(first);
+  NearAxis second;
+  for (int j = 0; j < row && j < Tableau::stages; ++j)
+    second = second + second_weight<Tableau>(row, j) * kept[j];
+  // Relative to the spin that the first one has moved.
+  second.transverse -= second.parallel * growth;
+  return growth + Linear::growth(second);
+}
+
 /// One step on the mode: its factor less one. z = dt s (-damping + i), q = dt sigma.
 template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
@@ -108,14 +122,14 @@ Complex mode_growth(Complex z, double q) {
   for (int stage = 0; stage < stages; ++stage) {
     NearAxis argument;
     for (int j = 0; j < stage; ++j) argument = argument + Tableau::a[stage][j] * kept[j];
-    Complex const growth = Linear::growth(argument);
+    Complex const growth = growth_to<Tableau, Linear>(stage, argument, kept);
     NearAxis const generator{Complex(0, 1) * z * (1.0 + growth) + q * growth, q};
     increments[stage] = Linear::increment(argument, generator, z, 1.0 + growth);
     kept[stage] = Update::keeps_generators ? generator : increments[stage];
   }
   NearAxis total;
   for (int j = 0; j < stages; ++j) total = total + Tableau::b[j] * increments[j];
-  return Linear::growth(total);
+  return growth_to<Tableau, Linear>(stages, total, increments);
 }
 
 template <class Tableau, class Update>

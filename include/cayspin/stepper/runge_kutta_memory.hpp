@@ -16,6 +16,27 @@ constexpr bool is_chain() {
   return true;
 }
 
+/// The last stage is at the end of the step, for the next step to begin with.
+template <class Tableau>
+inline constexpr bool is_first_same_as_last = requires {
+  Tableau::first_same_as_last;
+};
+
+/// Weights of the rotation that follows the first one, where a tableau has such: row `stages` for
+/// the end of the step.
+template <class Tableau>
+constexpr double second_weight(int row, int column) {
+  if constexpr (requires { Tableau::second_a; })
+    return row < Tableau::stages ? Tableau::second_a[row][column] : Tableau::second_b[column];
+  return 0;
+}
+template <class Tableau>
+constexpr bool has_second_rotation(int row) {
+  for (int j = 0; j < row && j < Tableau::stages; ++j)
+    if (second_weight<Tableau>(row, j) != 0) return true;
+  return false;
+}
+
 /// In a chain that needs its increments as arguments, one array holds the last increment and one
 /// the weighted sum, brought up to date at every second stage: the least that can be moved.
 template <class Tableau, class Update>
@@ -37,6 +58,7 @@ constexpr bool reads_increment(int stage, int source) {
   if (source >= stage || recovers_increments<Tableau, Update>()) return false;
   if (keeps_sum<Tableau, Update>) return source == stage - 1;
   bool const last = stage == Tableau::stages - 1;
+  if (second_weight<Tableau>(stage + 1, source) != 0) return true;
   if (last && (Tableau::b[source] != 0 || Update::keeps_generators)) return true;
   if (!last && Tableau::a[stage + 1][source] != 0) return true;
   return Update::increment_needs_argument && Tableau::a[stage][source] != 0;

@@ -51,6 +51,16 @@ struct FinalWeights {
   }
 };
 
+template <class Tableau, int Row>
+struct SecondWeights {
+  KOKKOS_FUNCTION static constexpr double of(int j) { return second_weight<Tableau>(Row, j); }
+  KOKKOS_FUNCTION static constexpr bool first(int j) {
+    for (int i = 0; i < j; ++i)
+      if (of(i) != 0) return false;
+    return true;
+  }
+};
+
 /// A chain's increments, b[i] times each, in terms of the coordinates of the spins after them.
 template <class Tableau>
 struct ChartWeights {
@@ -84,6 +94,8 @@ template <class Tableau, class Update, class Isotropy, int StageIndex, class Gen
 struct RungeKuttaStage {
   static constexpr int stages = Tableau::stages;
   static constexpr bool last = StageIndex == stages - 1;
+  /// The stage after this one is at the step's end.
+  static constexpr bool arrives = is_first_same_as_last<Tableau> && StageIndex == stages - 2;
 
   Generator generator;
   Isotropy isotropy;
@@ -134,13 +146,14 @@ struct RungeKuttaStage {
 
     if constexpr (last) {
       if constexpr (Update::keeps_generators) increments_from_generators(f, m0);
-      site.store(Update::finish(completed(site, total(site, rows, f), m0), m0), rows.next);
+      site.store(turned_again(f, Update::finish(completed(site, total(site, rows, f), m0), m0)),
+                 rows.next);
     } else {
       if constexpr (writes_sum) site.store(sum_up_to_here(site, rows, f), rows.sum);
       if constexpr (stores_increment) site.store(f[StageIndex], rows.increment);
-      site.store(
-          Update::move(weighted_sum<StageWeights<Tableau, StageIndex + 1>, StageIndex + 1>(f), m0),
-          rows.next);
+      auto const on = weighted_sum<StageWeights<Tableau, StageIndex + 1>, StageIndex + 1>(f);
+      site.store(turned_again(f, arrives ? Update::finish(on, m0) : Update::move(on, m0)),
+                 rows.next);
     }
   }
 
@@ -163,6 +176,17 @@ struct RungeKuttaStage {
   KOKKOS_FORCEINLINE_FUNCTION static Value weight() {
     constexpr double b = Tableau::b[Of];
     return Value(static_cast<scalar_t<Value>>(b));
+  }
+
+  // By the second rotation to the next stage, or the end, where the tableau has one.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_again(Vec3<Value> const* f,
+                                                              Vec3<Value> const& m) {
+    if constexpr (has_second_rotation<Tableau>(StageIndex + 1))
+      return Update::finish(weighted_sum<SecondWeights<Tableau, StageIndex + 1>, StageIndex + 1>(f),
+                            m);
+    else
+      return m;
   }
 
   template <class Site, class Value>

@@ -3,6 +3,11 @@
 
 // Explicit Butcher tableaux, as data: a new Runge-Kutta method is a struct like these.
 // a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
+// Embedded ones also say how to choose dt and to look between steps. They take the generator at the
+// step's end, which is the next step's first, for one more stage:
+// error: weights of all stages and that one, of the step less the embedded solution of order
+// embedded_order; dense: of each stage, the coefficients of s, s^2, ... s^5 in its weight at
+// t + s dt, of order dense_order.
 namespace cayspin::tableau {
 
 struct Euler {
@@ -40,6 +45,118 @@ struct ThreeEighths4 {
       {0, 0, 0, 0}, {1. / 3, 0, 0, 0}, {-1. / 3, 1, 0, 0}, {1, -1, 1, 0}};
   static constexpr double b[4] = {1. / 8, 3. / 8, 3. / 8, 1. / 8};
   static constexpr double c[4] = {0, 1. / 3, 2. / 3, 1};
+};
+
+/// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003): stages and end are reached by
+/// two rotations, of weights a then second_a, b then second_b, of the generators themselves.
+struct CommutatorFree4 {
+  static constexpr int stages = 4, order = 4;
+  static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0.5, 0, 0, 0}};
+  static constexpr double second_a[4][4] = {
+      {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {-0.5, 0, 1, 0}};
+  static constexpr double b[4] = {1. / 4, 1. / 6, 1. / 6, -1. / 12};
+  static constexpr double second_b[4] = {-1. / 12, 1. / 6, 1. / 6, 1. / 4};
+  static constexpr double c[4] = {0, 0.5, 0.5, 1};
+};
+
+/// Bogacki and Shampine 1989, 3(2). Between steps: Hermite's cubic.
+struct BogackiShampine3 {
+  static constexpr int stages = 3, order = 3, embedded_order = 2, dense_order = 3;
+  static constexpr double a[3][3] = {{0, 0, 0}, {0.5, 0, 0}, {0, 0.75, 0}};
+  static constexpr double b[3] = {2. / 9, 1. / 3, 4. / 9};
+  static constexpr double c[3] = {0, 0.5, 0.75};
+  static constexpr double error[4] = {2. / 9 - 7. / 24, 1. / 3 - 1. / 4, 4. / 9 - 1. / 3, -1. / 8};
+  static constexpr double dense[4][5] = {
+      {1, -4. / 3, 5. / 9}, {0, 1, -2. / 3}, {0, 4. / 3, -8. / 9}, {0, -1, 1}};
+};
+
+/// Dormand and Prince 1980, 5(4). Between steps: Shampine's polynomial of order 4.
+struct DormandPrince5 {
+  static constexpr int stages = 6, order = 5, embedded_order = 4, dense_order = 4;
+  static constexpr double a[6][6] = {
+      {0, 0, 0, 0, 0, 0},
+      {1. / 5, 0, 0, 0, 0, 0},
+      {3. / 40, 9. / 40, 0, 0, 0, 0},
+      {44. / 45, -56. / 15, 32. / 9, 0, 0, 0},
+      {19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729, 0, 0},
+      {9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656, 0}};
+  static constexpr double b[6] = {35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84};
+  static constexpr double c[6] = {0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1};
+  static constexpr double error[7] = {71. / 57600,      0,         -71. / 16695, 71. / 1920,
+                                      -17253. / 339200, 22. / 525, -1. / 40};
+  static constexpr double dense[7][5] = {
+      {1, -4034104133. / 1410260304, 105330401. / 33982176, -13107642775. / 11282082432,
+       6542295. / 470086768},
+      {},
+      {0, 132343189600. / 32700410799, -833316000. / 131326951, 91412856700. / 32700410799,
+       -523383600. / 10900136933},
+      {0, -115792950. / 29380423, 185270875. / 16991088, -12653452475. / 1880347072,
+       98134425. / 235043384},
+      {0, 70805911779. / 24914598704, -4531260609. / 600351776, 988140236175. / 199316789632,
+       -14307999165. / 24914598704},
+      {0, -331320693. / 205662961, 31361737. / 7433601, -2426908385. / 822651844,
+       97305120. / 205662961},
+      {0, 44764047. / 29380423, -1532549. / 353981, 90730570. / 29380423, -8293050. / 29380423}};
+};
+
+/// Tsitouras 2011, 5(4), with its polynomial of order 4.
+struct Tsitouras5 {
+  static constexpr int stages = 6, order = 5, embedded_order = 4, dense_order = 4;
+  static constexpr double a[6][6] = {
+      {0, 0, 0, 0, 0, 0},
+      {0.161, 0, 0, 0, 0, 0},
+      {-0.008480655492356989, 0.335480655492357, 0, 0, 0, 0},
+      {2.8971530571054935, -6.359448489975075, 4.3622954328695815, 0, 0, 0},
+      {5.325864828439257, -11.748883564062828, 7.4955393428898365, -0.09249506636175525, 0, 0},
+      {5.86145544294642, -12.92096931784711, 8.159367898576159, -0.071584973281401,
+       -0.028269050394068383, 0}};
+  static constexpr double b[6] = {0.09646076681806523, 0.01,
+                                  0.4798896504144996,  1.379008574103742,
+                                  -3.290069515436081,  2.324710524099774};
+  static constexpr double c[6] = {0, 0.161, 0.327, 0.9, 0.9800255409045097, 1};
+  static constexpr double error[7] = {
+      -0.00178001105222577714, -0.0008164344596567469, 0.007880878010261995, -0.1447110071732629,
+      0.5823571654525552,      -0.45808210592918697,   0.015151515151515152};
+  static constexpr double dense[7][5] = {
+      {1, -2.763706197274826, 2.9132554618219126, -1.0530884977290216},
+      {0, 0.13169999999999998, -0.2234, 0.1017},
+      {0, 3.9302962368947516, -5.941033872131505, 2.490627285651253},
+      {0, -12.411077166933676, 30.33818863028232, -16.548102889244902},
+      {0, 37.50931341651104, -88.1789048947664, 47.37952196281928},
+      {0, -27.896526289197286, 65.09189467479366, -34.87065786149661},
+      {0, 1.5, -4, 2.5}};
+};
+
+/// An embedded tableau with the stage at the step's end as its last: weight 0, and its generator is
+/// the next step's first.
+template <class Embedded>
+struct FirstSameAsLast {
+  static constexpr bool first_same_as_last = true;
+  static constexpr int stages = Embedded::stages + 1, order = Embedded::order;
+
+ private:
+  struct Numbers {
+    double a[stages][stages] = {}, b[stages] = {}, c[stages] = {};
+  };
+  static constexpr Numbers numbers = [] {
+    Numbers all;
+    for (int i = 0; i < stages; ++i)
+      for (int j = 0; j + 1 < stages; ++j)
+        all.a[i][j] = i + 1 < stages ? Embedded::a[i][j] : Embedded::b[j];
+    for (int i = 0; i + 1 < stages; ++i) {
+      all.b[i] = Embedded::b[i];
+      all.c[i] = Embedded::c[i];
+    }
+    all.c[stages - 1] = 1;
+    return all;
+  }();
+
+ public:
+  static constexpr auto const& a = numbers.a;
+  static constexpr auto const& b = numbers.b;
+  static constexpr auto const& c = numbers.c;
+  static constexpr auto const& error = Embedded::error;
+  static constexpr auto const& dense = Embedded::dense;
 };
 
 }  // namespace cayspin::tableau

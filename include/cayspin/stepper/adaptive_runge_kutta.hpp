@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/adaptive_stage.hpp>
+#include <cayspin/stepper/runge_kutta_pass.hpp>
+#include <cayspin/stepper/step_control.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+#include <cayspin/stepper/update.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace cayspin {
+
+/// An embedded Runge-Kutta method that chooses its own steps: each one's error, the largest angle
+/// of any spin between the two solutions, is held to the tolerance. `step(.., t, dt)` delivers the
+/// spins at t + dt, by the tableau's polynomial in the coordinates of the group; the method's own
+/// steps go on from where they are, whatever dt is. It remembers: `spins` must be what the step
+/// before delivered, and t where that ended, or `reset` be called.
+template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
+class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
+  using Base = detail::StepperBase<Spins>;
+  using Tableau = tableau::FirstSameAsLast<Embedded>;
+  static constexpr int stages = Tableau::stages;
+
+ public:
+  using typename Base::Real;
+  static constexpr int order = Embedded::order;
+  static constexpr int evaluations = 0;           // stages - 1 for each of its own steps
+  static constexpr int work_fields = stages + 4;  // and a number per site
+
+  /// Throws std::invalid_argument for options that cannot be, a tolerance below 32 epsilon of the
+  /// precision among them.
+  AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
+                     Isotropy isotropy = {})
+      : Base(name),
+        isotropy_(isotropy),
+        options_(options),
+        controller_(options, Embedded::embedded_order + 1, std::numeric_limits<Real>::epsilon(),
+                    "cayspin::" + name),
+        begin_(name + "::begin", like.lattice()),
+        end_(name + "::end", like.lattice()),
+        level_(name + "::level", like.lattice()),
+        first_(name + "::first_generator", like.lattice()),
+        last_(name + "::last_generator", like.lattice()),
+        square_(name + "::squared_error", like.lattice()) {
+    for (int i = 0; i + 1 < stages; ++i) {
+      increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), like.lattice());
+      labels_[i] = this->label("::stage_") + std::to_string(i + 1);
+    }
+    streaming_ = detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes());
+  }
+
+  std::size_t work_bytes() const { return work_fields * begin_.bytes() + square_.bytes(); }
+
+  /// Evaluations of the generator so far, and own steps taken and thrown away.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+  std::int64_t accepted_steps() const { return accepted_; }
+  std::int64_t rejected_steps() const { return rejected_; }
+  /// The next own step.
+  double next_dt() const { return next_dt_; }
+
+  /// Forgets the run so far: the next step begins at its own t and spins.
+  void reset() { running_ = false; }
+
+  /// Brings `spins` from t to t + dt under `generator`. Waits.
+  /// Throws StepTooSmall when no step is small enough, std::invalid_argument when `spins` is not of
+  /// the lattice given at construction, dt is negative or options.end is before t + dt.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    auto const region = this->begin_step(exec, spins, begin_);
+    double const asked = t + dt, slack = 1e-9 * std::abs(dt);
+    if (!(dt >= 0) || !(asked <= options_.end + slack))
+      throw std::invalid_argument(
+          this->label("::step: dt must not be negative, nor t + dt beyond the end of the options"));
+    if (!running_) begin(exec, generator, spins, t, dt);
+    while (end_time_ < asked - slack) take_step(exec, generator);
+    deliver(exec, spins, asked);
+  }
+
+ private:
+  using DefaultExec = typename Spins::memory_space::execution_space;
+  using Scalars = ScalarField<Real, typename Spins::memory_space>;
+  using Fields = detail::StageFields<Real, stages>;
+
+  template <class Exec, class Generator>
+  void begin(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+             double asked) {
+    Kokkos::deep_copy(exec, end_.allocation(), spins.allocation());
+    auto prepared = detail::prepare_term(generator, exec, end_, t);
+    detail::for_each_site<Real>(exec, begin_label_, end_.layout(),
+                                detail::FirstGeneratorStage<Isotropy, decltype(prepared), Real>{
+                                    std::move(prepared), isotropy_, end_.array(),
+                                    last_.output(false), square_.output(false)});
+    ++evaluations_done_;
+    controller_.reset();
+    next_dt_ = controller_.first_dt(std::sqrt(largest_square(exec)), asked);
+    begin_time_ = end_time_ = t;
+    running_ = true;
+  }
+
+  /// From end_, the state at end_time_, on.
+  template <class Exec, class Generator>
+  void take_step(Exec const& exec, Generator const& generator) {
+    swap(begin_, end_);
+    swap(first_, last_);
+    double const t = end_time_;
+    while (true) {
+      double const dt = within_end(t, next_dt_);
+      double const error = try_step(exec, generator, t, dt);
+      double const on = controller_.next_dt(dt, error);
+      if (controller_.accepts(error)) {
+        next_dt_ = std::max(on, options_.min_dt);
+        begin_time_ = t;
+        end_time_ = t + dt;
+        dt_ = dt;
+        ++accepted_;
+        return;
+      }
+      ++rejected_;
+      next_dt_ = on;
+      double const least =
+          std::max(options_.min_dt, 16 * std::numeric_limits<double>::epsilon() * std::abs(t));
+      if (!(on >= least) || on == 0) give_up(t, on);
+    }
+  }
+
+  /// The error of a step from begin_ to end_: an angle.
+  template <class Exec, class Generator>
+  double try_step(Exec const& exec, Generator const& generator, double t, double dt) {
+    auto const h = static_cast<Real>(dt);
+    detail::for_each_site<Real>(
+        exec, labels_[0], begin_.layout(),
+        detail::KnownFirstStage<Tableau, Update, Real>{begin_.array(), first_.array(),
+                                                       increments_[0].output(streaming_),
+                                                       level(1).output(streaming_), h});
+    stages_from<1>(exec, generator, t, dt);
+    auto prepared = detail::prepare_term(generator, exec, end_, t + dt);
+    detail::for_each_site<Real>(
+        exec, end_label_, begin_.layout(),
+        detail::EndStage<Tableau, Update, Isotropy, decltype(prepared), Real>{
+            std::move(prepared), isotropy_, begin_.array(), end_.array(), increments(),
+            last_.output(streaming_), square_.output(false), h});
+    evaluations_done_ += stages - 1;
+    return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
+  }
+
+  /// Spins that stage `stage` looks at; the last one looks at end_.
+  Spins const& level(int stage) const { return (stages - 1 - stage) % 2 == 0 ? end_ : level_; }
+
+  template <int Stage, class Exec, class Generator>
+  void stages_from(Exec const& exec, Generator const& generator, double t, double dt) {
+    if constexpr (Stage + 1 < stages) {
+      auto prepared =
+          detail::prepare_term(generator, exec, level(Stage), t + Tableau::c[Stage] * dt);
+      Fields fields;
+      fields.start = begin_.array();
+      fields.level = level(Stage).array();
+      for (int i = 0; i < Stage; ++i) fields.increments[i] = increments_[i].array();
+      fields.increment = increments_[Stage].output(streaming_);
+      fields.next = level(Stage + 1).output(streaming_);
+      using Kernel =
+          detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, decltype(prepared), Real>;
+      detail::run_pass(exec, labels_[Stage], begin_.layout(),
+                       Kernel{std::move(prepared), isotropy_, static_cast<Real>(dt)}, fields);
+      stages_from<Stage + 1>(exec, generator, t, dt);
+    }
+  }
+
+  template <class Exec>
+  void deliver(Exec const& exec, Spins const& spins, double t) const {
+    double const fraction = end_time_ > begin_time_ ? (t - begin_time_) / dt_ : 1;
+    if (std::abs(t - end_time_) <= 1e-9 * dt_ || fraction >= 1) {
+      Kokkos::deep_copy(exec, spins.allocation(), end_.allocation());
+      return;
+    }
+    detail::DenseOutput<Tableau, Update, Real> look(begin_.array(), end_.array(), last_.array(),
+                                                    increments(), spins.output(false), dt_,
+                                                    fraction);
+    detail::for_each_site<Real>(exec, dense_label_, begin_.layout(), look);
+  }
+
+  template <class Exec>
+  double largest_square(Exec const& exec) const {
+    return detail::reduce_sites<detail::Maximum, 1>(
+        exec, error_label_, square_.layout(), detail::LargestNumber<Real>{square_.array()})[0];
+  }
+
+  detail::StepIncrements<Tableau, Real> increments() const {
+    detail::StepIncrements<Tableau, Real> all;
+    for (int i = 0; i + 1 < stages; ++i) all.of[i] = increments_[i].array();
+    return all;
+  }
+
+  /// Ends on the end, and leaves no crumb before it.
+  double within_end(double t, double dt) const {
+    double const left = options_.end - t;
+    if (dt >= left * (1 - 1e-9)) return left;
+    return 2 * dt > left ? 0.5 * left : dt;
+  }
+
+  [[noreturn]] void give_up(double t, double dt) {
+    swap(begin_, end_);
+    swap(first_, last_);
+    throw StepTooSmall(this->label("::step: from t = ") + std::to_string(t) +
+                       " the tolerance would take a step below " + std::to_string(dt) +
+                       "; the numbers are not finite, or the field jumps without end");
+  }
+
+  std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
+              dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error");
+  std::array<std::string, stages> labels_;
+  Isotropy isotropy_;
+  StepOptions options_;
+  detail::StepController controller_;
+  Spins begin_, end_, level_, first_, last_;
+  std::array<Spins, stages - 1> increments_;
+  Scalars square_;
+  bool streaming_ = false, running_ = false;
+  double begin_time_ = 0, end_time_ = 0, dt_ = 0, next_dt_ = 0;
+  std::int64_t evaluations_done_ = 0, accepted_ = 0, rejected_ = 0;
+};
+
+/// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau in the Lie algebra, where the last
+/// stage's generator is the next step's first increment, since D_0 = I.
+template <class Spins, class Embedded, class Isotropy = isotropy::Zero, class Rotation = Cayley>
+class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rotation>, Isotropy> {
+ public:
+  explicit AdaptiveRkmk(Spins const& like, StepOptions const& options = {}, Isotropy isotropy = {},
+                        Rotation = {})
+      : AdaptiveRkmk::AdaptiveRungeKutta("AdaptiveRkmk", like, options, isotropy) {}
+};
+
+/// The same in the stereographic chart at each step's first spin.
+template <class Spins, class Embedded>
+class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update::Stereographic> {
+ public:
+  explicit AdaptiveStereographic(Spins const& like, StepOptions const& options = {})
+      : AdaptiveStereographic::AdaptiveRungeKutta("AdaptiveStereographic", like, options) {}
+};
+
+/// The baseline: the same steps in space, each divided by the length.
+template <class Spins, class Embedded>
+class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Classical<true>> {
+ public:
+  explicit AdaptiveProjected(Spins const& like, StepOptions const& options = {})
+      : AdaptiveProjected::AdaptiveRungeKutta("AdaptiveProjected", like, options) {}
+};
+
+}  // namespace cayspin

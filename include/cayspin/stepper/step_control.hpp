@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace cayspin {
+
+/// An adaptive step that would have to be shorter than allowed, or than time can tell: the numbers
+/// are not finite, or the field is not smooth on any scale. The spins are those before the step.
+class StepTooSmall : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How an adaptive method chooses its steps.
+struct StepOptions {
+  double tolerance = 1e-6;  ///< of the error of a run: the largest angle of any spin, in radians
+  double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
+  double min_dt = 0;        ///< a step that needs less throws StepTooSmall
+  double max_dt = std::numeric_limits<double>::infinity();
+  double end = std::numeric_limits<double>::infinity();  ///< no stage looks beyond this time
+};
+
+namespace detail {
+
+/// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): the next dt from
+/// the errors of this step and the one before. Plain host arithmetic on a maximum over sites, so
+/// the sequence of steps is the same on every host space.
+class StepController {
+ public:
+  /// `error_order`: the power of dt that the estimate goes with.
+  StepController(StepOptions const& options, int error_order, double epsilon,
+                 std::string const& region)
+      : options_(options), exponent_(1.0 / error_order) {
+    auto const refuse = [&](char const* what) { throw std::invalid_argument(region + what); };
+    if (!(options.tolerance >= 32 * epsilon) || !(options.tolerance <= 1))
+      refuse(": the tolerance must be between 32 epsilon of the precision and 1");
+    if (!(options.min_dt >= 0) || !(options.max_dt > 0) || options.min_dt > options.max_dt)
+      refuse(": 0 <= min_dt <= max_dt and max_dt > 0 must hold");
+    if (!(options.first_dt >= 0)) refuse(": first_dt must not be negative");
+  }
+
+  /// Errors of single steps add up on the way: a step may make this much of one. Calibrated on
+  /// switching, films and Heisenberg lattices (docs/trade.md): low orders take more steps.
+  double step_tolerance() const {
+    return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 10 : 1.0 / 40);
+  }
+
+  /// For spins that turn by at most `rate` per unit of time; `asked`: where nothing turns.
+  double first_dt(double rate, double asked) const {
+    double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
+    double const dt = options_.first_dt > 0 ? options_.first_dt : rate > 0 ? angle / rate : asked;
+    return std::clamp(dt, options_.min_dt, largest_dt());
+  }
+
+  bool accepts(double error) const { return error <= step_tolerance(); }
+
+  /// The dt that follows a step of dt with this error; NaN counts as far too large.
+  double next_dt(double dt, double error) {
+    double const ratio = error / step_tolerance();
+    if (!(ratio <= 1)) {
+      rejected_ = true;
+      double const factor = safety * std::pow(ratio, -exponent_);
+      return dt * (factor > smallest ? factor : smallest);
+    }
+    double const least = 1e-8;  // an error of nothing: as good as this
+    double const now = std::max(ratio, least);
+    double factor = safety * std::pow(now, -0.7 * exponent_) * std::pow(before_, 0.4 * exponent_);
+    factor = std::clamp(factor, smallest, rejected_ ? 1.0 : largest);
+    before_ = now;
+    rejected_ = false;
+    return std::min(dt * factor, largest_dt());
+  }
+
+  void reset() {
+    before_ = 1;
+    rejected_ = false;
+  }
+
+ private:
+  static constexpr double safety = 0.9, smallest = 0.1, largest = 5;
+
+  // Steps of spins at rest grow, but stay finite.
+  double largest_dt() const { return std::min(options_.max_dt, 1e100); }
+
+  StepOptions options_;
+  double exponent_;
+  double before_ = 1;  // error / tolerance of the last accepted step
+  bool rejected_ = false;
+};
+
+}  // namespace detail
+}  // namespace cayspin

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Steps chosen by the tolerance: what error they lead to, and what they do where a field jumps,
+// numbers fail and a run ends.
+#include "../backends/equal_bits.hpp"
+#include "../order/chain.hpp"
+#include "../support/backends.hpp"
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+using Tsit5 = AdaptiveRkmk<Spins, tableau::Tsitouras5>;
+
+TEST(AdaptiveTolerance, TheErrorFollowsItOverSevenDecades) {
+  Slab const slab = coupled_chain(0.05);
+  auto const reference = run<Rkmk4<Spins>>(slab.natural(), chain_start(), 10. / 100000, 100000);
+  std::vector<double> tolerances, errors;
+  for (double const tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+    auto spins = chain_start();
+    Tsit5 stepper(spins, {.tolerance = tolerance, .end = 10});
+    stepper.step(Space(), slab.orthogonal(), spins, 0, 10);
+    tolerances.push_back(tolerance);
+    errors.push_back(largest_distance(spins, reference));
+    EXPECT_LT(errors.back(), 30 * tolerance);
+    if (errors.size() > 1) {
+      EXPECT_LT(errors.back(), errors[errors.size() - 2]);
+    }
+    EXPECT_LT(stepper.rejected_steps(), stepper.accepted_steps() / 4);
+    EXPECT_EQ(stepper.evaluations_done(),
+              1 + 6 * (stepper.accepted_steps() + stepper.rejected_steps()));
+  }
+  expect_order("error over tolerance", fitted_order(tolerances, errors), 1, 0.1);
+}
+
+template <class Type>
+struct AdaptiveOn : ::testing::Test {};
+TYPED_TEST_SUITE(AdaptiveOn, Backends, BackendName);
+
+// The same dt, so the same bits; frames at times that are no ends of steps.
+TYPED_TEST(AdaptiveOn, HasTheBitsOfSerial) {
+  using Field = typename TypeParam::Spins;
+  for (auto const& shape : {std::array<std::int64_t, 3>{9, 7, 5}, {61, 37, 3}}) {
+    Lattice const lattice{shape, {1, 1, 1}, {Boundary::open, Boundary::periodic, Boundary::open}};
+    auto const generator = every_term(lattice).natural();
+    auto const numbers = [&](auto exec) {
+      auto spins = random_spins<Field>(lattice, 5);
+      AdaptiveRkmk<Field, tableau::Tsitouras5> stepper(spins, {.tolerance = 1e-4});
+      for (int frame = 0; frame < 3; ++frame)
+        stepper.step(exec, generator, spins, frame * 0.37, 0.37);
+      return copy_to_host(spins);
+    };
+    expect_equal_bits(numbers(typename TypeParam::Exec()), numbers(Kokkos::Serial()),
+                      name_of(lattice));
+  }
+}
+
+/// A field that is switched on at once.
+struct SwitchedOn {
+  static constexpr bool depends_on_time = true;
+  double at;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    return Zeeman{t < at ? Vector{0, 0, 1} : Vector{3, 0, 0}};
+  }
+};
+
+TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
+  double const jump = 0.5123456789;
+  LandauLifshitz const before(EffectiveField(Zeeman{{0, 0, 1}}), 0.1);
+  LandauLifshitz const after(EffectiveField(Zeeman{{3, 0, 0}}), 0.1);
+  auto const start = [] {
+    return make_spins(Lattice::chain(1), [](auto...) { return Vector{0.6, 0.3, 0.2}; });
+  };
+  auto exact = run<Rkmk4<Spins>>(before, start(), jump / 10000, 10000);
+  exact = run<Rkmk4<Spins>>(after, exact, (1 - jump) / 10000, 10000);
+  for (double const tolerance : {1e-3, 1e-5, 1e-7}) {
+    auto spins = start();
+    Tsit5 stepper(spins, {.tolerance = tolerance, .max_dt = 0.1});
+    stepper.step(Space(), LandauLifshitz(EffectiveField(SwitchedOn{jump}), 0.1), spins, 0, 1);
+    EXPECT_GT(stepper.rejected_steps(), 0);
+    expect_below("error across the jump", largest_distance(spins, exact), 30 * tolerance);
+  }
+}
+
+/// Not a number from a time on.
+struct Failing {
+  static constexpr bool depends_on_time = true;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    return Zeeman{{t < 0.5 ? 1 : std::nan(""), 0, 1}};
+  }
+};
+
+TEST(AdaptiveFailure, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
+  auto spins = chain_start();
+  auto const start = copy_to_host(spins);
+  LandauLifshitz const generator(EffectiveField(Failing{}), 0.1);
+  Tsit5 stepper(spins, {.tolerance = 1e-6});
+  EXPECT_THROW(stepper.step(Space(), generator, spins, 0, 1), StepTooSmall);
+  EXPECT_EQ(copy_to_host(spins), start);
+  stepper.reset();
+  stepper.step(Space(), generator, spins, 0, 0.25);
+  EXPECT_NE(copy_to_host(spins), start);
+}
+
+TEST(AdaptiveFailure, AStepBelowTheLeastAllowed) {
+  auto spins = chain_start();
+  Tsit5 stepper(spins, {.tolerance = 1e-10, .first_dt = 0.5, .min_dt = 0.4});
+  EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, 1), StepTooSmall);
+}
+
+/// Nothing there beyond the end.
+struct EndingField {
+  static constexpr bool depends_on_time = true;
+  double end;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    if (t > end) throw std::logic_error("looked beyond the end");
+    return Zeeman{{0, std::sqrt(end - t), 1}};
+  }
+};
+
+TEST(AdaptiveEnd, NoStageLooksBeyondIt) {
+  double const end = 1.7;
+  auto spins = chain_start();
+  LandauLifshitz const generator(EffectiveField(EndingField{end}), 0.1);
+  Tsit5 stepper(spins, {.tolerance = 1e-3, .end = end});
+  EXPECT_NO_THROW(advance(stepper, generator, spins, end / 17, 17));
+  EXPECT_THROW(stepper.step(Space(), generator, spins, end, 0.1), std::invalid_argument);
+}
+
+TEST(AdaptiveEnd, AskingOftenDoesNotChangeTheSteps) {
+  Slab const slab = coupled_chain(0.05);
+  auto seldom = chain_start(), often = chain_start();
+  Tsit5 one(seldom, {.tolerance = 1e-7, .end = 2}), many(often, {.tolerance = 1e-7, .end = 2});
+  one.step(Space(), slab.natural(), seldom, 0, 2);
+  advance(many, slab.natural(), often, 2. / 256, 256);
+  EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
+  EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
+}
+
+TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
+  auto spins = make_spins(Lattice::chain(8), [](auto...) { return Vector{0, 0, 1}; });
+  auto const start = copy_to_host(spins);
+  Tsit5 stepper(spins, {.tolerance = 1e-6});
+  stepper.step(Space(), LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1), spins, 0, 1e3);
+  EXPECT_EQ(copy_to_host(spins), start);
+  EXPECT_LT(stepper.accepted_steps(), 20);
+}
+
+TEST(AdaptiveOptions, WhatCannotBeIsRefused) {
+  auto const spins = chain_start();
+  for (StepOptions const& options :
+       {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 1e-15}, StepOptions{.tolerance = 2},
+        StepOptions{.min_dt = -1}, StepOptions{.max_dt = 0}, StepOptions{.min_dt = 2, .max_dt = 1},
+        StepOptions{.first_dt = -1}, StepOptions{.tolerance = std::nan("")}})
+    EXPECT_THROW(Tsit5(spins, options), std::invalid_argument);
+  using Single = SpinField<float, Space::memory_space>;
+  EXPECT_THROW((AdaptiveRkmk<Single, tableau::Tsitouras5>(Single("spins", Lattice::chain(2)),
+                                                          {.tolerance = 1e-7})),
+               std::invalid_argument);
+}
+
+}  // namespace
