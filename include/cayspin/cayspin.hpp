@@ -37,6 +37,7 @@
 #include <cayspin/stepper/lie_adams_bashforth2.hpp>
 #include <cayspin/stepper/lie_euler.hpp>
 #include <cayspin/stepper/lie_heun.hpp>
+#include <cayspin/stepper/red_black.hpp>
 #include <cayspin/stepper/rkmk.hpp>
 #include <cayspin/stepper/rkmk4.hpp>
 #include <cayspin/stepper/series4.hpp>

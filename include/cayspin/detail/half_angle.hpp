@@ -51,12 +51,18 @@ KOKKOS_FORCEINLINE_FUNCTION ScaledNorm<Value> scaled_norm(Vec3<Value> const& f) 
   return {scaled, norm, norm * select<Value>(too_large, Value(up), Value(Scalar(1)))};
 }
 
+/// sine_over_r * r and cosine of half an angle, up to a common sign; r is half the angle less
+/// multiples of pi.
 template <class Value>
-KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
+struct HalfTurn {
+  Value r, sine_over_r, cosine;
+};
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   using Scalar = scalar_t<Value>;
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
-  auto const [scaled, scaled_length, length] = scaled_norm(f);
-  Value const a = Value(Scalar(0.5)) * length;
+  Value const a = Value(Scalar(0.5)) * angle;
 
   // Reduce by multiples of pi, given as a sum of three numbers. The clamp bites only where |f| eps
   // is no longer small; it keeps the result on the sphere.
@@ -74,8 +80,15 @@ KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
   r = select<Value>(Value(-limit) < r, r, Value(-limit));
 
   Value const x = r * r;
-  Value const sine_over_r = trigonometric_series<1>(x);
-  Value const cosine = trigonometric_series<0>(x);
+  return {r, trigonometric_series<1>(x), trigonometric_series<0>(x)};
+}
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
+  using Scalar = scalar_t<Value>;
+  constexpr bool is_double = sizeof(Scalar) == sizeof(double);
+  auto const [scaled, scaled_length, length] = scaled_norm(f);
+  auto const [r, sine_over_r, cosine] = half_turn(length);
   // Below the smallest normal square, |f| itself is not resolved: there sin(a) f/|f| = f/2.
   auto const tiny = scaled_length < Value(is_double ? Scalar(0x1p-500) : Scalar(0x1p-60f));
   Value const safe = select<Value>(tiny, Value(Scalar(1)), scaled_length);

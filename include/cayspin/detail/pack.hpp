@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <Kokkos_BitManipulation.hpp>
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>
 
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #if defined(__x86_64__) && !defined(__CUDA_ARCH__)
@@ -151,6 +153,35 @@ KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
   return select<Value>(a < b, b, a);
+}
+
+/// 2^k for a whole number k within the exponents of normal numbers.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value power_of_two(Value const& k) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    if constexpr (sizeof(Value) == sizeof(double))
+      return Kokkos::bit_cast<double>((static_cast<std::int64_t>(k) + 1023) << 52);
+    else
+      return Kokkos::bit_cast<float>((static_cast<std::int32_t>(k) + 127) << 23);
+  } else {
+#if defined(CAYSPIN_DETAIL_AVX512)
+    if constexpr (std::is_same_v<Value, Pack<double>>) {
+      return Value(_mm512_maskz_scalef_pd(0xff, _mm512_set1_pd(1), static_cast<__m512d>(k)));
+    } else if constexpr (std::is_same_v<Value, Pack<float>>) {
+      return Value(_mm512_maskz_scalef_ps(0xffff, _mm512_set1_ps(1), static_cast<__m512>(k)));
+    }
+#endif
+    return Value([&](auto lane) { return power_of_two<scalar_t<Value>>(k[lane()]); });
+  }
+}
+
+/// Does a condition hold in all lanes?
+template <class Mask>
+KOKKOS_FORCEINLINE_FUNCTION bool holds_everywhere(Mask const& mask) {
+  if constexpr (std::is_same_v<Mask, bool>)
+    return mask;
+  else
+    return Kokkos::Experimental::all_of(mask);
 }
 
 /// 0, 1, 2, ... over the lanes.

@@ -125,6 +125,42 @@ class Site {
     }
   }
 
+  using mask_type = typename ValueTraits<Value>::mask;
+
+  /// The lanes that are sites with x + y + z of a parity, 0 or 1.
+  KOKKOS_FORCEINLINE_FUNCTION mask_type of_colour(std::int32_t colour) const {
+    std::int32_t const parity = (x_ + row_.y + row_.z + colour) & 1;  // of the lanes meant
+    if constexpr (lanes == 1) {
+      return parity == 0;
+    } else {
+      Value const alternating([](auto lane) { return static_cast<scalar_type>(lane() % 2); });
+      return alternating == Value(static_cast<scalar_type>(parity)) &&
+             lane_numbers<Value>() < Value(static_cast<scalar_type>(row_.nx - x_));
+    }
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void store_where(mask_type const& condition, Vec3<Value> const& value,
+                                               SiteArray<Real, 3> const& array) const {
+    Real* const to = array.data + offset();
+    detail::store_where(condition, value.x, to);
+    detail::store_where(condition, value.y, to + array.stride);
+    detail::store_where(condition, value.z, to + 2 * array.stride);
+  }
+
+  /// `found`, a neighbour along x, but `missing` on the lane at an open end.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
+                                                          Vec3<Value> const& missing) const {
+    if constexpr (AtEdge) {
+      if (!row_.periodic_x && holds_end<Direction>()) {
+        auto const end = is_end<Direction>();
+        return {select<Value>(end, missing.x, found.x), select<Value>(end, missing.y, found.y),
+                select<Value>(end, missing.z, found.z)};
+      }
+    }
+    return found;
+  }
+
   /// The value one site back (direction 0) or on (direction 1) along an axis; at an open end, and
   /// along an axis of extent 1, `center` itself.
   template <int Axis, int Direction, class Real>

@@ -31,7 +31,19 @@ class LandauLifshitz {
     check(damping_);
   }
 
-  Field const& field() const { return field_; }
+  KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
+  KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_ != 0; }
+  /// False where the damping is zero on all sites; not looked for where it is a field.
+  KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
+    if constexpr (uniform)
+      return damping_ != 0;
+    else
+      return true;
+  }
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION Value damping(Site const& site) const {
+    return detail::coefficient<Value>(damping_, site);
+  }
 
   template <class Exec, class Spins>
   auto prepare(Exec const& exec, Spins const& spins, double t) const {
@@ -145,6 +157,13 @@ class LandauLifshitz {
   Damping damping_;
   double precession_;
 };
+
+namespace detail {
+template <class Generator>
+inline constexpr bool is_landau_lifshitz = false;
+template <class Field, class Damping>
+inline constexpr bool is_landau_lifshitz<LandauLifshitz<Field, Damping>> = true;
+}  // namespace detail
 
 template <class Field, class Real, class MemorySpace>
 LandauLifshitz(Field, SiteField<Real, 1, MemorySpace>, bool = true)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/lattice/lattice.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 
@@ -25,10 +26,15 @@ class StepperBase {
 
   /// The region lasts as long as what is returned. `like`: a field of the stepper's lattice.
   template <class Exec>
-  [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
+  [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const& exec, Spins const& spins,
                                                            Spins const& like) const {
+    return begin_step(exec, spins, like.lattice());
+  }
+  template <class Exec>
+  [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
+                                                           Lattice const& lattice) const {
     check_access<Exec, typename Spins::memory_space>();
-    if (!(spins.lattice() == like.lattice()))
+    if (!(spins.lattice() == lattice))
       throw std::invalid_argument(region_ + "::step: the spins are not of the stepper's lattice");
     return Kokkos::Profiling::ScopedRegion(region_);
   }

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/half_angle.hpp>
+#include <cayspin/vec3.hpp>
+
+namespace cayspin::detail {
+
+/// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 (double), 80 (float).
+template <class Value>
+struct Decay {
+  Value rest, loss;
+};
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
+  using Scalar = scalar_t<Value>;
+  constexpr bool is_double = sizeof(Scalar) == sizeof(double);
+  constexpr int terms = is_double ? 13 : 7;
+  // ln 2 as a sum; the first has so few bits that its product with a number of halvings is exact.
+  constexpr double high = 0x1.62e42fefp-1, low = 0x1.473de6af278edp-34;
+  constexpr float high_f = 0x1.62ep-1f, low_f = 0x1.0bfbe8p-15f;
+  Value const halvings = nearest<Value>(Value(x * Value(Scalar(1.4426950408889634))));
+  Value const minus = Value(Scalar(0)) - halvings;
+  Value r = multiply_add(minus, Value(is_double ? Scalar(high) : Scalar(high_f)), x);
+  r = multiply_add(minus, Value(is_double ? Scalar(low) : Scalar(low_f)), r);
+
+  double coefficient[terms + 1] = {1};  // of (1 - exp(-r)) / r, |r| < 0.35
+  for (int k = 1; k <= terms; ++k) coefficient[k] = -coefficient[k - 1] / (k + 1);
+  Value sum(static_cast<Scalar>(coefficient[terms]));
+  for (int k = terms - 1; k >= 0; --k)
+    sum = multiply_add(sum, r, Value(static_cast<Scalar>(coefficient[k])));
+  Value const part = r * sum, half = power_of_two<Value>(minus);
+  return {multiply_add(Value(Scalar(0)) - half, part, half),
+          multiply_add(half, part, Value(Scalar(1)) - half)};
+}
+
+/// The exact motion of one spin in a fixed field h over a time dt:
+/// q' = (h + damping q x h) x q, or without precession q' = (damping q x h) x q.
+/// With e = h/|h| and c = q.e: q turns by |h| dt about e, and c' = (c + th)/(1 + c th),
+/// th = tanh(damping |h| dt). On the sphere for any finite dt, damping and h.
+template <class Value>
+struct ExactFlow {
+  using Scalar = scalar_t<Value>;
+  using Mask = typename ValueTraits<Value>::mask;
+  Value damping;
+  Scalar dt;
+  bool precession, damped;
+
+  /// Nobody looks at lanes of `others`.
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& h, Vec3<Value> const& q,
+                                                     Mask const& others) const {
+    Vec3<Value> const f = Value(dt) * h;
+    Value const turn2 = dot(f, f), damping2 = damping * damping;
+    auto const near = turn2 < Value(Scalar(2.25)) && damping2 * turn2 < Value(Scalar(0.25));
+    Vec3<Value> const end = small(f, turn2, q);
+    if (holds_everywhere(Mask(near || others))) return end;
+    Vec3<Value> const far = large(h, q);
+    return {select<Value>(near, end.x, far.x), select<Value>(near, end.y, far.y),
+            select<Value>(near, end.z, far.z)};
+  }
+
+ private:
+  /// sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1.
+  template <int Odd, int Terms>
+  KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
+    double coefficient[Terms] = {first};
+    for (int k = 1; k < Terms; ++k)
+      coefficient[k] = coefficient[k - 1] / ((2 * k + Odd) * (2 * k - 1 + Odd));
+    Value sum(static_cast<Scalar>(coefficient[Terms - 1]));
+    for (int k = Terms - 2; k >= 0; --k)
+      sum = multiply_add(sum, x, Value(static_cast<Scalar>(coefficient[k])));
+    return sum;
+  }
+
+  /// By entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The relaxation
+  /// is the aberration of light along f.
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> small(Vec3<Value> const& f, Value const& turn2,
+                                                Vec3<Value> const& q) const {
+    constexpr bool is_double = sizeof(Scalar) == sizeof(double);
+    Vec3<Value> turned = q;
+    if (precession) {
+      Value const x = Value(Scalar(-0.25)) * turn2;
+      Value const cosine = series < 0, is_double ? 9 : 6 > (x, 1);
+      Vec3<Value> const v = series < 1, is_double ? 9 : 5 > (x, 0.5) * f;
+      Vec3<Value> const c = cross(v, q);
+      turned = multiply_add(Value(Scalar(2)), multiply_add(cosine, c, cross(v, c)), q);
+    }
+    if (!damped) return turned;
+    Value const y = damping * damping * turn2;
+    Value const sine = damping * series < 1, is_double ? 8 : 4 > (y, 1);  // sinh(y^1/2) / |f|
+    Value const rise = series < 2, is_double ? 7 : 4 > (y, 0.5);          // (cosh(y^1/2) - 1) / y
+    Value const along = dot(f, q);
+    Value const growth = multiply_add(y, rise, Value(sine * along));
+    Value const pull = multiply_add(Value(damping * damping * rise), along, sine);
+    Value const scale = Value(Scalar(1)) / (Value(Scalar(1)) + growth);
+    return kept_on_sphere(
+        multiply_add(Value(scale * pull), f,
+                     multiply_add(Value(Value(Scalar(0)) - scale * growth), turned, turned)),
+        y == Value(Scalar(0)));
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> large(Vec3<Value> const& h, Vec3<Value> const& q) const {
+    constexpr bool is_double = sizeof(Scalar) == sizeof(double);
+    constexpr Scalar largest = is_double ? Scalar(1e300) : Scalar(1e37f);
+    auto const norm = scaled_norm(h);
+    Value const divisor =
+        select<Value>(norm.scaled_norm == Value(Scalar(0)), Value(Scalar(1)), norm.scaled_norm);
+    // Backwards in time is forwards in the opposite field.
+    Vec3<Value> const e = Value(Value(dt < 0 ? Scalar(-1) : Scalar(1)) / divisor) * norm.scaled;
+    Value angle = Value(dt < 0 ? -dt : dt) * norm.norm;
+    angle = select<Value>(angle < Value(largest), angle, Value(largest));
+    Vec3<Value> const turned = precession ? turn(angle, e, q) : q;
+    return damped ? relax(angle, e, turned) : turned;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turn(Value const& angle, Vec3<Value> const& e,
+                                                      Vec3<Value> const& q) {
+    auto const half = half_turn(angle);
+    Vec3<Value> const v = Value(half.r * half.sine_over_r) * e;
+    Vec3<Value> const c = cross(v, q);
+    return multiply_add(Value(Scalar(2)), multiply_add(half.cosine, c, cross(v, c)), q);
+  }
+
+  /// With p = exp(-damping angle), a = 1 + c and b = 1 - c: q + (1 - p) (a (e - q) + p b (e + q)) /
+  /// (a + p^2 b), the smaller of a and b from what q has across e, so that a spin that is nearly
+  /// opposite to the field leaves it at the right time.
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> relax(Value const& angle, Vec3<Value> const& e,
+                                                Vec3<Value> const& q) const {
+    constexpr Scalar longest = sizeof(Scalar) == sizeof(double) ? Scalar(340) : Scalar(40);
+    Value const zero(Scalar(0)), one(Scalar(1));
+    Value x = damping * angle;
+    x = select<Value>(x < Value(longest), x, Value(longest));
+    auto const [p, loss] = decay(x);
+    Value const c = dot(q, e);
+    Vec3<Value> const across = multiply_add(Value(zero - c), e, q);
+    Value const larger = one + Kokkos::abs(c), smaller = dot(across, across) / larger;
+    auto const opposite = c < zero;
+    Value const a = select<Value>(opposite, smaller, larger);
+    Value const pb = p * select<Value>(opposite, larger, smaller);
+    Value const scale = loss / multiply_add(p, pb, a);
+    return kept_on_sphere(
+        multiply_add(Value(scale * a), e - q, multiply_add(Value(scale * pb), e + q, q)),
+        x == zero);
+  }
+
+  /// One step of Newton's iteration for the length: next to the opposite of the field, round-off in
+  /// it would grow as the angle does. What rests stays to the bit.
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
+                                                                Mask const& rests) {
+    Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));
+    return select<Value>(rests, Value(Scalar(1)), factor) * q;
+  }
+};
+
+}  // namespace cayspin::detail

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/site.hpp>
+
+namespace cayspin::detail {
+
+/// The neighbours of a site, loaded once.
+template <class Site, class Real>
+class NeighborsOfSite {
+ public:
+  using value_type = typename Site::value_type;
+  using vector_type = Vec3<value_type>;
+
+  KOKKOS_FORCEINLINE_FUNCTION NeighborsOfSite(Site const& site, SiteArray<Real, 3> const& spins)
+      : site_(site) {
+    load<0, 0>(spins), load<0, 1>(spins);
+    load<1, 0>(spins), load<1, 1>(spins);
+    load<2, 0>(spins), load<2, 1>(spins);
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
+
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type get(vector_type const& missing) const {
+    vector_type const& found = found_[Axis][Direction];
+    if constexpr (Axis == 0)
+      return site_.template unless_past_end<Direction>(found, missing);
+    else
+      return is_missing<Axis, Direction>() ? missing : found;
+  }
+
+ private:
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool is_missing() const {
+    return site_.row().to_neighbor[Axis - 1][Direction] == 0;
+  }
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION void load(SiteArray<Real, 3> const& spins) {
+    value_type const zero(Real(0));
+    vector_type const none{zero, zero, zero};
+    if constexpr (Axis == 0)
+      found_[Axis][Direction] = site_.template neighbor<Axis, Direction>(spins, none);
+    else
+      found_[Axis][Direction] = is_missing<Axis, Direction>()
+                                    ? none
+                                    : site_.template neighbor<Axis, Direction>(spins, none);
+  }
+
+  Site const& site_;
+  vector_type found_[3][2];
+};
+
+/// The stencil of a site with another spin at its centre than the one in memory. Past an open end
+/// that spin stands for the neighbour, as ever.
+template <class Neighbors>
+class VariedStencil {
+ public:
+  using value_type = typename Neighbors::value_type;
+  using vector_type = typename Neighbors::vector_type;
+
+  KOKKOS_FORCEINLINE_FUNCTION VariedStencil(Neighbors const& neighbors, vector_type const& center)
+      : neighbors_(neighbors), center_(center) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return center_; }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type previous() const {
+    return neighbors_.template get<Axis, 0>(center_);
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
+    return neighbors_.template get<Axis, 1>(center_);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION auto const& site() const { return neighbors_.site(); }
+
+ private:
+  Neighbors const& neighbors_;
+  vector_type center_;
+};
+
+}  // namespace cayspin::detail

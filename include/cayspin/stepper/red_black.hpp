@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/red_black_stage.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace cayspin {
+
+/// Splitting by the two colours of a checkerboard, of order 2 or 4, for the Landau-Lifshitz
+/// equation with couplings of nearest neighbours: while the spins of one colour move, their
+/// neighbours stay, and each moves by the exact flow of one spin in a fixed field, precession and
+/// damping together. In place: no work memory. Terms of the spin itself (anisotropy, a local
+/// demagnetising field) are taken at the mean of the spin's begin and end, by iteration; the field
+/// terms are therefore also evaluated at spins shorter than one, and at zero. Symmetric: without
+/// damping, a step of -dt undoes one of dt. Where the energy is quadratic in the spins and does not
+/// depend on t, order 2 conserves it to round-off without damping, and with damping never raises
+/// it; order 4 has a step backwards in it and conserves it likewise, but may raise it under
+/// damping. Both hold for any dt at which the iteration settles: |dt| (1 + damping) times the
+/// on-site terms' strength below about 1/2.
+template <class Spins, int Order>
+class RedBlack : public detail::StepperBase<Spins> {
+  static_assert(Order == 2 || Order == 4, "RedBlack is of order 2 or 4.");
+
+ public:
+  using typename detail::StepperBase<Spins>::Real;
+  static constexpr int order = Order;
+  /// Per step of a long run, a sweep over one colour being half of one: sweeps at which two steps
+  /// meet are shared where steps are taken together. evaluations_done() counts the sweeps made.
+  static constexpr int evaluations = Order == 2 ? 1 : 5;
+  static constexpr int work_fields = 0;
+
+  /// Throws std::invalid_argument when a periodic axis has an odd number of sites, more than one.
+  explicit RedBlack(Spins const& like)
+      : RedBlack::StepperBase("RedBlack" + std::to_string(Order)),
+        like_(like.lattice()),
+        sweep_label_(this->label("::sweep")),
+        batch_label_(this->label("::batch")) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (like_.boundary[axis] == Boundary::periodic && like_.shape[axis] > 1 &&
+          like_.shape[axis] % 2 != 0)
+        throw std::invalid_argument(
+            std::string("cayspin::RedBlack: the periodic ") + "xyz"[axis] + " axis has " +
+            std::to_string(like_.shape[axis]) +
+            " sites, and no checkerboard closes on itself over an odd number");
+  }
+
+  std::size_t work_bytes() const { return 0; }
+
+  /// Rounded up to whole evaluations, of all steps taken.
+  std::int64_t evaluations_done() const { return (sweeps_done_ + 1) / 2; }
+
+  /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or what has
+  /// a prepare that returns one. Throws std::invalid_argument when `spins` is not of the lattice
+  /// given at construction, and when the field needs all spins beforehand.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    auto const region = this->begin_step(exec, spins, like_);
+    if (!detail::needs_time_alone(generator, exec, spins))
+      throw std::invalid_argument(
+          "cayspin::RedBlack::step: a term of the field needs all spins beforehand, and a spin "
+          "would "
+          "move in a field that is not that of its neighbours as they are");
+    if (detail::is_stationary(generator, exec, spins)) {
+      take_steps(exec, generator, spins, t, dt, 1);
+    } else {
+      for (detail::RedBlackSweep const& sweep : detail::red_black_sweeps<Order>()) {
+        auto const at = [&](int flow) {
+          return detail::prepare_term(generator, exec, spins, t + sweep.middle[flow] * dt);
+        };
+        auto stage = stage_of(at(0), at(sweep.flows - 1), spins);
+        launch(exec, stage, spins, sweep, dt);
+      }
+    }
+  }
+
+  /// Can `batch` take several steps? Under a generator that is the same at each.
+  template <class Exec, class Generator>
+  bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
+    return detail::is_stationary(generator, exec, spins);
+  }
+
+  /// `count` steps that share the sweeps at which they meet, to the same bits as one by one.
+  template <class Exec, class Generator>
+  void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
+             std::int64_t count) {
+    auto const region = this->begin_step(exec, spins, like_);
+    take_steps(exec, generator, spins, t, dt, count);
+  }
+
+ private:
+  template <class Prepared>
+  static auto stage_of(Prepared first, Prepared second, Spins const& spins) {
+    static_assert(detail::is_landau_lifshitz<Prepared>,
+                  "RedBlack moves spins by the Landau-Lifshitz equation: its generator is a "
+                  "LandauLifshitz, or has a prepare that returns one; `orthogonal` around it would "
+                  "change nothing here.");
+    return detail::RedBlackStage<Prepared, Real>{
+        {std::move(first), std::move(second)}, spins.array(), {}, 1, 0};
+  }
+
+  /// Under a generator that stays.
+  template <class Exec, class Generator>
+  void take_steps(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                  double dt, std::int64_t count) {
+    auto const prepared = detail::prepare_term(generator, exec, spins, t);
+    auto stage = stage_of(prepared, prepared, spins);
+    if constexpr (detail::is_host_execution<Exec>) {
+      if (detail::runs_on_calling_thread<Exec>(spins.sites())) {
+        detail::RedBlackSteps<Order, decltype(stage), Real> const steps{
+            detail::colour_row_loop<Real>(stage, spins.layout()), dt, count};
+        detail::for_each_task(exec, batch_label_, 1, spins.sites(), steps);
+        sweeps_done_ += count * (sweeps - 1) + 1;
+        return;
+      }
+    }
+    detail::for_each_sweep<Order>(
+        count, [&](detail::RedBlackSweep const& sweep) { launch(exec, stage, spins, sweep, dt); });
+  }
+
+  template <class Exec, class Stage>
+  void launch(Exec const& exec, Stage& stage, Spins const& spins,
+              detail::RedBlackSweep const& sweep, double dt) {
+    stage.take(sweep, dt);
+    detail::for_each_site_of_colour<Real>(exec, sweep_label_, spins.layout(), stage);
+    ++sweeps_done_;
+  }
+
+  static constexpr int sweeps = static_cast<int>(detail::red_black_sweeps<Order>().size());
+
+  Lattice like_;
+  std::string sweep_label_, batch_label_;
+  std::int64_t sweeps_done_ = 0;
+};
+
+template <class Spins>
+class RedBlack2 : public RedBlack<Spins, 2> {
+ public:
+  explicit RedBlack2(Spins const& like) : RedBlack2::RedBlack(like) {}
+};
+
+template <class Spins>
+class RedBlack4 : public RedBlack<Spins, 4> {
+ public:
+  explicit RedBlack4(Spins const& like) : RedBlack4::RedBlack(like) {}
+};
+
+}  // namespace cayspin
