@@ -77,9 +77,10 @@ struct Outcome {
 
 /// Serial and the threaded space, step by step and scalar by scalar.
 template <class Stepper, class Choose>
-void expect_same_on_host_spaces(Choose const& choose) {
+void expect_same_on_host_spaces(Choose const& choose,
+                                std::vector<Lattice> const& lattices = odd_lattices()) {
   using Field = typename Stepper::spins_type;
-  for (Lattice const& lattice : odd_lattices()) {
+  for (Lattice const& lattice : lattices) {
     auto const generator = choose(every_term(lattice));
     using Generator = std::remove_const_t<decltype(generator)>;
     auto const start = random_spins<Field>(lattice, 11);

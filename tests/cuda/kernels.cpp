@@ -32,7 +32,8 @@ struct Steppers {
       StereographicRungeKutta<S, tableau::Heun>, StereographicRungeKutta<S, tableau::Classical4>,
       Series4<S>, Series4Paper<S>, EnergyProjection<LieHeun<S>>, ImplicitLieEuler<S>,
       ImplicitLieEuler<S, isotropy::Analytic>, ImplicitMidpoint<S>, ClassicalEuler<S>,
-      ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>, ProjectedHeun<S>, ProjectedRk4<S>>
+      ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>, ProjectedHeun<S>, ProjectedRk4<S>,
+      RedBlack2<S>>
       of_spins;
   std::tuple<LieHeun<S, isotropy::Energy>, Rkmk4<S, isotropy::Energy>, Series4<S, isotropy::Energy>,
              Series4Paper<S, isotropy::Energy>>
