@@ -29,6 +29,16 @@ class Stencil {
     return site_.template neighbor<Axis, 1>(spins_, center_);
   }
 
+  /// The same with `missing` for a neighbour where there is none.
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type previous(vector_type const& missing) const {
+    return site_.template neighbor_or<Axis, 0>(spins_, missing);
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type next(vector_type const& missing) const {
+    return site_.template neighbor_or<Axis, 1>(spins_, missing);
+  }
+
   /// Position and loads of further per-site arrays (SiteField::array).
   KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
 

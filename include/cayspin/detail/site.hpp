@@ -196,6 +196,16 @@ class Site {
     }
   }
 
+  /// The same with `missing` at an open end, and along an axis of extent 1.
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor_or(SiteArray<Real, 3> const& array,
+                                                      Vec3<Value> const& missing) const {
+    if constexpr (Axis > 0) {
+      if (row_.to_neighbor[Axis - 1][Direction] == 0) return missing;
+    }
+    return neighbor<Axis, Direction>(array, missing);
+  }
+
  private:
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION static void prefetch(SiteArray<Real, 3> const& array,

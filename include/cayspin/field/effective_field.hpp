@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
+#include <cayspin/detail/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <utility>
@@ -26,14 +27,25 @@ namespace cayspin {
 ///   Vec3<Value> field_rate(Vec3<Value> const& m, Stencil const& rates) const
 ///                                                   otherwise, for Analytic: dH/dt along the rates
 /// and, where H depends on t, prepare_rate(exec, rates, t, dt), which returns such a struct.
+///
+/// Methods that extrapolate the field of other spins are more accurate for a term that says
+///   static constexpr bool is_local = true           its H depends on the spin itself and on t
+///   alone
+/// before it is prepared and after, or has a neighbor_field(stencil) (detail/local_part.hpp).
 template <class... Terms>
 class EffectiveField;
 
 template <>
 class EffectiveField<> {
  public:
+  static constexpr bool is_local = true;
+
   template <class Exec, class Spins>
   EffectiveField prepare(Exec const&, Spins const&, double) const {
+    return {};
+  }
+  template <class Exec, class Spins>
+  EffectiveField prepare_local(Exec const&, Spins const&, double) const {
     return {};
   }
   template <class Exec, class Spins>
@@ -50,6 +62,11 @@ class EffectiveField<> {
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
+    return zero<typename Stencil::value_type>();
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const&) const {
     return zero<typename Stencil::value_type>();
   }
   template <class Stencil>
@@ -82,6 +99,7 @@ class EffectiveField<First, Rest...> {
  public:
   static constexpr bool depends_on_time =
       detail::depends_on_time<First> || (detail::depends_on_time<Rest> || ...);
+  static constexpr bool is_local = detail::is_local<First> && (detail::is_local<Rest> && ...);
 
   explicit EffectiveField(First first, Rest... rest)
       : first_(std::move(first)), rest_(std::move(rest)...) {}
@@ -90,6 +108,15 @@ class EffectiveField<First, Rest...> {
   template <class Exec, class Spins>
   auto prepare(Exec const& exec, Spins const& spins, double t) const {
     return join(detail::prepare_term(first_, exec, spins, t), rest_.prepare(exec, spins, t));
+  }
+  /// The local terms, and local parts of others.
+  template <class Exec, class Spins>
+  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
+    if constexpr (detail::has_local_part<First, Exec, Spins>)
+      return join(detail::prepare_local(first_, exec, spins, t),
+                  rest_.prepare_local(exec, spins, t));
+    else
+      return rest_.prepare_local(exec, spins, t);
   }
   template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
@@ -114,6 +141,27 @@ class EffectiveField<First, Rest...> {
     } else {
       return first_.field(stencil) + rest_.field(stencil);
     }
+  }
+
+  /// The part of H that is not local.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    if constexpr (detail::is_local<First>)
+      return rest_.neighbor_field(stencil);
+    else if constexpr (EffectiveField<Rest...>::is_local)
+      return detail::neighbor_field(first_, stencil);
+    else
+      return detail::neighbor_field(first_, stencil) + rest_.neighbor_field(stencil);
+  }
+
+  /// H of what prepare_local returned.
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+    if constexpr (sizeof...(Rest) == 0)
+      return detail::local_field(first_, spin);
+    else
+      return detail::local_field(first_, spin) + rest_.local_field(spin);
   }
 
   /// The linear part of H, applied to the stencil's array; every term has to be affine.

@@ -31,6 +31,18 @@ class Exchange {
     return h;
   }
 
+  /// A sum of neighbours / spacing^2: H without a multiple of the spin itself.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    if (coefficient_[0] != 0) h = neighbor_sum<0>(stencil, h);
+    if (coefficient_[1] != 0) h = neighbor_sum<1>(stencil, h);
+    if (coefficient_[2] != 0) h = neighbor_sum<2>(stencil, h);
+    return h;
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
@@ -55,6 +67,15 @@ class Exchange {
     using Value = typename Stencil::value_type;
     Vector const both = stencil.template previous<Axis>() + stencil.template next<Axis>();
     return multiply_add(scaled<Axis, Value>(1), multiply_add(Value(-2), stencil.center(), both),
+                        sum);
+  }
+
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector neighbor_sum(Stencil const& stencil, Vector const& sum) const {
+    using Value = typename Stencil::value_type;
+    Vector const none{Value(0), Value(0), Value(0)};
+    return multiply_add(scaled<Axis, Value>(1),
+                        stencil.template previous<Axis>(none) + stencil.template next<Axis>(none),
                         sum);
   }
 

@@ -3,6 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/coefficient.hpp>
+#include <cayspin/detail/local_part.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/stencil.hpp>
@@ -35,22 +36,31 @@ class StencilAmongVacancies {
   KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return stencil_.center(); }
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type previous() const {
-    return unless_vacant<Axis, 0>(stencil_.template previous<Axis>());
+    return unless_vacant<Axis, 0>(stencil_.template previous<Axis>(), center());
   }
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
-    return unless_vacant<Axis, 1>(stencil_.template next<Axis>());
+    return unless_vacant<Axis, 1>(stencil_.template next<Axis>(), center());
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type previous(vector_type const& missing) const {
+    return unless_vacant<Axis, 0>(stencil_.template previous<Axis>(missing), missing);
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type next(vector_type const& missing) const {
+    return unless_vacant<Axis, 1>(stencil_.template next<Axis>(missing), missing);
   }
   KOKKOS_FORCEINLINE_FUNCTION auto const& site() const { return stencil_.site(); }
 
  private:
   template <int Axis, int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor) const {
+  KOKKOS_FORCEINLINE_FUNCTION vector_type unless_vacant(vector_type const& neighbor,
+                                                        vector_type const& missing) const {
     value_type const zero(0);  // past an open end too, where the neighbour is the spin itself
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
-    return {select<value_type>(vacant, center().x, neighbor.x),
-            select<value_type>(vacant, center().y, neighbor.y),
-            select<value_type>(vacant, center().z, neighbor.z)};
+    return {select<value_type>(vacant, missing.x, neighbor.x),
+            select<value_type>(vacant, missing.y, neighbor.y),
+            select<value_type>(vacant, missing.z, neighbor.z)};
   }
 
   Stencil const& stencil_;
@@ -64,6 +74,8 @@ class FieldAmongVacancies {
   using Inner = StencilAmongVacancies<Stencil, Real>;
 
  public:
+  static constexpr bool is_local = detail::is_local<Field>;
+
   FieldAmongVacancies(Field field, SiteArray<Real, 1> const& occupation)
       : field_(std::move(field)), occupation_(occupation) {}
 
@@ -71,6 +83,17 @@ class FieldAmongVacancies {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
     return unless_vacant(stencil, field_.field(Inner<Stencil>(stencil, occupation_)));
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    return unless_vacant(stencil,
+                         detail::neighbor_field(field_, Inner<Stencil>(stencil, occupation_)));
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+    return unless_vacant(spin, detail::local_field(field_, spin));
   }
 
   template <class Stencil>
@@ -131,6 +154,7 @@ class FieldWithVacancies {
 
  public:
   static constexpr bool depends_on_time = detail::depends_on_time<Field>;
+  static constexpr bool is_local = detail::is_local<Field>;
 
   /// Throws std::invalid_argument when an occupation is neither 0 nor 1.
   FieldWithVacancies(Field field, ScalarField<Real, MemorySpace> occupation)
@@ -144,6 +168,10 @@ class FieldWithVacancies {
   auto prepare(Exec const& exec, Spins const& spins, double t) const {
     detail::require_lattice_of(spins, occupation_, "cayspin::FieldWithVacancies");
     return among(detail::prepare_term(field_, exec, spins, t));
+  }
+  template <class Exec, class Spins>
+  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
+    return among(detail::prepare_local(field_, exec, spins, t));
   }
   template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {

@@ -30,6 +30,19 @@ struct ExchangeOfSites {
     return h;
   }
 
+  /// Sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value const own = stencil.site().load(constants);
+    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    if (inverse_square[0] != 0) h = neighbor_sum<0>(stencil, own, h);
+    if (inverse_square[1] != 0) h = neighbor_sum<1>(stencil, own, h);
+    if (inverse_square[2] != 0) h = neighbor_sum<2>(stencil, own, h);
+    return h;
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
@@ -61,6 +74,15 @@ struct ExchangeOfSites {
     auto const on = stencil.template next<Axis>() - stencil.center();
     return multiply_add(bond<Axis, 1>(stencil.site(), own), on,
                         multiply_add(bond<Axis, 0>(stencil.site(), own), back, sum));
+  }
+
+  template <int Axis, class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor_sum(Stencil const& stencil, Value const& own,
+                                                       Vec3<Value> const& sum) const {
+    Vec3<Value> const none{Value(0), Value(0), Value(0)};
+    return multiply_add(bond<Axis, 1>(stencil.site(), own), stencil.template next<Axis>(none),
+                        multiply_add(bond<Axis, 0>(stencil.site(), own),
+                                     stencil.template previous<Axis>(none), sum));
   }
 
   // Each site carries half of each of its bonds.

@@ -47,6 +47,7 @@ struct NotUnitOfSites {
 template <class Constant, class Axis>
 struct UniaxialAnisotropyOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
+  static constexpr bool is_local = true;
   Constant constant;
   Axis axis;
 
@@ -78,6 +79,8 @@ class SiteDependentUniaxialAnisotropy {
   static constexpr char const* name = "cayspin::SiteDependentUniaxialAnisotropy";
 
  public:
+  static constexpr bool is_local = true;
+
   /// One axis for all sites is normalised; a field of axes is taken as it is. Throws
   /// std::invalid_argument when a constant is not finite or an axis of a field not of length 1.
   SiteDependentUniaxialAnisotropy(std::type_identity_t<Constant> constant,

@@ -11,6 +11,7 @@ namespace cayspin {
 class SlabDemag {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
+  static constexpr bool is_local = true;
 
   explicit SlabDemag(Vec3<double> const& normal, double strength = 1)
       : strength_(strength), normal_(normalized(normal, "cayspin::SlabDemag: the normal")) {}

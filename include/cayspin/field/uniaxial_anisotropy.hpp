@@ -28,6 +28,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> as_value(Vec3<double> const& v) {
 class UniaxialAnisotropy {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
+  static constexpr bool is_local = true;
 
   UniaxialAnisotropy(double constant, Vec3<double> const& axis)
       : constant_(constant), axis_(normalized(axis, "cayspin::UniaxialAnisotropy: the axis")) {}

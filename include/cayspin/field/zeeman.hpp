@@ -11,6 +11,7 @@ namespace cayspin {
 /// A uniform applied field: H = applied, E = -m.H per site.
 struct Zeeman {
   static constexpr int degree = 1;  // H does not depend on the spins
+  static constexpr bool is_local = true;
   Vec3<double> applied;
 
   template <class Stencil>
@@ -61,6 +62,7 @@ class TimeDependentZeeman {
 
  public:
   static constexpr bool depends_on_time = true;
+  static constexpr bool is_local = true;
 
   explicit TimeDependentZeeman(Applied applied) : applied_(std::move(applied)) {}
 

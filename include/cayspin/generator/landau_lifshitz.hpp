@@ -3,6 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/coefficient.hpp>
+#include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -52,6 +53,11 @@ class LandauLifshitz {
   }
 
   template <class Exec, class Spins>
+  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
+    return of(detail::prepare_local(field_, exec, spins, t));
+  }
+
+  template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {
     return detail::is_stationary(field_, exec, spins);
   }
@@ -68,6 +74,19 @@ class LandauLifshitz {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     return generator(stencil.site(), stencil.center(), field_.field(stencil));
+  }
+
+  /// H from other spins, of which generator_at makes A at a spin that has moved on since.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    return detail::neighbor_field(field_, stencil);
+  }
+  template <class Spin, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
+                                                       Vec3<Value> const& neighbor_field) const {
+    return generator(spin.site(), spin.center(),
+                     neighbor_field + detail::local_field(field_, spin));
   }
 
   /// A' at a spin m along the rates X, less damping X x H, which is normal to X and to what sigma

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
+#include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -55,6 +56,11 @@ class Orthogonal {
     return Orthogonal<decltype(prepared)>(std::move(prepared));
   }
   template <class Exec, class Spins>
+  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
+    auto prepared = detail::prepare_local_generator(generator_, exec, spins, t);
+    return Orthogonal<decltype(prepared)>(std::move(prepared));
+  }
+  template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {
     return detail::is_stationary(generator_, exec, spins);
   }
@@ -72,6 +78,19 @@ class Orthogonal {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     return detail::orthogonal_part(detail::evaluate(generator_, stencil), stencil.center());
+  }
+
+  /// Of generators made of a field.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    return detail::neighbor_field_of(generator_, stencil);
+  }
+  template <class Spin, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
+                                                       Vec3<Value> const& neighbor_field) const {
+    return detail::orthogonal_part(detail::generator_at(generator_, spin, neighbor_field),
+                                   spin.center());
   }
 
   /// The generator whose part along the spin was removed.
@@ -94,10 +113,7 @@ class Orthogonal {
     return detail::orthogonal_derivative<K>(generator_, m, source);
   }
 
-  static constexpr bool is_local = [] {
-    if constexpr (requires { Generator::is_local; }) return Generator::is_local;
-    return false;
-  }();
+  static constexpr bool is_local = detail::is_local<Generator>;
   bool is_conservative() const { return generator_.is_conservative(); }
   KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/local_part.hpp>
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/stepper/series4_stage.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
@@ -42,7 +43,7 @@ class Series4 : public detail::StepperBase<Spins> {
     static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
     auto const region = this->begin_step(exec, spins, next_);
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
-    if constexpr (is_local<decltype(prepared)>()) {
+    if constexpr (detail::is_local<std::remove_const_t<decltype(prepared)>>) {
       using Kernel =
           detail::LocalSeriesStage<Series, Isotropy, std::remove_const_t<decltype(prepared)>, Real>;
       detail::for_each_site<Real>(
@@ -59,12 +60,6 @@ class Series4 : public detail::StepperBase<Spins> {
   }
 
  private:
-  template <class Generator>
-  static constexpr bool is_local() {
-    if constexpr (requires { Generator::is_local; }) return Generator::is_local;
-    return false;
-  }
-
   void allocate(Lattice const& lattice) {
     if (derivatives_[0].sites() != 0) return;
     for (int k = 0; k < 3; ++k) {

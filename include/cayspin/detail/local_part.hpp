@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/concepts.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <concepts>
+
+// A field in two parts: the local part at a site depends on the spin there and on t alone, the rest
+// is the neighbour field. For methods that move each spin in the field of the others.
+//
+// A term says what it is by
+//   static constexpr bool is_local = true           no neighbour field; unprepared terms too
+// or, where it has both parts or none, in its prepared form by
+//   Vec3<Value> neighbor_field(Stencil const&) const
+//   Vec3<Value> local_field(SpinAlone const&) const
+// and unprepared by prepare_local(exec, spins, t), which looks at no spin. A term that says nothing
+// is neighbour field altogether. Multiples of the spin itself may be left out of the sum of the
+// parts: they do not move it.
+namespace cayspin::detail {
+
+/// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A.
+template <class Term>
+inline constexpr bool is_local = [] {
+  if constexpr (requires { Term::is_local; }) return Term::is_local;
+  return false;
+}();
+
+/// The stencil of a local part: a spin, and the site for its coefficients.
+template <class Site>
+class SpinAlone {
+ public:
+  using value_type = typename Site::value_type;
+  using vector_type = Vec3<value_type>;
+
+  KOKKOS_FORCEINLINE_FUNCTION SpinAlone(Site const& site, vector_type const& spin)
+      : site_(site), spin_(spin) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return spin_; }
+  KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
+
+ private:
+  Site const& site_;
+  vector_type spin_;
+};
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> zero_vector() {
+  return {Value(0), Value(0), Value(0)};
+}
+
+/// The local part of a term that has none.
+struct NoField {
+  static constexpr bool is_local = true;
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
+    return zero_vector<typename Stencil::value_type>();
+  }
+};
+
+template <class Term, class Exec, class Spins>
+concept has_local_part = is_local<Term> ||
+    requires(Term const& term, Exec const& exec, Spins const& spins) {
+  term.prepare_local(exec, spins, 0.0);
+};
+
+/// The device-callable form of a term's local part at time t.
+template <class Term, class Exec, class Spins>
+auto prepare_local(Term const& term, Exec const& exec, Spins const& spins, double t) {
+  if constexpr (requires { term.prepare_local(exec, spins, t); }) {
+    return term.prepare_local(exec, spins, t);
+  } else if constexpr (is_local<Term>) {
+    return prepare_term(term, exec, spins, t);
+  } else {
+    return NoField{};
+  }
+}
+
+/// A prepared term's neighbour field at a stencil's centre.
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+    Term const& term, Stencil const& stencil) {
+  if constexpr (is_local<Term>)
+    return zero_vector<typename Stencil::value_type>();
+  else if constexpr (requires { term.neighbor_field(stencil); })
+    return term.neighbor_field(stencil);
+  else
+    return term.field(stencil);
+}
+
+/// H of what prepare_local returned.
+template <class Term, class Spin>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Term const& term,
+                                                                        Spin const& spin) {
+  if constexpr (requires { term.local_field(spin); })
+    return term.local_field(spin);
+  else
+    return term.field(spin);
+}
+
+/// A generator's A of a spin in a given neighbour field, by what its prepare_local returned.
+template <class Generator, class Spin, class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Generator const& generator, Spin const& spin,
+                                                     Vec3<Value> const& neighbor_field) {
+  if constexpr (is_local<Generator>) {
+    return evaluate(generator, spin);
+  } else {
+    static_assert(
+        requires {
+          { generator.generator_at(spin, neighbor_field) } -> std::convertible_to<Vec3<Value>>;
+        },
+        "Field extrapolation needs a generator that is made of a field: const, device-callable "
+        "templates neighbor_field(stencil) and generator_at(spin, neighbor_field), and a "
+        "prepare_local(exec, spins, t); or static constexpr bool is_local = true.");
+    return generator.generator_at(spin, neighbor_field);
+  }
+}
+
+/// The same of the neighbour field that a prepared generator is made of.
+template <class Generator, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field_of(
+    Generator const& generator, Stencil const& stencil) {
+  if constexpr (requires { generator.neighbor_field(stencil); })
+    return generator.neighbor_field(stencil);
+  else
+    return zero_vector<typename Stencil::value_type>();  // generator_at says what is amiss
+}
+
+template <class Generator, class Exec, class Spins>
+auto prepare_local_generator(Generator const& generator, Exec const& exec, Spins const& spins,
+                             double t) {
+  if constexpr (requires { generator.prepare_local(exec, spins, t); })
+    return generator.prepare_local(exec, spins, t);
+  else
+    return prepare_term(generator, exec, spins, t);
+}
+
+}  // namespace cayspin::detail

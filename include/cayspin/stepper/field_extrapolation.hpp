@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/field_extrapolation_stage.hpp>
+#include <cayspin/stepper/rkmk4.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace cayspin {
+
+/// When a stepper that estimates its errors starts anew: the neighbour field is not what its past
+/// foretold. Infinity: never; where both are, no step waits for its estimate.
+struct FieldExtrapolationOptions {
+  double restart_angle = 0.1;   // a step's error above which its history is dropped, radians
+  double restart_growth = 100;  // of the error from the largest of late to the next
+};
+
+/// Field extrapolation of order 3 or 4 with one evaluation per step: the field of the other spins
+/// is foretold by the polynomial through its last Order values, and every spin then moves in it
+/// and in its own local field by one step of Rkmk4. What depends on a spin alone (anisotropy) or on
+/// t (applied fields) is not extrapolated. The first Order - 1 steps are steps of Rkmk4. Steps may
+/// change, by a factor of 2 at most when they grow; otherwise the next step starts anew.
+/// Estimates: known one step later, h g |dA x m| of each spin, dA the A of the neighbour field less
+/// that of the one foretold, g = 3/8 and 251/720 (of Adams and Bashforth) for equal steps. Leaves
+/// out the error of the local solve, of order 4. Costs a field and a number per site.
+/// Not in the paper.
+template <class Spins, int Order, bool Estimates = false>
+class FieldExtrapolation : public detail::StepperBase<Spins> {
+  static_assert(Order == 3 || Order == 4, "Field extrapolation is of order 3 or 4.");
+  using Base = detail::StepperBase<Spins>;
+  using Start = Rkmk4<Spins>;
+
+ public:
+  using typename Base::Real;
+  static constexpr int order = Order;
+  static constexpr int evaluations = 1;  // of the generator, per step behind the first ones
+  static constexpr int past_fields = Estimates ? Order : Order - 1;
+  static constexpr int work_fields = past_fields + 1 + Start::work_fields;
+
+  explicit FieldExtrapolation(std::string const& name, Spins const& like,
+                              FieldExtrapolationOptions const& options = {})
+      : Base(name),
+        options_(options),
+        start_(like),
+        next_(name + "::next", like.lattice()),
+        streaming_(detail::exceeds_caches<DefaultExec>((past_fields + 2) * like.bytes())) {
+    for (auto& field : past_) field = Spins(name + "::neighbor_field", like.lattice());
+    if constexpr (Estimates) angles_ = Angles(name + "::error", like.lattice());
+  }
+
+  std::size_t work_bytes() const {
+    return (past_fields + 1) * next_.bytes() + angles_.bytes() + start_.work_bytes();
+  }
+  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
+    auto const layout = detail::RowLayout::of<Real>(lattice);
+    std::size_t const numbers =
+        (past_fields + 1) * layout.allocation(3) + (Estimates ? layout.allocation(1) : 0);
+    return numbers * sizeof(Real) + Start::work_bytes(lattice, by_time_alone, threads);
+  }
+
+  /// Evaluations of the generator so far; those of the first steps count 5 each.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+  /// Starts so far, the first one among them.
+  std::int64_t starts() const { return starts_; }
+
+  /// Forgets the steps before, as is needed when spins or generator were changed from outside: the
+  /// next steps are those of a start. cayspin::integrate does it for each run.
+  void reset() { known_ = 0; }
+
+  /// The largest error estimated for the step before the last one, as an angle in radians; NaN
+  /// until Order + 1 steps are taken. Waits.
+  template <class Exec>
+  double last_error(Exec const& exec) const requires Estimates {
+    if (!has_error_) return std::numeric_limits<double>::quiet_NaN();
+    return detail::reduce_sites<detail::Maximum, 1>(
+        exec, error_label_, angles_.layout(), detail::LargestOfSites<Real>{angles_.array()})[0];
+  }
+
+  /// Advances `spins` from t to t + dt under `generator`; takes `spins` for where the step before
+  /// ended, and exchanges their memory with its own, so take arrays of `spins` anew after a step.
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    auto const region = this->begin_step(exec, spins, next_);
+    if (dt == 0) return;
+    if (known_ > 0 && !(0 < dt / gaps_[0] && dt / gaps_[0] <= 2)) reset();
+    if (known_ >= Order - 1) {
+      extrapolate(exec, generator, spins, t, dt);
+      if (!has_failed(exec)) {
+        swap(spins, next_);
+        return remember(dt);
+      }
+      reset();
+      begin(exec, generator, spins, t, dt);
+    } else {
+      store_neighbor_field(exec, generator, spins, t);
+      begin(exec, generator, spins, t, dt);
+    }
+  }
+
+ private:
+  using DefaultExec = typename Spins::memory_space::execution_space;
+  using Angles = ScalarField<Real, typename Spins::memory_space>;
+  using Error = std::conditional_t<Estimates, detail::ErrorOfExtrapolation<Order, Real>,
+                                   detail::NoErrorOfExtrapolation<Order>>;
+
+  /// The neighbour field of `back` steps before the last one that was stored; that of past_fields
+  /// steps before is where the next one goes.
+  Spins const& past(int back) const {
+    return past_[static_cast<std::size_t>((newest_ + back) % past_fields)];
+  }
+  Spins const& oldest() const { return past(past_fields - 1); }
+
+  // The field at the begin of this step is stored where the oldest was.
+  void remember(double dt) {
+    newest_ = (newest_ + past_fields - 1) % past_fields;
+    known_ = std::min(known_ + 1, past_fields);
+    std::move_backward(gaps_.begin(), gaps_.end() - 1, gaps_.end());
+    gaps_[0] = dt;
+  }
+
+  template <class Exec, class Generator>
+  void store_neighbor_field(Exec const& exec, Generator const& generator, Spins const& spins,
+                            double t) {
+    auto prepared = detail::prepare_term(generator, exec, spins, t);
+    detail::for_each_site<Real>(exec, store_label_, spins.layout(),
+                                detail::NeighborFieldStage<decltype(prepared), Real>{
+                                    std::move(prepared), spins.array(), oldest().output(false)});
+    ++evaluations_done_;
+  }
+
+  /// A first step, its neighbour field being stored.
+  template <class Exec, class Generator>
+  void begin(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    if (known_ == 0) {
+      ++starts_;
+      has_error_ = false;
+      largest_of_late_ = 0;
+    }
+    start_.step(exec, generator, spins, t, dt);
+    evaluations_done_ += Start::evaluations;
+    remember(dt);
+  }
+
+  /// Times of the stored fields behind `first`, with steps of `unit`.
+  template <std::size_t Count>
+  std::array<double, Count> times(std::size_t first, double unit) const {
+    std::array<double, Count> nodes;
+    double sum = 0;
+    for (std::size_t j = 0; j < Count; ++j) {
+      nodes[j] = -sum / unit;
+      if (first + j < gaps_.size()) sum += gaps_[first + j];
+    }
+    return nodes;
+  }
+
+  template <class Exec, class Generator>
+  void extrapolate(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                   double dt) {
+    auto prepared = detail::prepare_term(generator, exec, spins, t);
+    auto const local = [&](double when) {
+      return detail::prepare_local_generator(generator, exec, spins, when);
+    };
+    using Kernel =
+        detail::FieldExtrapolationStage<Order, Error, decltype(prepared), decltype(local(t)), Real>;
+    Kernel kernel{std::move(prepared),
+                  {local(t), local(t + 0.5 * dt), local(t + dt)},
+                  {},
+                  {},
+                  spins.array(),
+                  {},
+                  oldest().output(false),
+                  next_.output(streaming_),
+                  {},
+                  static_cast<Real>(dt)};
+    auto const nodes = times<Order>(0, dt);
+    std::ranges::copy(detail::interpolation_weights(nodes, 0.5), kernel.middle);
+    std::ranges::copy(detail::interpolation_weights(nodes, 1), kernel.end);
+    for (int j = 0; j < past_fields; ++j) kernel.older[j] = past(j).array();
+    if constexpr (Estimates) {
+      kernel.error = error_of_step_before(dt);
+      has_error_ = known_ == past_fields;
+    }
+    detail::for_each_site<Real>(exec, step_label_, spins.layout(), kernel);
+    ++evaluations_done_;
+  }
+
+  /// Of the polynomial that the step before was taken with: what it foretold for the step's end,
+  /// and the mean of its error over the step, by the local solve's weights, over that at the end.
+  Error error_of_step_before(double dt) const requires Estimates {
+    Error error{{}, 0, angles_.output(false)};
+    if (known_ < past_fields) return error;
+    auto const nodes = times<Order>(1, gaps_[0]);
+    std::ranges::copy(detail::interpolation_weights(nodes, 1), error.weights);
+    double middle = 1, end = 1;
+    for (double const node : nodes) middle *= 0.5 - node, end *= 1 - node;
+    error.scale = gaps_[0] / dt * (4 * middle / end + 1) / 6;
+    return error;
+  }
+
+  template <class Exec>
+  bool has_failed(Exec const& exec) {
+    if constexpr (Estimates) {
+      double const never = std::numeric_limits<double>::infinity();
+      if (!has_error_ || (options_.restart_angle == never && options_.restart_growth == never))
+        return false;
+      double const error = last_error(exec);
+      double const floor = 100 * std::numeric_limits<Real>::epsilon();  // round-off grows freely
+      if (options_.restart_angle < error ||
+          (largest_of_late_ > 0 &&
+           options_.restart_growth * std::max(largest_of_late_, floor) < error))
+        return true;
+      largest_of_late_ = std::max(error, 0.5 * largest_of_late_);
+    }
+    return false;
+  }
+
+  std::string store_label_ = this->label("::neighbor_field"), step_label_ = this->label("::step"),
+              error_label_ = this->label("::largest_error");
+  FieldExtrapolationOptions options_;
+  Start start_;
+  Spins next_;
+  std::array<Spins, past_fields> past_;  // a ring
+  Angles angles_;
+  bool streaming_;  // stores of spins go around the caches
+  bool has_error_ = false;
+  int newest_ = 0, known_ = 0;
+  std::array<double, past_fields> gaps_{};  // dt from the stored fields on, newest first
+  double largest_of_late_ = 0;
+  std::int64_t evaluations_done_ = 0, starts_ = 0;
+};
+
+/// Field extrapolation of order 3: five fields in motion.
+template <class Spins, bool Estimates = false>
+class FieldExtrapolation3 : public FieldExtrapolation<Spins, 3, Estimates> {
+ public:
+  explicit FieldExtrapolation3(Spins const& like, FieldExtrapolationOptions const& options = {})
+      : FieldExtrapolation3::FieldExtrapolation("FieldExtrapolation3", like, options) {}
+};
+
+/// Field extrapolation of order 4: six fields in motion.
+template <class Spins, bool Estimates = false>
+class FieldExtrapolation4 : public FieldExtrapolation<Spins, 4, Estimates> {
+ public:
+  explicit FieldExtrapolation4(Spins const& like, FieldExtrapolationOptions const& options = {})
+      : FieldExtrapolation4::FieldExtrapolation("FieldExtrapolation4", like, options) {}
+};
+
+}  // namespace cayspin
