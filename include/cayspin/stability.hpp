@@ -141,12 +141,10 @@ bool amplifies(Complex rate, double dt, double sigma) {
   return !(excess < (sigma == 0 ? -size * std::abs(growth) : size));
 }
 
-/// The smallest dt below `limit` at which a mode of this rate grows; `limit` when there is none,
-/// 0 when every dt down to 1e-9 of the mode's time amplifies.
-template <class Tableau, class Update>
-double first_amplifying_step(Complex rate, double sigma, double limit) {
-  auto const grows = [&](double dt) { return amplifies<Tableau, Update>(rate, dt, sigma); };
-  double const unit = 1 / std::abs(rate);
+/// The smallest dt below `limit` for which grows(dt); `limit` when there is none, 0 when every dt
+/// down to 1e-9 of the mode's time amplifies. `unit`: that time.
+template <class Grows>
+double first_amplifying_step(Grows const& grows, double unit, double limit) {
   double stable = 1e-3 * unit, unstable = stable;
   if (stable >= limit) return limit;
   if (grows(stable)) {
@@ -202,9 +200,12 @@ double largest_stable_step(double field_bound, double damping, bool precession =
   double const scan_end = limit;
   // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
   int const modes = sigma == 0 ? 1 : 400;
-  for (int mode = modes; mode >= 1; --mode)
-    limit = detail::first_amplifying_step<Tableau, Update>(
-        field_bound * (static_cast<double>(mode) / modes) * rate, sigma, limit);
+  for (int mode = modes; mode >= 1; --mode) {
+    auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;
+    limit = detail::first_amplifying_step(
+        [&](double dt) { return detail::amplifies<Tableau, Update>(of_mode, dt, sigma); },
+        1 / std::abs(of_mode), limit);
+  }
   return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
 }
 
