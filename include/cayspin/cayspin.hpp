@@ -34,7 +34,6 @@
 #include <cayspin/stepper/commutator_free4.hpp>
 #include <cayspin/stepper/energy_projection.hpp>
 #include <cayspin/stepper/field_extrapolation.hpp>
-#include <cayspin/stepper/field_extrapolation_stability.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/lie_adams_bashforth2.hpp>
 #include <cayspin/stepper/lie_euler.hpp>

@@ -187,26 +187,31 @@ inline double exchange_bound(Lattice const& lattice, double constant) {
 
 /// The largest dt at which no mode of a nearly uniform state grows, an a-priori bound that is never
 /// above the linear limit. 0 when every dt amplifies, infinity when none does.
+/// A stepper that is no Runge-Kutta method has a function of its own, of the first three arguments.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
 template <class Stepper>
 double largest_stable_step(double field_bound, double damping, bool precession = true,
                            double sigma = 0) {
-  using Tableau = typename Stepper::tableau_type;
-  using Update = typename Stepper::update_type;
-  double limit = std::numeric_limits<double>::infinity();
-  detail::Complex const rate(-damping, precession ? 1 : 0);
-  if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
-  limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
-  double const scan_end = limit;
-  // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
-  int const modes = sigma == 0 ? 1 : 400;
-  for (int mode = modes; mode >= 1; --mode) {
-    auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;
-    limit = detail::first_amplifying_step(
-        [&](double dt) { return detail::amplifies<Tableau, Update>(of_mode, dt, sigma); },
-        1 / std::abs(of_mode), limit);
+  if constexpr (requires { Stepper::largest_stable_step(field_bound, damping, precession); }) {
+    return Stepper::largest_stable_step(field_bound, damping, precession);
+  } else {
+    using Tableau = typename Stepper::tableau_type;
+    using Update = typename Stepper::update_type;
+    double limit = std::numeric_limits<double>::infinity();
+    detail::Complex const rate(-damping, precession ? 1 : 0);
+    if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
+    limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
+    double const scan_end = limit;
+    // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
+    int const modes = sigma == 0 ? 1 : 400;
+    for (int mode = modes; mode >= 1; --mode) {
+      auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;
+      limit = detail::first_amplifying_step(
+          [&](double dt) { return detail::amplifies<Tableau, Update>(of_mode, dt, sigma); },
+          1 / std::abs(of_mode), limit);
+    }
+    return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
   }
-  return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace cayspin

@@ -3,6 +3,7 @@
 
 #include "applied_field.hpp"
 
+#include <cayspin/detail/local_part.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
@@ -91,6 +92,22 @@ struct SceneFieldNow {
     if (has_stored) h = h + stored.field(stencil);
     return h;
   }
+  /// The part that comes from other spins, and the rest.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    auto h = exchange.neighbor_field(stencil);
+    if (has_layers) h = h + layers.field(stencil);
+    if (has_stored) h = h + stored.field(stencil);
+    return h;
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+    auto h = cayspin::detail::zero_vector<typename Spin::value_type>();
+    if (quadratic.present()) h = quadratic.field(spin.center());
+    if (has_applied) h = h + zeeman.field(spin);
+    return h;
+  }
   /// dH/dt along rates, of what prepare_rate returns.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&,
@@ -141,11 +158,19 @@ class SceneField {
   /// Throws NumbersFailed when an applied field is not finite at t.
   template <class Exec>
   SceneFieldNow<Real> prepare(Exec const& exec, Spins const& spins, double t) const {
-    SceneFieldNow<Real> now{exchange_,          exchange_magnitude_, quadratic_,         {}, {}, {},
-                            applied_.present(), layers_.has_value(), stored_.has_value()};
-    if (now.has_applied) now.zeeman = {applied_(t)};
+    auto now = prepare_local(exec, spins, t);
+    now.has_layers = layers_.has_value();
+    now.has_stored = stored_.has_value();
     if (layers_) now.layers = layers_->prepare(exec, spins, t);
     if (stored_) now.stored = stored_->prepare(exec, spins, t);
+    return now;
+  }
+  /// Looks at no spin: without the terms that do.
+  template <class Exec>
+  SceneFieldNow<Real> prepare_local(Exec const&, Spins const&, double t) const {
+    SceneFieldNow<Real> now{exchange_, exchange_magnitude_, quadratic_, {},   {},
+                            {},        applied_.present(),  false,      false};
+    if (now.has_applied) now.zeeman = {applied_(t)};
     return now;
   }
 

@@ -36,6 +36,14 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare(Exec const& exec, Spins 
 
 template <class Spins>
 template <class Exec>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_local(Exec const& exec, Spins const& spins,
+                                                              double t) const {
+  return {llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_,
+          orthogonal_};
+}
+
+template <class Spins>
+template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
                                                              double t, double dt) const {
   return {llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t), is_llg_,
@@ -45,6 +53,9 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, S
 #define CAYSPIN_INSTANTIATE(Space, Real)                                        \
   template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
   SceneGenerator<SpinField<Real, Space::memory_space>>::prepare(                \
+      Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_local(          \
       Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
   template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
   SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_rate(           \

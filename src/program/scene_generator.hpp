@@ -24,6 +24,21 @@ struct SceneGeneratorNow {
     Vec3<Value> const a = is_llg ? llg(stencil) : bodies(stencil);
     return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
   }
+  /// Of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
+  /// rigid body is its own.
+  template <class Spin, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
+                                                       Vec3<Value> const& neighbor_field) const {
+    Vec3<Value> const a = is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin);
+    return orthogonal ? cayspin::detail::orthogonal_part(a, spin.center()) : a;
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return is_llg ? llg.neighbor_field(stencil) : cayspin::detail::zero_vector<Value>();
+  }
+
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
     return is_llg ? llg.rate(m, rates) : bodies.rate(m, rates);
@@ -96,6 +111,8 @@ class SceneGenerator {
   /// Compiled in scene_generator.cpp alone, for the spaces of space.hpp.
   template <class Exec>
   SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
+  template <class Exec>
+  SceneGeneratorNow<Spins> prepare_local(Exec const& exec, Spins const& spins, double t) const;
   template <class Exec>
   SceneGeneratorNow<Spins> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                         double dt) const;

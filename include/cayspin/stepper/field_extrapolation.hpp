@@ -3,12 +3,13 @@
 
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/field_extrapolation_stability.hpp>
 #include <cayspin/stepper/field_extrapolation_stage.hpp>
+#include <cayspin/stepper/field_history.hpp>
 #include <cayspin/stepper/rkmk4.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,11 +17,11 @@
 
 namespace cayspin {
 
-/// When a stepper that estimates its errors starts anew: the neighbour field is not what its past
-/// foretold. Infinity: never; where both are, no step waits for its estimate.
+/// When a stepper that estimates its errors starts anew, because the neighbour field is not what
+/// its past foretold. Infinity: never; where both are, no step waits for its estimate.
 struct FieldExtrapolationOptions {
-  double restart_angle = 0.1;   // a step's error above which its history is dropped, radians
-  double restart_growth = 100;  // of the error from the largest of late to the next
+  double restart_angle = 0.1;   // above an error of so many radians in one step
+  double restart_growth = 100;  // above so many times the largest of the last few errors
 };
 
 /// Field extrapolation of order 3 or 4 with one evaluation per step: the field of the other spins
@@ -28,10 +29,10 @@ struct FieldExtrapolationOptions {
 /// and in its own local field by one step of Rkmk4. What depends on a spin alone (anisotropy) or on
 /// t (applied fields) is not extrapolated. The first Order - 1 steps are steps of Rkmk4. Steps may
 /// change, by a factor of 2 at most when they grow; otherwise the next step starts anew.
-/// Estimates: known one step later, h g |dA x m| of each spin, dA the A of the neighbour field less
-/// that of the one foretold, g = 3/8 and 251/720 (of Adams and Bashforth) for equal steps. Leaves
-/// out the error of the local solve, of order 4. Costs a field and a number per site.
-/// Not in the paper.
+/// Estimates: the error of each step is known one step later, as dt g |dA x m| of a spin, dA the A
+/// in the neighbour field less that in the one foretold; g = 3/8 and, to 0.1 %, 251/720 for equal
+/// steps, as in the methods of Adams and Bashforth. The error of the local solve, of order 4, is
+/// not in it. Takes a field and a number per site more. Not in the paper.
 template <class Spins, int Order, bool Estimates = false>
 class FieldExtrapolation : public detail::StepperBase<Spins> {
   static_assert(Order == 3 || Order == 4, "Field extrapolation is of order 3 or 4.");
@@ -51,8 +52,8 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
         options_(options),
         start_(like),
         next_(name + "::next", like.lattice()),
+        past_(name + "::neighbor_field", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>((past_fields + 2) * like.bytes())) {
-    for (auto& field : past_) field = Spins(name + "::neighbor_field", like.lattice());
     if constexpr (Estimates) angles_ = Angles(name + "::error", like.lattice());
   }
 
@@ -66,6 +67,12 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     return numbers * sizeof(Real) + Start::work_bytes(lattice, by_time_alone, threads);
   }
 
+  /// What cayspin::largest_stable_step says, for fields whose part from other spins is exchange
+  /// between neighbours. A field that is extrapolated altogether takes two to three times less.
+  static double largest_stable_step(double field_bound, double damping, bool precession) {
+    return detail::largest_stable_extrapolation<Order>(field_bound, damping, precession);
+  }
+
   /// Evaluations of the generator so far; those of the first steps count 5 each.
   std::int64_t evaluations_done() const { return evaluations_done_; }
   /// Starts so far, the first one among them.
@@ -73,10 +80,10 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
 
   /// Forgets the steps before, as is needed when spins or generator were changed from outside: the
   /// next steps are those of a start. cayspin::integrate does it for each run.
-  void reset() { known_ = 0; }
+  void reset() { past_.forget(); }
 
   /// The largest error estimated for the step before the last one, as an angle in radians; NaN
-  /// until Order + 1 steps are taken. Waits.
+  /// until Order + 1 steps are taken from a start. Waits.
   template <class Exec>
   double last_error(Exec const& exec) const requires Estimates {
     if (!has_error_) return std::numeric_limits<double>::quiet_NaN();
@@ -91,12 +98,12 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins, next_);
     if (dt == 0) return;
-    if (known_ > 0 && !(0 < dt / gaps_[0] && dt / gaps_[0] <= 2)) reset();
-    if (known_ >= Order - 1) {
+    if (past_.known() > 0 && !(0 < dt / past_.last_step() && dt / past_.last_step() <= 2)) reset();
+    if (past_.known() >= Order - 1) {
       extrapolate(exec, generator, spins, t, dt);
       if (!has_failed(exec)) {
         swap(spins, next_);
-        return remember(dt);
+        return past_.remember(dt);
       }
       reset();
       begin(exec, generator, spins, t, dt);
@@ -112,54 +119,28 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   using Error = std::conditional_t<Estimates, detail::ErrorOfExtrapolation<Order, Real>,
                                    detail::NoErrorOfExtrapolation<Order>>;
 
-  /// The neighbour field of `back` steps before the last one that was stored; that of past_fields
-  /// steps before is where the next one goes.
-  Spins const& past(int back) const {
-    return past_[static_cast<std::size_t>((newest_ + back) % past_fields)];
-  }
-  Spins const& oldest() const { return past(past_fields - 1); }
-
-  // The field at the begin of this step is stored where the oldest was.
-  void remember(double dt) {
-    newest_ = (newest_ + past_fields - 1) % past_fields;
-    known_ = std::min(known_ + 1, past_fields);
-    std::move_backward(gaps_.begin(), gaps_.end() - 1, gaps_.end());
-    gaps_[0] = dt;
-  }
-
   template <class Exec, class Generator>
   void store_neighbor_field(Exec const& exec, Generator const& generator, Spins const& spins,
                             double t) {
     auto prepared = detail::prepare_term(generator, exec, spins, t);
-    detail::for_each_site<Real>(exec, store_label_, spins.layout(),
-                                detail::NeighborFieldStage<decltype(prepared), Real>{
-                                    std::move(prepared), spins.array(), oldest().output(false)});
+    detail::for_each_site<Real>(
+        exec, store_label_, spins.layout(),
+        detail::NeighborFieldStage<decltype(prepared), Real>{std::move(prepared), spins.array(),
+                                                             past_.following().output(false)});
     ++evaluations_done_;
   }
 
   /// A first step, its neighbour field being stored.
   template <class Exec, class Generator>
   void begin(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    if (known_ == 0) {
+    if (past_.known() == 0) {
       ++starts_;
       has_error_ = false;
       largest_of_late_ = 0;
     }
     start_.step(exec, generator, spins, t, dt);
     evaluations_done_ += Start::evaluations;
-    remember(dt);
-  }
-
-  /// Times of the stored fields behind `first`, with steps of `unit`.
-  template <std::size_t Count>
-  std::array<double, Count> times(std::size_t first, double unit) const {
-    std::array<double, Count> nodes;
-    double sum = 0;
-    for (std::size_t j = 0; j < Count; ++j) {
-      nodes[j] = -sum / unit;
-      if (first + j < gaps_.size()) sum += gaps_[first + j];
-    }
-    return nodes;
+    past_.remember(dt);
   }
 
   template <class Exec, class Generator>
@@ -177,17 +158,17 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
                   {},
                   spins.array(),
                   {},
-                  oldest().output(false),
+                  past_.following().output(false),
                   next_.output(streaming_),
                   {},
                   static_cast<Real>(dt)};
-    auto const nodes = times<Order>(0, dt);
+    auto const nodes = past_.template times<Order>(0, dt);
     std::ranges::copy(detail::interpolation_weights(nodes, 0.5), kernel.middle);
     std::ranges::copy(detail::interpolation_weights(nodes, 1), kernel.end);
-    for (int j = 0; j < past_fields; ++j) kernel.older[j] = past(j).array();
+    for (std::size_t j = 0; j < past_fields; ++j) kernel.older[j] = past_[j].array();
     if constexpr (Estimates) {
       kernel.error = error_of_step_before(dt);
-      has_error_ = known_ == past_fields;
+      has_error_ = past_.is_full();
     }
     detail::for_each_site<Real>(exec, step_label_, spins.layout(), kernel);
     ++evaluations_done_;
@@ -197,12 +178,12 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   /// and the mean of its error over the step, by the local solve's weights, over that at the end.
   Error error_of_step_before(double dt) const requires Estimates {
     Error error{{}, 0, angles_.output(false)};
-    if (known_ < past_fields) return error;
-    auto const nodes = times<Order>(1, gaps_[0]);
+    if (!past_.is_full()) return error;
+    auto const nodes = past_.template times<Order>(1, past_.last_step());
     std::ranges::copy(detail::interpolation_weights(nodes, 1), error.weights);
     double middle = 1, end = 1;
     for (double const node : nodes) middle *= 0.5 - node, end *= 1 - node;
-    error.scale = gaps_[0] / dt * (4 * middle / end + 1) / 6;
+    error.scale = past_.last_step() / dt * (4 * middle / end + 1) / 6;
     return error;
   }
 
@@ -228,12 +209,10 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   FieldExtrapolationOptions options_;
   Start start_;
   Spins next_;
-  std::array<Spins, past_fields> past_;  // a ring
+  detail::FieldHistory<Spins, past_fields> past_;
   Angles angles_;
   bool streaming_;  // stores of spins go around the caches
   bool has_error_ = false;
-  int newest_ = 0, known_ = 0;
-  std::array<double, past_fields> gaps_{};  // dt from the stored fields on, newest first
   double largest_of_late_ = 0;
   std::int64_t evaluations_done_ = 0, starts_ = 0;
 };

@@ -2,20 +2,17 @@
 #pragma once
 
 #include <cayspin/stability.hpp>
-#include <cayspin/stepper/field_extrapolation.hpp>
+#include <cayspin/stepper/field_history.hpp>
 #include <cayspin/stepper/tableau.hpp>
 
-#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <limits>
-#include <utility>
 
 // The largest stable time step of field extrapolation: its step acts on one transverse mode of a
 // nearly uniform state, u' = (-damping + i) (a u + b v), where a u is what a spin's own place in
 // the field of the others and its local field do, and b v what the others' extrapolated v does.
-namespace cayspin {
-
-namespace detail {
+namespace cayspin::detail {
 
 /// The amplitude after a step from those now and before, newest first. z = dt (a + b) (-damping +
 /// i); `own` = a / (a + b); q = dt times the part of A along the spin.
@@ -74,31 +71,24 @@ bool extrapolated_mode_grows(Complex z, double own, double q) {
   return recursion_grows(coefficients);
 }
 
-template <class Stepper>
-concept extrapolates_field = requires {
-  requires Stepper::past_fields >= Stepper::order - 1;
-};
-
-}  // namespace detail
-
-/// The same of field extrapolation, never above the linear limit of either generator, for fields
-/// whose part from other spins is exchange between neighbours: of the stiffest mode's rate, half is
-/// then due to the others, the mode in which neighbours are opposite. `sigma` has to be 0.
-template <detail::extrapolates_field Stepper>
-double largest_stable_step(double field_bound, double damping, bool precession = true, double = 0) {
+/// The largest dt at which no mode grows, never above the linear limit of either generator, for
+/// fields whose part from other spins is exchange between neighbours: of the stiffest mode's rate,
+/// half is then due to the others. It is the mode in which neighbours are opposite.
+template <int Order>
+double largest_stable_extrapolation(double field_bound, double damping, bool precession) {
   double const never = std::numeric_limits<double>::infinity();
-  detail::Complex const rate(-damping, precession ? 1 : 0);
+  Complex const rate(-damping, precession ? 1 : 0);
   if (!(field_bound > 0) || std::abs(rate) == 0) return never;
   double const unit = 1 / (field_bound * std::abs(rate)), own = 0.5;
   double limit = 1e3 * unit;             // of the scan; the method does not get there
   for (double const along : {0.0, own})  // A's part along the spin: of `orthogonal`, and of others
-    limit = detail::first_amplifying_step(
+    limit = first_amplifying_step(
         [&](double dt) {
-          return detail::extrapolated_mode_grows<Stepper::order>(
-              dt * field_bound * rate, own, precession ? dt * field_bound * along : 0);
+          return extrapolated_mode_grows<Order>(dt * field_bound * rate, own,
+                                                precession ? dt * field_bound * along : 0);
         },
         unit, limit);
   return limit;
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::detail

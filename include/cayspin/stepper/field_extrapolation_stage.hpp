@@ -7,25 +7,7 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 
-#include <array>
-
 namespace cayspin::detail {
-
-/// Of Count fields known at times `nodes`, the weights of their polynomial at time x.
-template <std::size_t Count>
-std::array<double, Count> interpolation_weights(std::array<double, Count> const& nodes, double x) {
-  std::array<double, Count> weights;
-  for (std::size_t i = 0; i < Count; ++i) {
-    double above = 1, below = 1;
-    for (std::size_t j = 0; j < Count; ++j) {
-      if (j == i) continue;
-      above *= x - nodes[j];
-      below *= nodes[i] - nodes[j];
-    }
-    weights[i] = above / below;
-  }
-  return weights;
-}
 
 /// The neighbour field of every spin.
 template <class Generator, class Real>

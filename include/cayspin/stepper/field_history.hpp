@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/lattice/lattice.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace cayspin::detail {
+
+/// Of Count fields known at times `nodes`, the weights of their polynomial at time x.
+template <std::size_t Count>
+std::array<double, Count> interpolation_weights(std::array<double, Count> const& nodes, double x) {
+  std::array<double, Count> weights;
+  for (std::size_t i = 0; i < Count; ++i) {
+    double above = 1, below = 1;
+    for (std::size_t j = 0; j < Count; ++j) {
+      if (j == i) continue;
+      above *= x - nodes[j];
+      below *= nodes[i] - nodes[j];
+    }
+    weights[i] = above / below;
+  }
+  return weights;
+}
+
+/// The last Count fields of a run, a ring, and the steps between them.
+template <class Field, std::size_t Count>
+class FieldHistory {
+ public:
+  FieldHistory(std::string const& label, Lattice const& lattice) {
+    for (auto& field : fields_) field = Field(label, lattice);
+  }
+
+  std::size_t known() const { return known_; }
+  bool is_full() const { return known_ == Count; }
+  void forget() { known_ = 0; }
+
+  /// The field `back` steps before the last one that was stored.
+  Field const& operator[](std::size_t back) const { return fields_[(newest_ + back) % Count]; }
+  /// Where the next one goes: the oldest.
+  Field const& following() const { return (*this)[Count - 1]; }
+
+  /// The next field is stored, and a step of dt taken from it.
+  void remember(double dt) {
+    newest_ = (newest_ + Count - 1) % Count;
+    known_ = std::min(known_ + 1, Count);
+    std::move_backward(steps_.begin(), steps_.end() - 1, steps_.end());
+    steps_[0] = dt;
+  }
+
+  /// The step from the last field that was stored.
+  double last_step() const { return steps_[0]; }
+
+  /// Times of the state after `skipped` steps before the last one, as 0, and of the Nodes - 1
+  /// fields before it, with steps of `unit`.
+  template <std::size_t Nodes>
+  std::array<double, Nodes> times(std::size_t skipped, double unit) const {
+    static_assert(Nodes <= Count + 1);
+    std::array<double, Nodes> times{};
+    double sum = 0;
+    for (std::size_t j = 1; j < Nodes; ++j) {
+      sum += steps_[skipped + j - 1];
+      times[j] = -sum / unit;
+    }
+    return times;
+  }
+
+ private:
+  std::array<Field, Count> fields_;
+  std::array<double, Count> steps_{};  // newest first
+  std::size_t newest_ = 0, known_ = 0;
+};
+
+}  // namespace cayspin::detail
