@@ -38,6 +38,13 @@ struct FieldIsANumber : Term {
 
 struct NotAGenerator {};
 
+struct WholeGenerator {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {
+    return stencil.center();
+  }
+};
+
 struct NoDegree {
   template <class HostSpins>
   void operator()(HostSpins const&, HostSpins const&, double) const {}
@@ -102,5 +109,7 @@ inline void refused() {
 #elif CAYSPIN_TEST_MISTAKE == 19
   LieEuler(spins, isotropy::Analytic())
       .step(exec, LandauLifshitz(EffectiveField(Term()), 0.1), spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 20
+  FieldExtrapolation3(spins).step(exec, WholeGenerator(), spins, 0, 0.1);
 #endif
 }

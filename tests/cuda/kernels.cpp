@@ -30,7 +30,8 @@ struct Steppers {
       LieEuler<S, isotropy::Zero, OverflowSafeCayley>, LieHeun<S>, LieAdamsBashforth2<S>,
       Rkmk<S, tableau::Kutta3>, Rkmk4<S>, Rkmk4<S, isotropy::Zero, Exponential>, Rkmk4AsPrinted<S>,
       StereographicRungeKutta<S, tableau::Heun>, StereographicRungeKutta<S, tableau::Classical4>,
-      Series4<S>, Series4Paper<S>, EnergyProjection<LieHeun<S>>, ImplicitLieEuler<S>,
+      FieldExtrapolation3<S>, FieldExtrapolation4<S>, FieldExtrapolation4<S, true>, Series4<S>,
+      Series4Paper<S>, EnergyProjection<LieHeun<S>>, ImplicitLieEuler<S>,
       ImplicitLieEuler<S, isotropy::Analytic>, ImplicitMidpoint<S>, ClassicalEuler<S>,
       ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>, ProjectedHeun<S>, ProjectedRk4<S>,
       RedBlack2<S>>

@@ -90,7 +90,7 @@ void expect_ratio(char const* what, Slab const& slab, double dt, bool unequal, d
   Spins spins = random_spins(slab.lattice, 3);
   Stepper stepper(spins);
   double t = 0, before = 0, low = 1e9, high = 0;
-  for (int n = 0; n < 40; ++n) {
+  for (int n = 0; n < 16; ++n) {
     double const step = unequal && n % 2 == 1 ? 0.5 * dt : dt;
     double const error = missed(stepper, generator, spins, t, step);
     t += step;
