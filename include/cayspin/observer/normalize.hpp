@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/integrate.hpp>
+#include <cayspin/spin_field.hpp>
+
+namespace cayspin {
+
+namespace detail {
+
+template <class Real>
+struct NewtonNormalize {
+  SiteArray<Real, 3> spins;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    auto const m = site.load(spins);
+    using Value = typename decltype(m)::value_type;
+    // As m plus a small change: the change is lost below an epsilon, and m then stays to the bit.
+    Value const half_excess = Value(0.5) * (Value(1) - dot(m, m));
+    site.store(multiply_add(half_excess, m, m), output);
+  }
+};
+
+}  // namespace detail
+
+/// One Newton step towards |m| = 1 for every spin, m <- m (3 - m.m) / 2, without a root or a
+/// division: a length 1 + d becomes 1 - 3/2 d^2, to round-off. It finds 1 from lengths below
+/// sqrt(3); spins that are not finite stay so.
+template <class Exec, class Real, class MemorySpace>
+void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
+  detail::check_access<Exec, MemorySpace>();
+  detail::for_each_site<Real>(exec, "cayspin::normalize", spins.layout(),
+                              detail::NewtonNormalize<Real>{spins.array(), spins.output(false)});
+}
+
+/// The same as an observer, for runs of so many steps that round-off in |m| adds up:
+/// integrate(..., Every(1000, Normalize{})).
+struct Normalize {
+  template <class Exec, class Spins>
+  void operator()(Exec const& exec, Step const&, Spins const& spins) const {
+    normalize(exec, spins);
+  }
+};
+
+}  // namespace cayspin

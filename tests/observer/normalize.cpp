@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The Newton step towards |m| = 1 alone, and as an observer that keeps round-off from adding up.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+
+namespace cayspin::test {
+namespace {
+
+template <class Backend>
+class Normalizing : public ::testing::Test {
+ protected:
+  typename Backend::Exec exec;
+};
+TYPED_TEST_SUITE(Normalizing, Backends, BackendName);
+
+TYPED_TEST(Normalizing, IsNewtonsStep) {
+  using Spins = typename TypeParam::Spins;
+  double const eps = epsilon<typename TypeParam::Real>;
+  for (double const excess : {0.5, 0.1, -0.1, 1e-3, -1e-3, 0.0}) {
+    auto const lattice = Lattice::square(19, 5);
+    auto numbers = random_directions(lattice.sites(), 5);
+    for (auto& number : numbers) number *= 1 + excess;
+    auto const spins = spins_of<Spins>(lattice, numbers);
+    normalize(this->exec, spins);
+    this->exec.fence();
+    double const length = (1 + excess) * (3 - (1 + excess) * (1 + excess)) / 2;
+    auto const found = numbers_of(spins);
+    for (std::size_t i = 0; i < found.size(); ++i)
+      EXPECT_NEAR(found[i], numbers[i] / (1 + excess) * length, 4 * eps) << excess;
+  }
+}
+
+// A length that is right to an epsilon is left alone, and one that is none is not hidden.
+TYPED_TEST(Normalizing, AtRestAndNotFinite) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::chain(20);
+  auto numbers = random_directions(lattice.sites(), 6);
+  for (std::size_t i = 0; i < 30; ++i) numbers[i] = i % 3 == 1 ? 1 : 0;
+  numbers[30] = std::numeric_limits<double>::quiet_NaN();
+  auto const spins = spins_of<Spins>(lattice, numbers);
+  normalize(this->exec, spins);
+  this->exec.fence();
+  EXPECT_TRUE(std::isnan(norm_defect(this->exec, spins)));
+  auto const found = numbers_of(spins);
+  for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(found[i], numbers[i]);
+  for (std::size_t i = 33; i < found.size(); ++i) EXPECT_TRUE(std::isfinite(found[i]));
+}
+
+TYPED_TEST(Normalizing, KeepsRoundOffFromAddingUp) {
+  using Spins = typename TypeParam::Spins;
+  double const eps = epsilon<typename TypeParam::Real>;
+  auto const lattice = Lattice::chain(16);
+  auto const start = random_directions(lattice.sites(), 7);
+  LandauLifshitz const generator(EffectiveField(Zeeman{{0.3, -0.4, 1.2}}), 0);
+  auto const defect = [&](auto&&... observers) {
+    auto spins = spins_of<Spins>(lattice, start);
+    LieEuler stepper(spins);
+    integrate(this->exec, stepper, generator, spins, {0, 0.37, 20000}, observers...);
+    return norm_defect(this->exec, spins);
+  };
+  double const alone = defect(), every_tenth = defect(Every(10, Normalize{}));
+  std::printf("    20000 steps: | |m| - 1 | = %.1f eps, %.1f eps with a Newton step every 10\n",
+              alone / eps, every_tenth / eps);
+  EXPECT_LT(every_tenth, 1.5 * eps);
+  EXPECT_GT(alone, 5 * eps);
+}
+
+}  // namespace
+}  // namespace cayspin::test
