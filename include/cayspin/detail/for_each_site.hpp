@@ -8,6 +8,7 @@
 #include <concepts>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 namespace cayspin::detail {
 
@@ -23,21 +24,38 @@ std::int32_t pack_count(RowLayout const& layout) {
   return (layout.nx + host_lanes<Real> - 1) / host_lanes<Real>;
 }
 
-/// Calls functor(site) for packs begin .. end - 1 of a row.
+/// Said by a functor that can be called with two sites, to keep the processor busy where one is a
+/// long chain of operations that wait for each other.
+template <class Functor>
+inline constexpr bool takes_pairs = requires {
+  requires Functor::takes_pairs;
+};
+
+/// Calls functor(site) for packs begin .. end - 1 of a row, or functor(site, next site).
 template <class Value, class Functor>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(Row const& row, std::int32_t begin, std::int32_t end,
                                                Functor&& functor) {
   constexpr std::int32_t lanes = lanes_of<Value>;
   // The ends of the row share one instance of the functor: kernels are large, and compile slowly.
   std::int32_t const last = (row.nx + lanes - 1) / lanes - 1;
+  constexpr std::int32_t at_once = takes_pairs<std::remove_cvref_t<Functor>> ? 2 : 1;
+  std::int32_t const inner_end = Kokkos::min(end, last);
+  std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1);
+  // One that is left over goes with the ends.
+  std::int32_t const odd =
+      at_once == 2 && pack < inner_end && (inner_end - pack) % 2 == 1 ? pack++ : last;
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
 #pragma GCC unroll 1
 #endif
-  for (std::int32_t pack = 0; pack <= last; pack += Kokkos::max<std::int32_t>(last, 1))
-    if (begin <= pack && pack < end) functor(Site<Value, true>(row, pack * lanes));
-  std::int32_t const inner_end = Kokkos::min(end, last);
-  for (std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1); pack < inner_end; ++pack)
-    functor(Site<Value, false>(row, pack * lanes));
+  for (std::int32_t edge = 0; edge <= last; edge = edge < odd ? odd : Kokkos::max(last, edge + 1))
+    if (begin <= edge && edge < end) functor(Site<Value, true>(row, edge * lanes));
+  for (; pack < inner_end; pack += at_once) {
+    Site<Value, false> const site(row, pack * lanes);
+    if constexpr (at_once == 2)
+      functor(site, Site<Value, false>(row, (pack + 1) * lanes));
+    else
+      functor(site);
+  }
 }
 
 /// Rows y_begin .. y_end - 1 of plane z, packs pack_begin .. pack_end - 1 of each.

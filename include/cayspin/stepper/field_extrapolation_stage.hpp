@@ -52,45 +52,65 @@ struct FieldExtrapolationStage {
   Error error;
   Real dt;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+  static constexpr bool takes_pairs = true;
+
+  /// The stages of one site, or by turns those of two.
+  template <class Site, class... Second>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     using Value = typename Site::value_type;
+    Coordinates<Value> of_site, of_second;
+    begin(site, of_site), (begin(second, of_second), ...);
+    middle_stage(site, of_site), (middle_stage(second, of_second), ...);
+    middle_stage(site, of_site), (middle_stage(second, of_second), ...);
+    finish(site, of_site), (finish(second, of_second), ...);
+  }
+
+ private:
+  template <class Value>
+  struct Coordinates {
+    Vec3<Value> m, at_middle, at_end;  // the spin; neighbour fields
+    Vec3<Value> last, sum;             // the last increment; F1 + 2 F2 + ..
+  };
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void begin(Site const& site, Coordinates<Value>& of) const {
     Stencil<Site, Real> const stencil(site, spins);
-    Vec3<Value> const m = stencil.center();
+    of.m = stencil.center();
     Vec3<Value> const h = neighbor_field_of(generator, stencil);
     Vec3<Value> before[Error::older];
     unrolled<Error::older>([&](auto j) { before[j()] = site.load(older[j()]); });
-    Vec3<Value> at_middle = value<Value>(middle[0]) * h, at_end = value<Value>(end[0]) * h;
+    of.at_middle = value<Value>(middle[0]) * h;
+    of.at_end = value<Value>(end[0]) * h;
     unrolled<Order - 1>([&](auto j) {
-      at_middle = multiply_add(value<Value>(middle[j() + 1]), before[j()], at_middle);
-      at_end = multiply_add(value<Value>(end[j() + 1]), before[j()], at_end);
+      of.at_middle = multiply_add(value<Value>(middle[j() + 1]), before[j()], of.at_middle);
+      of.at_end = multiply_add(value<Value>(end[j() + 1]), before[j()], of.at_end);
     });
-
-    Value const half(static_cast<scalar_t<Value>>(0.5));
-    Vec3<Value> const f1 = increment(local[0], site, m, h);
-    Vec3<Value> f = half * f1;
-    Vec3<Value> const f2 =
-        Cayley::inverse_tangent(f, increment(local[1], site, Cayley::rotate(f, m), at_middle));
-    f = half * f2;
-    Vec3<Value> const f3 =
-        Cayley::inverse_tangent(f, increment(local[1], site, Cayley::rotate(f, m), at_middle));
-    Vec3<Value> const f4 =
-        Cayley::inverse_tangent(f3, increment(local[2], site, Cayley::rotate(f3, m), at_end));
-    f = value<Value>(1. / 6) * (f1 + multiply_add(Value(2), f2 + f3, f4));
+    of.sum = of.last = increment(local[0], site, of.m, h);
 
     if constexpr (Error::is_known) {
       Vec3<Value> foretold = value<Value>(error.weights[0]) * before[0];
       unrolled<Order - 1>([&](auto j) {
         foretold = multiply_add(value<Value>(error.weights[j() + 1]), before[j() + 1], foretold);
       });
-      Vec3<Value> const missed = cross(f1 - increment(local[0], site, m, foretold), m);
+      Vec3<Value> const missed = cross(of.last - increment(local[0], site, of.m, foretold), of.m);
       site.store(value<Value>(error.scale) * square_root<Value>(dot(missed, missed)), error.angles);
     }
     site.store(h, newest);
-    site.store(Cayley::rotate(f, m), next);
+  }
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void middle_stage(Site const& site, Coordinates<Value>& of) const {
+    Vec3<Value> const f = value<Value>(0.5) * of.last;
+    of.last = Cayley::inverse_tangent(
+        f, increment(local[1], site, Cayley::rotate(f, of.m), of.at_middle));
+    of.sum = multiply_add(Value(2), of.last, of.sum);
+  }
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void finish(Site const& site, Coordinates<Value>& of) const {
+    Vec3<Value> const last = Cayley::inverse_tangent(
+        of.last, increment(local[2], site, Cayley::rotate(of.last, of.m), of.at_end));
+    site.store(Cayley::rotate(value<Value>(1. / 6) * (of.sum + last), of.m), next);
   }
 
- private:
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> increment(Local const& at, Site const& site,
                                                     Vec3<Value> const& q,
