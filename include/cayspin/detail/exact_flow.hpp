@@ -60,17 +60,33 @@ struct ExactFlow {
             select<Value>(near, end.z, far.z)};
   }
 
+  /// Where q is after dt/2, to first order; q itself where that is far off.
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> middle(Vec3<Value> const& h, Vec3<Value> const& q) const {
+    Vec3<Value> const relaxing = damping * cross(q, h);
+    Vec3<Value> const a = precession ? h + relaxing : relaxing;
+    Vec3<Value> const way = Value(Scalar(0.5) * dt) * cross(a, q);
+    auto const near = dot(way, way) < Value(Scalar(1));
+    return {select<Value>(near, q.x + way.x, q.x), select<Value>(near, q.y + way.y, q.y),
+            select<Value>(near, q.z + way.z, q.z)};
+  }
+
  private:
-  /// sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1.
+  /// sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1, even and odd k apart: the
+  /// chain of operations is half as long.
   template <int Odd, int Terms>
   KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
     double coefficient[Terms] = {first};
     for (int k = 1; k < Terms; ++k)
       coefficient[k] = coefficient[k - 1] / ((2 * k + Odd) * (2 * k - 1 + Odd));
-    Value sum(static_cast<Scalar>(coefficient[Terms - 1]));
-    for (int k = Terms - 2; k >= 0; --k)
-      sum = multiply_add(sum, x, Value(static_cast<Scalar>(coefficient[k])));
-    return sum;
+    auto const of = [&](int k) { return Value(static_cast<Scalar>(coefficient[k])); };
+    Value const square = x * x;
+    Value upper = of(Terms - 1), lower = of(Terms - 2);
+    for (int k = Terms - 3; k > 0; k -= 2) {
+      upper = multiply_add(upper, square, of(k));
+      lower = multiply_add(lower, square, of(k - 1));
+    }
+    if constexpr (Terms % 2 == 0) return multiply_add(upper, x, lower);
+    return multiply_add(lower, x, multiply_add(upper, square, of(0)));
   }
 
   /// By entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The relaxation

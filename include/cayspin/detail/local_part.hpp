@@ -88,14 +88,35 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
     return term.field(stencil);
 }
 
-/// H of what prepare_local returned.
+/// H of what prepare_local returned, and of a prepared term that comes in parts.
 template <class Term, class Spin>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Term const& term,
                                                                         Spin const& spin) {
   if constexpr (requires { term.local_field(spin); })
     return term.local_field(spin);
-  else
+  else if constexpr (is_local<Term>)
     return term.field(spin);
+  else
+    return zero_vector<typename Spin::value_type>();
+}
+
+/// Of a prepared term: does it say what its parts are, each term of a sum for itself?
+template <class Term, class Stencil>
+inline constexpr bool comes_in_parts = is_local<Term> ||
+                                       requires(Term const& term, Stencil const& stencil) {
+  term.neighbor_field(stencil);
+};
+
+/// Of a prepared term that comes in parts: does its local field change with the spin? Terms may say
+/// no by a member of that name.
+template <class Term>
+KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies(Term const& term) {
+  if constexpr (requires { term.local_field_varies(); })
+    return term.local_field_varies();
+  else if constexpr (requires { requires Term::degree == 1; })
+    return false;
+  else
+    return true;
 }
 
 /// A generator's A of a spin in a given neighbour field, by what its prepare_local returned.

@@ -39,18 +39,6 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
   }
 }
 
-/// Writes the lanes where a condition holds, and touches no others.
-template <class Value>
-KOKKOS_FORCEINLINE_FUNCTION void store_where(typename ValueTraits<Value>::mask const& condition,
-                                             Value const& value, scalar_t<Value>* to) {
-  if constexpr (std::is_floating_point_v<Value>) {
-    if (condition) *to = value;
-  } else {
-    Kokkos::Experimental::where(condition, value)
-        .copy_to(to, Kokkos::Experimental::simd_flag_default);
-  }
-}
-
 /// Writes past the caches. `to` is aligned to the pack.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Value>* to) {

@@ -100,6 +100,11 @@ class Site {
                                          int component) const {
     return detail::load<Value>(array.data + component * array.stride + offset());
   }
+  /// Of an array along x.
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
+    return detail::load<Value>(profile + x_);
+  }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value,
                                          OutputArray<Real, 1> const& array) const {
@@ -123,28 +128,6 @@ class Site {
       detail::store(value.y, to + row.stride);
       detail::store(value.z, to + 2 * row.stride);
     }
-  }
-
-  using mask_type = typename ValueTraits<Value>::mask;
-
-  /// The lanes that are sites with x + y + z of a parity, 0 or 1.
-  KOKKOS_FORCEINLINE_FUNCTION mask_type of_colour(std::int32_t colour) const {
-    std::int32_t const parity = (x_ + row_.y + row_.z + colour) & 1;  // of the lanes meant
-    if constexpr (lanes == 1) {
-      return parity == 0;
-    } else {
-      Value const alternating([](auto lane) { return static_cast<scalar_type>(lane() % 2); });
-      return alternating == Value(static_cast<scalar_type>(parity)) &&
-             lane_numbers<Value>() < Value(static_cast<scalar_type>(row_.nx - x_));
-    }
-  }
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION void store_where(mask_type const& condition, Vec3<Value> const& value,
-                                               SiteArray<Real, 3> const& array) const {
-    Real* const to = array.data + offset();
-    detail::store_where(condition, value.x, to);
-    detail::store_where(condition, value.y, to + array.stride);
-    detail::store_where(condition, value.z, to + 2 * array.stride);
   }
 
   /// `found`, a neighbour along x, but `missing` on the lane at an open end.

@@ -164,6 +164,13 @@ class EffectiveField<First, Rest...> {
       return detail::local_field(first_, spin) + rest_.local_field(spin);
   }
 
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
+    if constexpr (sizeof...(Rest) == 0)
+      return detail::local_field_varies(first_);
+    else
+      return detail::local_field_varies(first_) || rest_.local_field_varies();
+  }
+
   /// The linear part of H, applied to the stencil's array; every term has to be affine.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
@@ -225,5 +232,11 @@ class EffectiveField<First, Rest...> {
 
 template <class... Terms>
 EffectiveField(Terms...) -> EffectiveField<Terms...>;
+
+namespace detail {
+template <class... Terms, class Stencil>
+inline constexpr bool comes_in_parts<EffectiveField<Terms...>, Stencil> =
+    (comes_in_parts<Terms, Stencil> && ...);
+}  // namespace detail
 
 }  // namespace cayspin

@@ -43,6 +43,8 @@ class Exchange {
     return h;
   }
 
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {

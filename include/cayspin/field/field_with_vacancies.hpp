@@ -95,6 +95,9 @@ class FieldAmongVacancies {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
     return unless_vacant(spin, detail::local_field(field_, spin));
   }
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
+    return detail::local_field_varies(field_);
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
@@ -139,6 +142,10 @@ class FieldAmongVacancies {
   Field field_;
   SiteArray<Real, 1> occupation_;
 };
+
+template <class Field, class Real, class Stencil>
+inline constexpr bool comes_in_parts<FieldAmongVacancies<Field, Real>, Stencil> =
+    comes_in_parts<Field, Stencil>;
 
 }  // namespace detail
 

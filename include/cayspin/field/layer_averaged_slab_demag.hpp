@@ -70,7 +70,7 @@ struct LayerField {
   template <class Value, class Site>
   KOKKOS_FORCEINLINE_FUNCTION Value along(Site const& site) const {
     Value const average =
-        axis == 0 ? load<Value>(averages + site.x())
+        axis == 0 ? site.load_profile(averages)
                   : Value(static_cast<scalar_t<Value>>(averages[axis == 1 ? site.y() : site.z()]));
     return Value(static_cast<scalar_t<Value>>(-strength)) * average;
   }

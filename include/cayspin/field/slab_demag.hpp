@@ -24,6 +24,8 @@ class SlabDemag {
     return Value(strength<Value>(-1) * dot(stencil.center(), n)) * n;
   }
 
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return strength_ != 0; }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {

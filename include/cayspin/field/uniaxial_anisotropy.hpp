@@ -41,6 +41,8 @@ class UniaxialAnisotropy {
     return Value(constant<Value>(1) * dot(stencil.center(), e)) * e;
   }
 
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return constant_ != 0; }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {

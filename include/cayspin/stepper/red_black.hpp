@@ -74,7 +74,7 @@ class RedBlack : public detail::StepperBase<Spins> {
         auto const at = [&](int flow) {
           return detail::prepare_term(generator, exec, spins, t + sweep.middle[flow] * dt);
         };
-        auto stage = stage_of(at(0), at(sweep.flows - 1), spins);
+        auto stage = stage_of(at(0), at(sweep.flows - 1), spins, true);
         launch(exec, stage, spins, sweep, dt);
       }
     }
@@ -96,13 +96,13 @@ class RedBlack : public detail::StepperBase<Spins> {
 
  private:
   template <class Prepared>
-  static auto stage_of(Prepared first, Prepared second, Spins const& spins) {
+  static auto stage_of(Prepared first, Prepared second, Spins const& spins, bool changes) {
     static_assert(detail::is_landau_lifshitz<Prepared>,
                   "RedBlack moves spins by the Landau-Lifshitz equation: its generator is a "
                   "LandauLifshitz, or has a prepare that returns one; `orthogonal` around it would "
                   "change nothing here.");
     return detail::RedBlackStage<Prepared, Real>{
-        {std::move(first), std::move(second)}, spins.array(), {}, 1, 0};
+        {std::move(first), std::move(second)}, spins.array(), changes, {}, 1, 0, false};
   }
 
   /// Under a generator that stays.
@@ -110,7 +110,7 @@ class RedBlack : public detail::StepperBase<Spins> {
   void take_steps(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                   double dt, std::int64_t count) {
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
-    auto stage = stage_of(prepared, prepared, spins);
+    auto stage = stage_of(prepared, prepared, spins, false);
     if constexpr (detail::is_host_execution<Exec>) {
       if (detail::runs_on_calling_thread<Exec>(spins.sites())) {
         detail::RedBlackSteps<Order, decltype(stage), Real> const steps{

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/every_other.hpp>
+#include <cayspin/detail/site.hpp>
+
+namespace cayspin::detail {
+
+/// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x,
+/// x + 2, ... What is loaded lies between the first lane's neighbour before and the last one's
+/// behind, in the row's own memory, and is of the other colour but for the sites themselves.
+template <class Value, bool AtEdge>
+class ColourSite {
+ public:
+  using value_type = Value;
+  using scalar_type = scalar_t<Value>;
+  using mask_type = typename ValueTraits<Value>::mask;
+  static constexpr int lanes = lanes_of<Value>;
+
+  KOKKOS_FORCEINLINE_FUNCTION ColourSite(Row const& row, std::int32_t x) : row_(row), x_(x) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION Row const& row() const { return row_; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return row_.z; }
+  /// x + the lane's number is not where the lane is.
+  std::int32_t x() const = delete;
+
+  /// The lanes that are sites.
+  KOKKOS_FORCEINLINE_FUNCTION mask_type inside() const {
+    return lane_numbers<Value>() < Value(static_cast<scalar_type>(count()));
+  }
+
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 1> const& array) const {
+    return at(array.data + row_.offset);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
+    return vector_at(array.data + row_.offset, array.stride);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(SiteArray<Real, 3> const& array) const {
+    for (int component = 0; component < 3; ++component)
+      prefetch(array.data + component * array.stride + row_.offset + x_ + row_.to_neighbor[1][1] +
+               row_.pitch);
+    return load(array);
+  }
+  template <class Real, int Components>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
+                                         int component) const {
+    return at(array.data + component * array.stride + row_.offset);
+  }
+  /// Of an array along x.
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
+    return at(profile);
+  }
+
+  /// Writes these sites, and touches none between them.
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
+                                         SiteArray<Real, 3> const& array) const {
+    Real* const to = array.data + row_.offset + x_;
+    store_every_other(value.x, to, count());
+    store_every_other(value.y, to + array.stride, count());
+    store_every_other(value.z, to + 2 * array.stride, count());
+  }
+
+  /// As of Site.
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
+                                                   Vec3<Value> const& center) const {
+    Real const* const row = array.data + row_.offset;
+    if constexpr (Axis > 0) {
+      return vector_at(row + row_.to_neighbor[Axis - 1][Direction], array.stride);
+    } else {
+      return {beside<Direction>(row, center.x), beside<Direction>(row + array.stride, center.y),
+              beside<Direction>(row + 2 * array.stride, center.z)};
+    }
+  }
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value neighbor(SiteArray<Real, 1> const& array,
+                                             Value const& center) const {
+    Real const* const row = array.data + row_.offset;
+    if constexpr (Axis > 0)
+      return at(row + row_.to_neighbor[Axis - 1][Direction]);
+    else
+      return beside<Direction>(row, center);
+  }
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor_or(SiteArray<Real, 3> const& array,
+                                                      Vec3<Value> const& missing) const {
+    if constexpr (Axis > 0) {
+      if (row_.to_neighbor[Axis - 1][Direction] == 0) return missing;
+    }
+    return neighbor<Axis, Direction>(array, missing);
+  }
+  /// `found`, a neighbour along x, but `missing` on the lane at an open end.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
+                                                          Vec3<Value> const& missing) const {
+    if constexpr (AtEdge) {
+      if (!row_.periodic_x && holds_end<Direction>()) {
+        auto const end = is_end<Direction>();
+        return {select<Value>(end, missing.x, found.x), select<Value>(end, missing.y, found.y),
+                select<Value>(end, missing.z, found.z)};
+      }
+    }
+    return found;
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t count() const {
+    if constexpr (!AtEdge) return lanes;
+    return Kokkos::min<std::int32_t>(lanes, (row_.nx - x_ + 1) / 2);
+  }
+  /// Do whole packs stay within the row's memory?
+  KOKKOS_FORCEINLINE_FUNCTION bool has_room() const { return x_ + 2 * lanes <= row_.pitch; }
+
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
+    std::int32_t const ahead = row_.nx - 1 - x_;
+    return Direction == 0 ? x_ == 0 : ahead % 2 == 0 && ahead < 2 * lanes;
+  }
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
+    std::int32_t const lane = Direction == 0 ? 0 : (row_.nx - 1 - x_) / 2;
+    return lane_numbers<Value>() == Value(static_cast<scalar_type>(lane));
+  }
+
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value at(Real const* row) const {
+    if constexpr (AtEdge) {
+      if (!has_room()) return load_every_other_of<Value>(row + x_, 0, row_.nx - 1 - x_);
+    }
+    return load_every_other<0, Value>(row + x_);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> vector_at(Real const* row, std::ptrdiff_t stride) const {
+    return {at(row), at(row + stride), at(row + 2 * stride)};
+  }
+
+  template <int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value beside(Real const* row, Value const& center) const {
+    if constexpr (AtEdge) {
+      bool const whole = has_room() && (Direction == 1 || x_ > 0);
+      Value found = whole
+                        ? whole_beside<Direction>(row)
+                        : load_every_other_of<Value>(row + x_ + (Direction == 0 ? -1 : 1),
+                                                     Direction == 0 && x_ == 0 ? 1 : 0,
+                                                     row_.nx - 1 - x_ + (Direction == 0 ? 1 : -1));
+      if (holds_end<Direction>()) {
+        Value const past =
+            row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;
+        found = select<Value>(is_end<Direction>(), past, found);
+      }
+      return found;
+    } else {
+      return whole_beside<Direction>(row);
+    }
+  }
+  template <int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value whole_beside(Real const* row) const {
+    if constexpr (Direction == 0)
+      return load_every_other<0, Value>(row + x_ - 1);
+    else
+      return load_every_other<1, Value>(row + x_);
+  }
+
+  Row const& row_;
+  std::int32_t x_;
+};
+
+}  // namespace cayspin::detail
