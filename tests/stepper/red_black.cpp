@@ -134,7 +134,7 @@ void expect_exact_macrospin() {
   using Field = SpinField<Real, Space::memory_space>;
   constexpr double eps = epsilon<Real>, most = sizeof(Real) == sizeof(double) ? 1e300 : 1e37;
   Vector const h{0.3, -0.4, 1.2};
-  Vector const nearly_opposite = Vector{-0.3 + 1e-3, 0.4, -1.2};
+  Vector const nearly_opposite{-0.3 + 1e-6, 0.4, -1.2};
   for (Vector const& from : {Vector{0.8, 0.6, 0}, Vector{-0.1, 0.2, -0.9}, nearly_opposite})
     for (double const damping : {0.0, 0.1, 3.0, 1e12})
       for (bool const precession : {true, false})
