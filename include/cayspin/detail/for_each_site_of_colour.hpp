@@ -5,7 +5,9 @@
 #include <cayspin/detail/for_each_site.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <type_traits>
 
 // Loops over the sites of one colour of a checkerboard, those with x + y + z of a parity. The
 // functor changes these in place and reads their neighbours, which are all of the other colour.
@@ -18,31 +20,12 @@ namespace cayspin::detail {
 /// Rows whose y + z has a parity, or all.
 enum class RowsOf : std::int32_t { even = 0, odd = 1, both = 2 };
 
-/// Calls functor(site) for packs begin .. end - 1 of a row, each of which takes 2 lanes of it.
-template <class Value, class Functor>
-KOKKOS_FORCEINLINE_FUNCTION void for_each_pack_of_colour(Row const& row, std::int32_t first_x,
-                                                         std::int32_t begin, std::int32_t end,
-                                                         Functor& functor) {
-  constexpr std::int32_t sites = 2 * lanes_of<Value>;
-  std::int32_t const last = (row.nx + sites - 1) / sites - 1;
-  if constexpr (lanes_of<Value> == 1) {
-    for (std::int32_t pack = begin; pack < end; ++pack)
-      if (first_x + pack * sites < row.nx) functor(Site<Value, true>(row, first_x + pack * sites));
-  } else {
-    // The ends of the row share one instance of the functor.
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-#pragma GCC unroll 1
-#endif
-    for (std::int32_t pack = 0; pack <= last; pack += Kokkos::max<std::int32_t>(last, 1))
-      if (begin <= pack && pack < end && first_x + pack * sites < row.nx)
-        functor(ColourSite<Value, true>(row, first_x + pack * sites));
-    std::int32_t const inner_end = Kokkos::min(end, last);
-    for (std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1); pack < inner_end; ++pack)
-      functor(ColourSite<Value, false>(row, first_x + pack * sites));
-  }
-}
+template <class Value, bool AtEdge>
+using PackOfColour =
+    std::conditional_t<lanes_of<Value> == 1, Site<Value, true>, ColourSite<Value, AtEdge>>;
 
-/// The host loop.
+/// The host loop. A functor that takes pairs is called with two packs, of two rows perhaps, and
+/// with the same one twice where one is left over.
 template <class Real, class Functor>
 struct ColourRowLoop {
   Functor functor;
@@ -51,14 +34,61 @@ struct ColourRowLoop {
   RowsOf rows = RowsOf::both;
 
   CAYSPIN_DETAIL_NOINLINE void operator()(std::int64_t task) const {
+    constexpr std::int32_t at_once = takes_pairs<Functor> ? 2 : 1;
     Functor local = functor;
     auto const block = blocks(task);
-    for (std::int32_t y = block.y_begin; y < block.y_end; ++y)
-      if (rows == RowsOf::both || ((y + block.z) & 1) == static_cast<std::int32_t>(rows))
-        for_each_pack_of_colour<Pack<Real>>(Row(layout, y, block.z),
-                                            (y + block.z + functor.colour) & 1, block.pack_begin,
-                                            block.pack_end, local);
+    std::int32_t const last = (layout.nx + pack_sites - 1) / pack_sites - 1;
+    std::int32_t const inner_end = Kokkos::min(block.pack_end, last);
+    Waiting waiting;
+    for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
+      if (rows != RowsOf::both && ((y + block.z) & 1) != static_cast<std::int32_t>(rows)) continue;
+      Row const row(layout, y, block.z);
+      std::int32_t const x = (y + block.z + functor.colour) & 1;
+      std::int32_t pack = Kokkos::max<std::int32_t>(block.pack_begin, 1);
+      for (; pack + at_once <= inner_end; pack += at_once) {
+        Inner const site(row, x + pack * pack_sites);
+        if constexpr (at_once == 2)
+          local(site, Inner(row, x + (pack + 1) * pack_sites));
+        else
+          local(site);
+      }
+      // The ends of the row, and an inner pack that is left over.
+      bool const ends_block = at_once == 2 && y + (rows == RowsOf::both ? 1 : 2) >= block.y_end;
+      waiting.add(row, block.pack_begin == 0 ? x : layout.nx);
+      waiting.add(row, pack < inner_end ? x + pack * pack_sites : layout.nx);
+      waiting.add(row, last > 0 && last < block.pack_end ? x + last * pack_sites : layout.nx);
+      while (waiting.count >= at_once || (ends_block && waiting.count > 0)) waiting.serve(local);
+    }
   }
+
+ private:
+  using Value = Pack<Real>;
+  using Inner = PackOfColour<Value, false>;
+  using Edge = PackOfColour<Value, true>;
+  static constexpr std::int32_t pack_sites = 2 * lanes_of<Value>;
+
+  /// Packs that share one instance of the functor: kernels are large, and compile slowly.
+  struct Waiting {
+    struct Place {
+      Row row;
+      std::int32_t x;
+    };
+    std::optional<Place> places[4];
+    int count = 0;
+
+    void add(Row const& row, std::int32_t x) {
+      if (x < row.nx) places[count++] = Place{row, x};
+    }
+    CAYSPIN_DETAIL_NOINLINE void serve(Functor const& functor) {
+      Place const first = *places[--count];
+      if constexpr (takes_pairs<Functor>) {
+        Place const second = count > 0 ? *places[--count] : first;
+        functor(Edge(first.row, first.x), Edge(second.row, second.x));
+      } else {
+        functor(Edge(first.row, first.x));
+      }
+    }
+  };
 };
 
 template <class Real, class Functor>

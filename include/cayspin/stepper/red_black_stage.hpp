@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace cayspin::detail {
 
@@ -91,89 +92,119 @@ struct RedBlackStage {
     joined = sweep.of_one_step && !changes;
   }
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    using StencilHere = Stencil<Site, Real>;
-    using Field = std::remove_cvref_t<decltype(generators[0].field())>;
-    StencilHere const stencil(site, spins);
-    Vec3<Value> q = stencil.center();
-    if constexpr (comes_in_parts<Field, StencilHere>) {
-      Vec3<Value> of_neighbors = neighbor_field(generators[0].field(), stencil);
-      bool const varies = local_field_varies(generators[0].field());
-      bool const at_once = !varies && flows == 2 && joined;
+  static constexpr bool takes_pairs = true;
+
+  /// The motions of one pack of spins, or by turns those of two.
+  template <class Site, class... Second>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
+    Moving<Site> of_site(*this, site);
+    auto const move = [&](auto&... of) {
+      bool const at_once = flows == 2 && joined && !(of.varies(*this) || ...);
       for (std::int32_t which = 0; which < (at_once ? 1 : flows); ++which) {
-        Field const& field = generators[which].field();
-        if (which > 0 && changes) of_neighbors = neighbor_field(field, stencil);
-        auto const own = [&](Vec3<Value> const& m) {
-          return local_field(field, SpinAlone<Site>(site, m));
-        };
-        auto const flow = flow_of<Value>(which, site, at_once ? dt[0] + dt[1] : dt[which]);
-        q = varies ? moved(flow, site, q, of_neighbors, own)
-                   : flow(of_neighbors + own(q), q, outside(site));
+        Real const step = at_once ? dt[0] + dt[1] : dt[which];
+        (of.begin(*this, which, step), ...);
+        bool const varies = (of.varies(*this) || ...);
+        (of.turn(), ...);
+        for (int i = 0; varies && !(of.settles() & ...) && i < most_iterations; ++i)
+          (of.turn(), ...);
+        (of.arrive(), ...);
       }
+      (of.store(*this), ...);
+    };
+    if constexpr (sizeof...(Second) == 0) {
+      move(of_site);
     } else {
-      NeighborsOfSite<Site, Real> const neighbors(site, spins);
-      for (std::int32_t which = 0; which < flows; ++which) {
-        Field const& field = generators[which].field();
-        Vec3<Value> const of_neighbors =
-            field.field(VariedStencil(neighbors, zero_vector<Value>()));
-        auto const flow = flow_of<Value>(which, site, dt[which]);
-        q = moved(flow, site, q, of_neighbors, [&](Vec3<Value> const& m) {
-          return across(field.field(VariedStencil(neighbors, m)) - of_neighbors, m);
-        });
-      }
+      Moving<Second...> of_second(*this, second...);
+      move(of_site, of_second);
     }
-    site.store(q, OutputArray<Real, 3>{spins, false});
   }
 
  private:
   static constexpr int most_iterations = 60;
+  using Field = std::remove_cvref_t<decltype(std::declval<Generator const&>().field())>;
 
-  template <class Value, class Site>
-  KOKKOS_FORCEINLINE_FUNCTION ExactFlow<Value> flow_of(std::int32_t which, Site const& site,
-                                                       Real step) const {
-    Generator const& generator = generators[which];
-    return {generator.template damping<Value>(site), step, generator.has_precession(),
-            generator.is_damped()};
-  }
-
-  /// The lanes that are no sites.
+  /// A pack of spins on its way.
   template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION static auto outside(Site const& site) {
-    if constexpr (Site::lanes == 1)
-      return false;
-    else
-      return !site.inside();
-  }
-
-  /// Where q ends; own(m) is D at a spin m.
-  template <class Site, class Value, class Own>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> moved(ExactFlow<Value> const& flow,
-                                                       Site const& site, Vec3<Value> const& q,
-                                                       Vec3<Value> const& of_neighbors,
-                                                       Own const& own) {
+  class Moving {
+    using Value = typename Site::value_type;
     using Mask = typename ValueTraits<Value>::mask;
-    constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
-    auto const others = outside(site);
-    Vec3<Value> d = own(q);
+    using Vector = Vec3<Value>;
+    static constexpr bool in_parts = comes_in_parts<Field, Stencil<Site, Real>>;
+    struct Nothing {
+      KOKKOS_FORCEINLINE_FUNCTION Nothing(Site const&, SiteArray<Real, 3> const&) {}
+    };
 
-    // Settled: what is left changes the spin less than the rounding of the field does.
-    Value const rate = flow.damping + Value(Real(flow.precession ? 1 : 0));
-    Value const settled =
-        multiply_add(Value(8 * epsilon), largest_component(d) + largest_component(of_neighbors),
-                     Value(epsilon / 4) / (Value(flow.dt < 0 ? -flow.dt : flow.dt) * rate));
-    d = own(flow.middle(of_neighbors + d, q));
-    for (int i = 0;; ++i) {
-      Vec3<Value> const end = flow(of_neighbors + d, q, others);
-      Vec3<Value> const next = own(Value(Real(0.5)) * (q + end));
-      // Each lane stops by itself, whatever the spins beside it need.
-      auto const rests = largest_component(next - d) < settled;
-      if (i == most_iterations || holds_everywhere(Mask(rests || others))) return end;
-      d = {select<Value>(rests, d.x, next.x), select<Value>(rests, d.y, next.y),
-           select<Value>(rests, d.z, next.z)};
+   public:
+    KOKKOS_FORCEINLINE_FUNCTION Moving(RedBlackStage const& stage, Site const& site)
+        : site_(site), q_(site.load_center(stage.spins)), neighbors_(site, stage.spins) {}
+
+    KOKKOS_FORCEINLINE_FUNCTION static bool varies(RedBlackStage const& stage) {
+      if constexpr (in_parts)
+        return local_field_varies(stage.generators[0].field());
+      else
+        return true;
     }
-  }
+
+    KOKKOS_FORCEINLINE_FUNCTION void begin(RedBlackStage const& stage, std::int32_t which,
+                                           Real step) {
+      Generator const& generator = stage.generators[which];
+      field_ = &generator.field();
+      flow_ = {generator.template damping<Value>(site_), step, generator.has_precession(),
+               generator.is_damped()};
+      if constexpr (!in_parts)
+        of_neighbors_ = field_->field(VariedStencil(neighbors_, zero_vector<Value>()));
+      else if (which == 0 || stage.changes)
+        of_neighbors_ = neighbor_field(*field_, Stencil<Site, Real>(site_, stage.spins));
+      d_ = own(q_);
+      if (!varies(stage)) return;
+
+      // Settled: what is left changes the spin less than the rounding of the field does.
+      constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
+      Value const rate = flow_.damping + Value(Real(flow_.precession ? 1 : 0));
+      enough_ =
+          multiply_add(Value(8 * epsilon), largest_component(d_) + largest_component(of_neighbors_),
+                       Value(epsilon / 4) / (Value(step < 0 ? -step : step) * rate));
+      d_ = own(flow_.middle(of_neighbors_ + d_, q_));
+    }
+
+    KOKKOS_FORCEINLINE_FUNCTION void turn() { end_ = flow_(of_neighbors_ + d_, q_, outside()); }
+    /// Is the field at the mean what it was taken for? Each lane stops by itself, whatever the
+    /// spins beside it need.
+    KOKKOS_FORCEINLINE_FUNCTION bool settles() {
+      Vector const next = own(Value(Real(0.5)) * (q_ + end_));
+      Mask const rests = largest_component(next - d_) < enough_;
+      d_ = {select<Value>(rests, d_.x, next.x), select<Value>(rests, d_.y, next.y),
+            select<Value>(rests, d_.z, next.z)};
+      return holds_everywhere(Mask(rests || outside()));
+    }
+    KOKKOS_FORCEINLINE_FUNCTION void arrive() { q_ = end_; }
+    KOKKOS_FORCEINLINE_FUNCTION void store(RedBlackStage const& stage) const {
+      site_.store(q_, OutputArray<Real, 3>{stage.spins, false});
+    }
+
+   private:
+    /// What depends on the spin itself.
+    KOKKOS_FORCEINLINE_FUNCTION Vector own(Vector const& m) const {
+      if constexpr (in_parts)
+        return local_field(*field_, SpinAlone<Site>(site_, m));
+      else
+        return across(field_->field(VariedStencil(neighbors_, m)) - of_neighbors_, m);
+    }
+    /// The lanes that are no sites.
+    KOKKOS_FORCEINLINE_FUNCTION Mask outside() const {
+      if constexpr (Site::lanes == 1)
+        return false;
+      else
+        return !site_.inside();
+    }
+
+    Site const& site_;
+    Vector q_, of_neighbors_, d_, end_;
+    Value enough_;
+    ExactFlow<Value> flow_;
+    Field const* field_ = nullptr;
+    std::conditional_t<in_parts, Nothing, NeighborsOfSite<Site, Real>> neighbors_;
+  };
 
   /// d without its part along m.
   template <class Value>
