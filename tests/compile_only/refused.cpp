@@ -111,5 +111,7 @@ inline void refused() {
       .step(exec, LandauLifshitz(EffectiveField(Term()), 0.1), spins, 0, 0.1);
 #elif CAYSPIN_TEST_MISTAKE == 20
   FieldExtrapolation3(spins).step(exec, WholeGenerator(), spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 21
+  RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
 #endif
 }
