@@ -254,16 +254,18 @@ TEST(RedBlackBatches, AreStepsToTheBitAndShareSweeps) {
   Space const exec;
   for (Lattice const& lattice :
        {Lattice::chain(1), Lattice::square(13, 5), Lattice::square(70, 40)}) {
-    auto const generator = slab_of(0.1, lattice).natural();
-    auto const start = random_spins(lattice, 8);
-    Spins one = copy_of(start), many = copy_of(start);
-    RedBlack4 by_hand(one), together(many);
-    advance(by_hand, generator, one, 0.1, 7);
-    auto const summary = integrate(exec, together, generator, many, {0, 0.1, 7});
-    EXPECT_EQ(copy_to_host(one), copy_to_host(many));
-    EXPECT_EQ(summary.evaluations, (7 * 10 + 1 + 1) / 2);
-    EXPECT_EQ(by_hand.evaluations_done(), (7 * 11 + 1) / 2);
-    EXPECT_EQ(together.work_bytes(), 0u);
+    for (Slab const& slab : {slab_of(0.1, lattice), without_own_terms(0.1, lattice)}) {
+      auto const generator = slab.natural();
+      auto const start = random_spins(lattice, 8);
+      Spins one = copy_of(start), many = copy_of(start);
+      RedBlack4 by_hand(one), together(many);
+      advance(by_hand, generator, one, 0.1, 7);
+      auto const summary = integrate(exec, together, generator, many, {0, 0.1, 7});
+      EXPECT_EQ(copy_to_host(one), copy_to_host(many));
+      EXPECT_EQ(summary.evaluations, (7 * 10 + 1 + 1) / 2);
+      EXPECT_EQ(by_hand.evaluations_done(), (7 * 11 + 1) / 2);
+      EXPECT_EQ(together.work_bytes(), 0u);
+    }
   }
 }
 
