@@ -23,6 +23,7 @@
 #include <cayspin/isotropy/finite_difference.hpp>
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/lattice/lattice.hpp>
+#include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>
 #include <cayspin/observer/scalars.hpp>

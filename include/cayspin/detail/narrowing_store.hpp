@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/detail/site.hpp>
+
+// Reductions of float fields work on packs of double; what they keep is stored as float again.
+namespace cayspin::detail {
+
+template <class Value, class Real>
+KOKKOS_FORCEINLINE_FUNCTION void store_narrowed(Value const& value, Real* to) {
+  if constexpr (std::is_same_v<scalar_t<Value>, Real>) {
+    store(value, to);
+  } else if constexpr (lanes_of<Value> == 1) {
+    *to = static_cast<Real>(value);
+  } else {
+    scalar_t<Value> lane[lanes_of<Value>];
+    store(value, lane);
+    for (int i = 0; i < lanes_of<Value>; ++i) to[i] = static_cast<Real>(lane[i]);
+  }
+}
+
+/// Three numbers per site, at the site's place in an array of the spins' layout.
+template <class Value, class Site, class Real>
+KOKKOS_FORCEINLINE_FUNCTION void store_narrowed(Vec3<Value> const& value, Site const& site,
+                                                SiteArray<Real, 3> const& array) {
+  Real* const to = array.data + site.offset();
+  store_narrowed(value.x, to);
+  store_narrowed(value.y, to + array.stride);
+  store_narrowed(value.z, to + 2 * array.stride);
+}
+
+}  // namespace cayspin::detail

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/concepts.hpp>
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/narrowing_store.hpp>
+#include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/integrate.hpp>
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace cayspin {
+
+namespace detail {
+
+/// E and the sum of |A_o|^2; keeps m x A, which is A_o turned by a right angle, for the rotation.
+template <class Generator, class Real>
+struct EnergyAndSlope {
+  Generator generator;
+  SiteArray<Real, 3> spins, axes;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, spins);
+    Vec3<Value> const axis = cross(stencil.center(), evaluate(generator, stencil));
+    values[0] = generator.energy_density(stencil);
+    values[1] = dot(axis, axis);
+    store_narrowed(axis, site, axes);
+  }
+};
+
+/// m <- cay(kappa axis) m
+template <class Real>
+struct TurnAboutAxes {
+  SiteArray<Real, 3> spins, axes;
+  OutputArray<Real, 3> output;
+  Real kappa;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> const f = Value(kappa) * site.load(axes);
+    site.store(Cayley::rotate(f, site.load(spins)), output);
+  }
+};
+
+}  // namespace detail
+
+struct EnergyControlOptions {
+  std::int64_t period = 1;  // steps from one correction to the next
+  /// A correction turns no spin by more than this fraction of the angle that a step turns it by.
+  double largest_fraction = 0.1;
+  std::optional<double> energy = {};  // what is held; otherwise the energy at the first call
+};
+
+/// Lagged energy control, an observer for runs without damping, with any one-step or multistep
+/// method and at any of its steps' ends: the spins turn towards or away from the field, by one
+/// number for all of them, m <- cay(kappa m x A) m with kappa = (E - E_0) / sum |A_o|^2, a Newton
+/// step to the energy that the run began with. What a step does to the energy is undone before the
+/// next one, and so does not add up. A is that of a conservative generator which has an energy and
+/// no t, and kappa of the order of the method, so that its order stays.
+/// Costs one evaluation of the generator at each correction, two passes and a field of memory:
+///   EnergyControl control(generator, spins);
+///   integrate(exec, stepper, generator, spins, times, control);
+/// Other observers see the spins as they are before or after it, in the order of the arguments.
+/// Does nothing for steppers that keep the state to themselves (AdaptiveRungeKutta).
+template <class Spins, class Generator>
+class EnergyControl {
+  static_assert(
+      requires(Generator const& generator) { generator.is_conservative(); },
+      "EnergyControl needs a generator that says whether it conserves its energy: a member "
+      "is_conservative().");
+  static_assert(!detail::depends_on_time<Generator>,
+                "EnergyControl refuses fields that depend on t.");
+
+ public:
+  using Real = typename Spins::value_type;
+
+  /// Throws std::invalid_argument when the generator does not conserve its energy, and for options
+  /// that cannot be.
+  EnergyControl(Generator generator, Spins const& like, EnergyControlOptions const& options = {})
+      : generator_(std::move(generator)),
+        options_(options),
+        energy_(options.energy),
+        axes_("EnergyControl::axes", like.lattice()) {
+    if (!generator_.is_conservative())
+      throw std::invalid_argument(
+          "cayspin::EnergyControl: the generator does not conserve its energy (damping 0 does)");
+    if (options.period < 1)
+      throw std::invalid_argument("cayspin::EnergyControl: the period must be at least 1");
+    if (!(options.largest_fraction > 0))
+      throw std::invalid_argument("cayspin::EnergyControl: the largest fraction must be above 0");
+    if (options.energy && !std::isfinite(*options.energy))
+      throw std::invalid_argument("cayspin::EnergyControl: the energy to hold must be finite");
+  }
+
+  std::size_t work_bytes() const { return axes_.bytes(); }
+  /// The energy that is held; none before the first call, where the options name none.
+  std::optional<double> energy() const { return energy_; }
+  /// What the energy was above it at the last call, before the correction.
+  double excess() const { return excess_; }
+  /// Evaluations of the generator so far.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+
+  /// Forgets the energy: the next call takes the spins' own, or that of the options.
+  void reset() { energy_ = options_.energy; }
+
+  bool due(Step const& step) const { return !energy_ || step.number % options_.period == 0; }
+
+  /// Changes `spins` in place. Throws std::invalid_argument when they are not of the lattice given
+  /// at construction. Where the energy is not finite, the spins stay as they are.
+  template <class Exec>
+  void operator()(Exec const& exec, Step const& step, Spins const& spins) {
+    detail::check_access<Exec, typename Spins::memory_space>();
+    if (!(spins.lattice() == axes_.lattice()))
+      throw std::invalid_argument("cayspin::EnergyControl: the spins are not of its lattice");
+    auto const prepared = detail::prepare_term(generator_, exec, spins, step.time);
+    using Look = detail::EnergyAndSlope<std::remove_const_t<decltype(prepared)>, Real>;
+    auto const [energy, slope] =
+        detail::reduce_sites<detail::Sum, 2>(exec, "cayspin::EnergyControl::slope", spins.layout(),
+                                             Look{prepared, spins.array(), axes_.array()});
+    ++evaluations_done_;
+    if (!energy_) energy_ = energy;
+    excess_ = energy - *energy_;
+    double const most = options_.largest_fraction * std::abs(step.dt);
+    double const kappa = std::clamp(excess_ / slope, -most, most);
+    if (!std::isfinite(kappa) || kappa == 0) return;
+    detail::for_each_site<Real>(
+        exec, "cayspin::EnergyControl::turn", spins.layout(),
+        detail::TurnAboutAxes<Real>{spins.array(), axes_.array(), spins.output(false),
+                                    static_cast<Real>(kappa)});
+  }
+
+ private:
+  Generator generator_;
+  EnergyControlOptions options_;
+  std::optional<double> energy_;
+  double excess_ = 0;
+  std::int64_t evaluations_done_ = 0;
+  SiteField<Real, 3, typename Spins::memory_space> axes_;
+};
+
+}  // namespace cayspin

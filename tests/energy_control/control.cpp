@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Lagged energy control: what it does to one state, how much of the drift it takes away, orders and
+// lengths it leaves alone, bits, and what it refuses.
+#include "../backends/equal_bits.hpp"
+#include "../support/backends.hpp"
+#include "../support/evaluate.hpp"
+#include "../support/figures.hpp"
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+using Generator = decltype(Slab{}.natural());
+
+Slab const slab{.lattice = Lattice::chain(8),
+                .exchange = 1,
+                .anisotropy = 0.8,
+                .axis = {1, 2, 3},
+                .demag = 0.7,
+                .applied = {0.5, -0.7, 0.9}};
+
+Generator heisenberg() {
+  Lattice cube = Lattice::cubic(6, 6, 6);
+  cube.boundary = {Boundary::periodic, Boundary::periodic, Boundary::periodic};
+  return Slab{.lattice = cube, .exchange = 1}.natural();
+}
+
+/// Largest |E - E_0| per spin and | |m| - 1 | at the ends of steps, before the control's turn.
+template <class Source>
+struct Drift {
+  Source source;
+  double begin = std::numeric_limits<double>::quiet_NaN(), energy = 0, norm = 0;
+
+  template <class Exec, class Field>
+  void operator()(Exec const& exec, Step const& step, Field const& spins) {
+    double const now = cayspin::energy(exec, source, spins).value;
+    if (step.number == 0) begin = now;
+    energy = std::fmax(energy, std::abs(now - begin) / static_cast<double>(spins.sites()));
+    norm = std::fmax(norm, norm_defect(exec, spins));
+  }
+};
+
+/// Over a time of 200 with 80 evaluations per unit time; period 0: no control.
+template <class Stepper>
+Drift<Generator> drift(std::int64_t period, double time = 200) {
+  using Field = typename Stepper::spins_type;
+  Generator const generator = heisenberg();
+  Lattice lattice = Lattice::cubic(6, 6, 6);
+  lattice.boundary = {Boundary::periodic, Boundary::periodic, Boundary::periodic};
+  auto spins = random_spins<Field>(lattice, 3);
+  Stepper stepper(spins);
+  Drift<Generator> seen{generator};
+  double const dt = Stepper::evaluations / 80.0;
+  Times const times{0, dt, std::llround(time / dt)};
+  if (period == 0) {
+    integrate(Space{}, stepper, generator, spins, times, seen);
+  } else {
+    EnergyControl control(generator, spins, {.period = period});
+    integrate(Space{}, stepper, generator, spins, times, seen, control);
+    EXPECT_EQ(control.evaluations_done(), times.steps / period + 1);
+    EXPECT_EQ(*control.energy(), seen.begin);
+  }
+  return seen;
+}
+
+template <class Stepper>
+void expect_less_drift(std::string const& method) {
+  auto const without = drift<Stepper>(0), with = drift<Stepper>(1), tenth = drift<Stepper>(10);
+  std::printf("    %-22s dE/N %.2e, with control %.2e (1/%.0f), at every tenth step %.2e\n",
+              method.c_str(), without.energy, with.energy, without.energy / with.energy,
+              tenth.energy);
+  EXPECT_LT(with.energy, 0.01 * without.energy) << method;
+  EXPECT_LT(tenth.energy, 0.05 * without.energy) << method;
+  expect_below(method + ", norm", with.norm, 1e-13);
+}
+
+TEST(EnergyControl, TakesDriftAway) {
+  expect_less_drift<Rkmk4<Spins>>("rkmk4");
+  expect_less_drift<CommutatorFree4<Spins>>("commutator-free 4");
+  expect_less_drift<ProjectedRk4<Spins>>("projected rk4");
+}
+
+// The energy of spins in single precision is held as far as these numbers can say.
+TEST(EnergyControl, TakesDriftAwayInSinglePrecision) {
+  using Stepper = Rkmk4<SpinField<float, Space::memory_space>>;
+  auto const without = drift<Stepper>(0), with = drift<Stepper>(1);
+  std::printf("    float: dE/N %.2e, with control %.2e\n", without.energy, with.energy);
+  EXPECT_LT(with.energy, 0.01 * without.energy);
+  EXPECT_LT(with.norm, 500 * epsilon<float>);
+}
+
+template <class Stepper>
+void expect_order_kept(std::string const& method, int order) {
+  auto const generator = slab.natural();
+  Spins const start = random_spins(slab.lattice, 3);
+  Spins const exact = run<Stepper>(generator, start, 1. / 4000, 4000);
+  std::vector<double> dts, errors;
+  for (int const steps : {20, 40, 80, 160}) {
+    dts.push_back(1. / steps);
+    Spins spins = copy_of(start);
+    Stepper stepper(spins);
+    EnergyControl control(generator, spins);
+    integrate(Space{}, stepper, generator, spins, Times{0, dts.back(), steps}, control);
+    errors.push_back(largest_distance(spins, exact));
+  }
+  expect_order(method + ", with control", fitted_order(dts, errors), order, 0.2);
+}
+
+TEST(EnergyControl, KeepsOrders) {
+  expect_order_kept<Rkmk4<Spins>>("rkmk4", 4);
+  expect_order_kept<CommutatorFree4<Spins>>("commutator-free 4", 4);
+  expect_order_kept<ProjectedRk4<Spins>>("projected rk4", 4);
+}
+
+template <class Real>
+struct OneCall : ::testing::Test {
+  using Field = SpinField<Real, Space::memory_space>;
+};
+TYPED_TEST_SUITE(OneCall, Precisions, PrecisionName);
+
+/// The control's turn towards an energy `higher` than that of the spins.
+template <class Source, class Field>
+Field turned(Source const& source, Field const& start, double higher,
+             EnergyControlOptions options = {}, double dt = 10) {
+  Field spins = copy_of(start);
+  options.energy = energy(Space{}, source, start).value + higher;
+  EnergyControl control(source, spins, options);
+  control(Space{}, Step{0, 0, dt}, spins);
+  EXPECT_NEAR(control.excess(), -higher, 1e-12);
+  return spins;
+}
+
+// m + kappa A_o + O(kappa^2): against the rotation written out for each spin.
+template <class Source, class Field>
+void expect_turn(Source const& source, Field const& start) {
+  using Real = typename Field::value_type;
+  double const higher = 0.01;
+  auto const m = numbers_of(start), a = evaluated(Space{}, source, start);
+  std::vector<Vector> axes;
+  double slope = 0;
+  for (std::int64_t site = 0; site < start.sites(); ++site) {
+    axes.push_back(cross(at(m, site), at(a, site)));
+    slope += dot(axes.back(), axes.back());
+  }
+  auto const found = numbers_of(turned(source, start, higher));
+  double largest = 0, moved = 0;
+  for (std::int64_t site = 0; site < start.sites(); ++site) {
+    Vector const from = at(m, site), f = (-higher / slope) * axes[site], c = cross(f, from);
+    Vector const to = from + (4 / (4 + dot(f, f))) * (c + 0.5 * cross(f, c));
+    largest = std::max(largest, length(at(found, site) - to));
+    moved = std::max(moved, length(to - from));
+  }
+  EXPECT_LT(largest, 4 * epsilon<Real>);
+  EXPECT_GT(moved, 1e-4);
+}
+
+TYPED_TEST(OneCall, TurnsSpinsByOneNumber) {
+  using Field = typename TestFixture::Field;
+  expect_turn(slab.natural(), random_spins<Field>(slab.lattice, 3));
+  expect_turn(RigidBody({1.1, 1.9, 2.0, 0.1, -0.6, 0.4}),
+              random_spins<Field>(Lattice::chain(37), 3));
+}
+
+// Newton's method: what is left is of the second order in what is asked for.
+TEST(EnergyControl, ReachesTheEnergy) {
+  Spins const start = random_spins(slab.lattice, 3);
+  double const before = energy(Space{}, slab.field(), start).value;
+  std::vector<double> asked{0.04, 0.02, 0.01, 0.005}, left;
+  for (double const higher : asked)
+    left.push_back(
+        std::abs(energy(Space{}, slab.field(), turned(slab.natural(), start, higher)).value -
+                 before - higher));
+  EXPECT_LT(left.back(), 0.01 * asked.back());
+  expect_order("left of the energy", fitted_order(asked, left), 2, 0.1);
+}
+
+// However far the energy is, spins move by a fraction of what a step moves them; at rest not at
+// all.
+TYPED_TEST(OneCall, IsBounded) {
+  using Field = typename TestFixture::Field;
+  Field const start = random_spins<Field>(slab.lattice, 3);
+  double const dt = 0.02, rate = largest_rate(Space{}, slab.natural(), start);
+  Field const far = turned(slab.natural(), start, 1e6, {}, dt);
+  EXPECT_NEAR(largest_distance(far, start), 0.1 * dt * rate, 1e-3 * dt * rate);
+
+  auto const still = make_spins<Field>(Lattice::chain(20), [](auto, auto, auto) {
+    return Vector{0, 0, 1};
+  });
+  Slab const along{.lattice = still.lattice(), .exchange = 1, .applied = {0, 0, 1}};
+  EXPECT_EQ(copy_to_host(turned(along.natural(), still, 1.0)), copy_to_host(still));
+}
+
+TYPED_TEST(OneCall, SameBits) {
+  using Field = SpinField<typename TestFixture::Field::value_type, Kokkos::HostSpace>;
+  for (Lattice const& lattice : odd_lattices()) {
+    Slab undamped = every_term(lattice);
+    undamped.damping = 0;
+    auto const generator = undamped.natural();
+    auto const start = random_spins<Field>(lattice, 11);
+    auto const after = [&](auto const& exec) {
+      Field spins = copy_of(start);
+      EnergyControl control(generator, spins, {.energy = 0.5});
+      for (int n = 0; n < 3; ++n) control(exec, Step{n, 0, 0.3}, spins);
+      exec.fence();
+      return copy_to_host(spins);
+    };
+    auto const one = after(Kokkos::Serial());
+    EXPECT_NE(one, copy_to_host(start)) << name_of(lattice);
+    expect_equal_bits(one, after(Threaded()), name_of(lattice));
+  }
+}
+
+TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
+  Spins const start = random_spins(slab.lattice, 3), other = random_spins(slab.lattice, 4);
+  auto const energy_of = [](Spins const& spins) {
+    return energy(Space{}, slab.natural(), spins).value;
+  };
+  EnergyControl control(slab.natural(), start, {.period = 5});
+  EXPECT_TRUE(control.due(Step{3}));  // a run may begin anywhere
+  control(Space{}, Step{3, 0, 0.1}, start);
+  EXPECT_EQ(*control.energy(), energy_of(start));
+  for (int const number : {4, 6, 9}) EXPECT_FALSE(control.due(Step{number}));
+  EXPECT_TRUE(control.due(Step{5}));
+  control.reset();
+  EXPECT_FALSE(control.energy());
+  control(Space{}, Step{5, 0, 0.1}, other);
+  EXPECT_EQ(*control.energy(), energy_of(random_spins(slab.lattice, 4)));
+}
+
+TEST(EnergyControl, LeavesWhatIsNotFinite) {
+  auto numbers = copy_to_host(random_spins(slab.lattice, 3));
+  numbers[4] = std::numeric_limits<double>::quiet_NaN();
+  Spins const spins = spins_of<Spins>(slab.lattice, numbers);
+  EnergyControl control(slab.natural(), spins, {.energy = 1.0});
+  control(Space{}, Step{0, 0, 0.1}, spins);
+  auto const found = copy_to_host(spins);
+  EXPECT_EQ(std::memcmp(found.data(), numbers.data(), numbers.size() * sizeof(double)), 0);
+}
+
+TEST(EnergyControl, Refuses) {
+  Spins const spins = random_spins(slab.lattice, 3);
+  auto const refuses = [&](Generator const& generator, EnergyControlOptions const& options) {
+    EXPECT_THROW(EnergyControl(generator, spins, options), std::invalid_argument);
+  };
+  Slab damped = slab, overdamped = slab;
+  damped.damping = 1e-12;
+  overdamped.precession = false;
+  refuses(damped.natural(), {});
+  refuses(overdamped.natural(), {});
+  refuses(slab.natural(), {.period = 0});
+  refuses(slab.natural(), {.largest_fraction = 0});
+  refuses(slab.natural(), {.energy = std::numeric_limits<double>::infinity()});
+  EnergyControl control(slab.natural(), spins);
+  EXPECT_THROW(control(Space{}, Step{}, random_spins(Lattice::chain(9), 3)), std::invalid_argument);
+}
+
+}  // namespace
