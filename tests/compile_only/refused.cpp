@@ -113,5 +113,7 @@ inline void refused() {
   FieldExtrapolation3(spins).step(exec, WholeGenerator(), spins, 0, 0.1);
 #elif CAYSPIN_TEST_MISTAKE == 21
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 22
+  EnergyControl const control{LandauLifshitz{EffectiveField{rotating}, 0}, spins};
 #endif
 }
