@@ -41,6 +41,8 @@ struct Summary {
   std::int64_t evaluations = 0;  // of the generator
   double step_seconds = 0;       // stepping alone: fenced, without observers
   bool stopped = false;          // by an observer
+  std::int64_t own_steps = 0;    // of an adaptive method: taken
+  std::int64_t rejected = 0;     // and thrown away
 };
 
 /// Calls an observer every `period` steps, and at the first and last step.
@@ -139,6 +141,9 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   std::int64_t evaluations_before = 0;
   if constexpr (detail::counts_evaluations<Stepper>)
     evaluations_before = stepper.evaluations_done();
+  std::pair<std::int64_t, std::int64_t> own_before;
+  if constexpr (requires { stepper.rejected_steps(); })
+    own_before = {stepper.accepted_steps(), stepper.rejected_steps()};
   bool batches = false;
   if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>)
     batches = stepper.takes_batches(exec, generator, spins);
@@ -168,6 +173,10 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   }
   if constexpr (detail::counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;
+  if constexpr (requires { stepper.rejected_steps(); }) {
+    summary.own_steps = stepper.accepted_steps() - own_before.first;
+    summary.rejected = stepper.rejected_steps() - own_before.second;
+  }
   return summary;
 }
 

@@ -2,7 +2,9 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "failure.hpp"
+#include "kokkos_settings.hpp"
 #include "text.hpp"
+#include "trade/automatic.hpp"
 
 #include <fmt/format.h>
 
@@ -33,6 +35,7 @@ void print_json(Plan const& plan, Precision precision) {
 }
 
 std::string evaluations_text(MethodEntry const& method) {
+  if (io::is_adaptive(method.key.method)) return "as many evaluations as the tolerance takes";
   if (method.evaluations == 0) return "as many evaluations as the iteration takes";
   if (method.evaluations == 1) return "1 evaluation";
   return fmt::format("{} evaluations", method.evaluations);
@@ -88,8 +91,13 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
 }  // namespace
 
 int check(CheckOptions const& options) {
-  auto const scene = io::read_scene(options.scene, options.overrides);
+  auto scene = io::read_scene(options.scene, options.overrides);
   io::check_files(scene);
+  if (scene.integrator.method == io::Method::automatic) {
+    auto const space = chosen_space({});
+    KokkosSession const kokkos(space, {}, {});
+    scene = trade::with_method(scene, space, options.precision);
+  }
   auto const plan = make_plan(scene, options.precision);
   if (is_start_checked(plan)) check_start(scene);
   if (options.json)

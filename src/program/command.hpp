@@ -27,6 +27,20 @@ struct CheckOptions : SceneOptions {
   bool json = false;
 };
 
+struct TradeOptions : SceneOptions {
+  std::optional<std::string> space;
+  std::optional<int> threads;
+  double seconds = 10;  // that a run may take
+  bool json = false, advice = false;
+};
+
+struct AdviseOptions : SceneOptions {
+  std::optional<std::string> space;
+  std::optional<int> threads;
+  double error = 0;
+  std::optional<double> budget;  // seconds
+};
+
 struct ReproduceOptions {
   std::vector<std::string> parts = {"all"};
   std::int64_t bodies = 1000;
@@ -41,6 +55,8 @@ std::vector<std::string> reproducible_parts();
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);
 int check(CheckOptions const& options);
+int trade_off(TradeOptions const& options);
+int advise_on(AdviseOptions const& options);
 int methods();
 int info(std::filesystem::path const& file);
 int reproduce(ReproduceOptions const& options);

@@ -82,6 +82,35 @@ int perform(int argc, char** argv) {
   add_scene_options(*check_command, check_options);
   check_command->add_flag("--json", check_options.json, "The numbers as JSON");
 
+  TradeOptions trade_options;
+  auto* trade_command = app.add_subcommand(
+      "trade", "Measure error against time and evaluations for every method on a scene");
+  add_scene_options(*trade_command, trade_options);
+  trade_command->add_option("--space", trade_options.space, "Kokkos execution space");
+  trade_command->add_option("--threads", trade_options.threads, "Threads of a host space")
+      ->check(CLI::Range(1, 65536));
+  trade_command->add_option("--seconds", trade_options.seconds, "Longest run (default: 10)")
+      ->check(CLI::PositiveNumber);
+  trade_command->add_flag("--json", trade_options.json, "The numbers as JSON");
+  trade_command->add_flag("--advice", trade_options.advice,
+                          "Also judge what `advise` says of the scene");
+
+  AdviseOptions advise_options;
+  auto* advise_command =
+      app.add_subcommand("advise", "Name the cheapest method and its dt or tolerance for an error");
+  add_scene_options(*advise_command, advise_options);
+  advise_command->add_option("--error", advise_options.error, "Largest distance of any spin")
+      ->required()
+      ->check(CLI::Range(1e-13, 1.0));
+  advise_command->add_option("--budget", advise_options.budget, "Time that the run may take")
+      ->check(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
+                                CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
+      ->type_name("TIME");
+  advise_command->add_option("--space", advise_options.space, "Kokkos execution space");
+  advise_command->add_option("--threads", advise_options.threads, "Threads of a host space")
+      ->check(CLI::Range(1, 65536));
+
   auto* methods_command = app.add_subcommand("methods", "List the integrators and their options");
 
   std::filesystem::path info_file;
@@ -102,6 +131,8 @@ int perform(int argc, char** argv) {
   }
   if (*run_command) return run(run_options);
   if (*check_command) return check(check_options);
+  if (*trade_command) return trade_off(trade_options);
+  if (*advise_command) return advise_on(advise_options);
   if (*methods_command) return methods();
   if (*reproduce_command) return reproduce(reproduce_options);
   return info(info_file);

@@ -5,6 +5,7 @@
 
 #include <cayspin/integrate.hpp>
 #include <cayspin/io/scene.hpp>
+#include <cayspin/stepper/step_control.hpp>
 
 #include <span>
 #include <vector>
@@ -15,6 +16,7 @@ namespace cayspin::program {
 struct MethodOptions {
   io::Rotation rotation = io::Rotation::cayley;
   double sigma = 0, cap = 0;  // of isotropies that have one
+  StepOptions steps;          // of adaptive methods
 };
 
 /// What tells integrators apart that are compiled for themselves. isotropy: zero also stands for a
@@ -33,7 +35,7 @@ struct MethodKey {
 struct MethodEntry {
   MethodKey key;
   int order;
-  int evaluations;   // of the generator, per step; 0 where it iterates
+  int evaluations;   // of the generator, per step; 0 where it iterates or chooses its steps
   int work_fields;   // spin fields of work memory, where stages go one by one
   bool exponential;  // rotations that it may take: Cayley alone, or both
 
@@ -57,6 +59,12 @@ MethodEntries rkmk4_entries();
 MethodEntries adams_bashforth_entries();
 MethodEntries implicit_entries();
 MethodEntries series4_entries();
+MethodEntries commutator_free_entries();
+MethodEntries field_extrapolation_entries();
+MethodEntries red_black_entries();
+MethodEntries tsitouras_entries();
+MethodEntries dormand_prince_entries();
+MethodEntries bogacki_shampine_entries();
 MethodEntries tangent_entries();
 MethodEntries classical_entries();
 MethodEntries projected_entries();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "method_entry.hpp"
+#include "method_adaptive.hpp"
 
 #include <cayspin/stepper/classical.hpp>
 
@@ -7,10 +7,11 @@ namespace cayspin::program {
 
 MethodEntries projected_entries() {
   using enum io::Method;
-  using enum io::Isotropy;
+  using DormandPrince = Adaptive<tableau::DormandPrince5>;
   return {Entry<Baseline<ProjectedEuler>::Family>::make({projected_euler}),
           Entry<Baseline<ProjectedHeun>::Family>::make({projected_heun}),
-          Entry<Baseline<ProjectedRk4>::Family>::make({projected_rk4})};
+          Entry<Baseline<ProjectedRk4>::Family>::make({projected_rk4}),
+          Entry<DormandPrince::Plain<DormandPrince::InSpace>>::make({projected_dp5})};
 }
 
 }  // namespace cayspin::program

@@ -23,7 +23,13 @@ std::string generators(MethodKey const& key) {
 
 std::string rotations(MethodEntry const& entry) {
   if (io::is_baseline(entry.key.method)) return "-";
+  if (io::needs_exponential(entry.key.method)) return "exponential";
   return entry.exponential ? "cayley, exponential" : "cayley";
+}
+
+std::string evaluations(MethodEntry const& entry) {
+  if (io::is_adaptive(entry.key.method)) return "adaptive";
+  return entry.evaluations == 0 ? "iterates" : fmt::format("{}", entry.evaluations);
 }
 
 }  // namespace
@@ -37,12 +43,11 @@ int methods() {
         entry.key.isotropy == io::Isotropy::zero)
       continue;  // the same words as on spins
     fmt::print(line, io::to_string(entry.key.method), isotropies(entry.key), generators(entry.key),
-               rotations(entry), entry.order,
-               entry.evaluations == 0 ? "iterates" : fmt::format("{}", entry.evaluations),
-               entry.work_fields);
+               rotations(entry), entry.order, evaluations(entry), entry.work_fields);
   }
   fmt::print(
-      "\nevaluations: of the generator, per step. work fields: memory beside the state, in fields\n"
+      "\nevaluations: of the generator, per step; adaptive methods choose their steps by\n"
+      "integrator.tolerance. work fields: memory beside the state, in fields\n"
       "of three numbers per site; at most so many. A constant isotropy is typed\n"
       "{{ constant = SIGMA }}. The baselines, at the end, take neither generator, isotropy nor\n"
       "rotation.\n");

@@ -116,12 +116,23 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   auto const& integrator = scene.integrator;
   Plan plan{lattice,
             find_method(scene),
-            {integrator.rotation, integrator.sigma, integrator.isotropy_cap},
+            {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
             {0, integrator.dt, integrator.steps},
             std::numeric_limits<double>::infinity(),
             {},
             0,
             0};
+  if (integrator.tolerance) {
+    plan.options.steps = {*integrator.tolerance, 0, integrator.min_dt, integrator.max_dt,
+                          plan.times.at(integrator.steps)};
+    double const least = precision == Precision::double_precision
+                             ? StepOptions::least_tolerance<double>()
+                             : StepOptions::least_tolerance<float>();
+    if (*integrator.tolerance < least)
+      throw io::scene_error(scene, "integrator.tolerance",
+                            fmt::format("{:.3g} is beyond {} precision; accepted: at least {:.3g}",
+                                        *integrator.tolerance, to_string(precision), least));
+  }
   if (scene.system.kind == io::SystemKind::llg)
     plan.stable_dt =
         plan.method.stable_step(field_bound(scene, lattice, plan.times), scene.system.damping,

@@ -53,6 +53,8 @@ void Progress::close(Summary const& summary, std::int64_t frames, std::string co
   if (summary.steps > 0)
     rate = fmt::format(", stepping at {}spin updates/s",
                        rate_text(updates / std::max(summary.step_seconds, 1e-9)));
+  if (summary.own_steps > 0)
+    rate += fmt::format(", {} steps of its own, {} rejected", summary.own_steps, summary.rejected);
   fmt::print("{}: {} steps, {} frames in {}{}\n", file, summary.steps, frames,
              duration_text(total.count()), rate);
   std::fflush(stdout);

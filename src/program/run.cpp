@@ -2,10 +2,12 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "denormals.hpp"
+#include "describe.hpp"
 #include "failure.hpp"
 #include "kokkos_settings.hpp"
 #include "restart.hpp"
 #include "text.hpp"
+#include "trade/automatic.hpp"
 #include "watch.hpp"
 
 #include <cayspin/stepper/implicit.hpp>
@@ -88,6 +90,8 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
     throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
   } catch (NotConverged const& error) {
     throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
+  } catch (StepTooSmall const& error) {
+    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
   }
   auto const frames = watch.file() ? watch.file()->frames() : 0;
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
@@ -105,9 +109,21 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
 }  // namespace
 
 int run(RunOptions const& options) {
-  auto const scene = io::read_scene(options.scene, options.overrides);
-  output_file(scene, options);
-  io::check_files(scene);
+  auto const typed = io::read_scene(options.scene, options.overrides);
+  output_file(typed, options);
+  io::check_files(typed);
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  if (typed.integrator.method == io::Method::automatic && options.restart)
+    throw UsageError(
+        "--restart: method \"auto\" may choose other steps; accepted: the method and "
+        "dt or tolerance that `cayspin advise` names");
+  auto const scene = trade::with_method(typed, space, options.precision);
+  if (typed.integrator.method == io::Method::automatic && !options.quiet)
+    fmt::print("method auto: {}, {}\n", describe_method(scene.integrator),
+               scene.integrator.tolerance
+                   ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)
+                   : fmt::format("dt {:.9g}", scene.integrator.dt));
   auto const plan = make_plan(scene, options.precision);
   require_memory(scene, plan);
   std::optional<Restart> restart;
@@ -119,8 +135,6 @@ int run(RunOptions const& options) {
                     " for --output",
                     restart->path().string()));
   Restart const* const from = restart ? &*restart : nullptr;
-  auto const space = chosen_space(options.space);
-  KokkosSession const kokkos(space, options.threads, options.device);
   warn_above_stable_dt(scene, plan);
   catch_signals();
   int status = Status::wrong_usage;

@@ -82,6 +82,9 @@ struct SceneFieldNow {
     return has_applied ? h + zeeman.field(stencil) : h;
   }
 
+  /// Does the part of the spin itself depend on the spin?
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
+
   /// The linear part alone: without the applied field.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(

@@ -101,6 +101,7 @@ class SceneGenerator {
   bool needs_time_alone(Exec const&, Spins const&) const {
     return !is_llg_ || llg_.field().needs_time_alone();
   }
+  LandauLifshitz<SceneField<Spins>> const& landau_lifshitz() const { return llg_; }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
   bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }

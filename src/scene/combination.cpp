@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace cayspin::io::detail {
+namespace cayspin::io {
 namespace {
 
 [[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
@@ -43,6 +43,32 @@ void check_isotropy(Scene const& scene) {
     refuse(scene, key, "\"energy\" needs a field without t", "another isotropy");
 }
 
+// Colours of a checkerboard that closes on itself, and spins that see their neighbours alone.
+void check_red_black(Scene const& scene) {
+  constexpr std::string_view key = "integrator.method";
+  auto const method = to_string(scene.integrator.method);
+  if (scene.system.kind != SystemKind::llg)
+    refuse(scene, key, fmt::format("\"{}\" moves spins of a lattice", method),
+           "another method, or kind = \"llg\"");
+  if (scene.integrator.generator != Generator::standard)
+    refuse(scene, "integrator.generator",
+           fmt::format("method \"{}\" moves each spin exactly: it has no other generator", method),
+           "\"default\"");
+  for (int axis = 0; axis < 3; ++axis) {
+    auto const extent = scene.lattice.shape[axis];
+    if (scene.lattice.boundary[axis] == BoundaryKind::periodic && extent > 1 && extent % 2 != 0)
+      refuse(scene, "lattice.shape",
+             fmt::format("method \"{}\" colours the lattice like a checkerboard, which does not "
+                         "close on itself over the {} sites of the periodic {}",
+                         method, extent, "xyz"[axis]),
+             "an even extent, an open boundary, or another method");
+  }
+  if (auto const& slab = scene.field.slab_demag; slab && (slab->average_layer || slab->on_host))
+    refuse(scene, "field.slab_demag",
+           fmt::format("method \"{}\" needs a field of the neighbours alone", method),
+           "neither average nor where, or another method");
+}
+
 void check_tangent(Scene const& scene) {
   auto const& integrator = scene.integrator;
   if (!takes_tangent(integrator.method))
@@ -62,10 +88,14 @@ void check_tangent(Scene const& scene) {
 void check_combination(Scene const& scene) {
   auto const& integrator = scene.integrator;
   auto const method = to_string(integrator.method);
-  if (is_baseline(integrator.method)) return;
+  if (is_baseline(integrator.method) || integrator.method == Method::automatic) return;
+  if (needs_exponential(integrator.method) && integrator.rotation != Rotation::exponential)
+    refuse(scene, "integrator.rotation",
+           fmt::format("method \"{}\" is made of exact exponentials", method), "\"exponential\"");
   if (needs_cayley(integrator.method) && integrator.rotation != Rotation::cayley)
     refuse(scene, "integrator.rotation",
            fmt::format("method \"{}\" belongs to Cayley coordinates", method), "\"cayley\"");
+  if (is_red_black(integrator.method)) check_red_black(scene);
   if (integrator.generator == Generator::tangent) return check_tangent(scene);
   check_isotropy(scene);
   if (is_series(integrator.method) && depends_on_time(scene))
@@ -74,4 +104,4 @@ void check_combination(Scene const& scene) {
            "a method without derivatives, or numbers in field.applied");
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::io

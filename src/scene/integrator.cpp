@@ -67,7 +67,7 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   auto const isotropy = table.find("isotropy");
   auto const rotation = table.find("rotation");
   auto const cap = table.find("isotropy_cap");
-  if (is_baseline(integrator.method)) {
+  if (is_baseline(integrator.method) || integrator.method == Method::automatic) {
     for (auto const& item : {generator, isotropy, rotation, cap}) {
       if (item) item->fail(fmt::format("method \"{}\" does not take it", method), "no such key");
     }
@@ -75,6 +75,7 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   }
   if (generator) integrator.generator = word<Generator>(*generator);
   if (isotropy) read_isotropy(*isotropy, table.scene(), integrator);
+  if (needs_exponential(integrator.method)) integrator.rotation = Rotation::exponential;
   if (rotation) integrator.rotation = word<Rotation>(*rotation);
   if (cap) {
     if (integrator.isotropy != Isotropy::finite_difference &&
@@ -85,16 +86,63 @@ void read_coordinates(Table const& table, Integrator& integrator) {
   }
 }
 
+// What chooses the steps of an adaptive method; the others have none of it.
+void read_tolerance(Table const& table, Integrator& integrator) {
+  if (!is_adaptive(integrator.method)) {
+    for (auto const* key : {"tolerance", "min_dt", "max_dt"})
+      if (auto const item = table.find(key))
+        item->fail(fmt::format("method \"{}\" takes steps of dt", to_string(integrator.method)),
+                   "no such key");
+    return;
+  }
+  constexpr std::string_view accepted = "a number > 0, at most 1";
+  auto const tolerance = table.required("tolerance", accepted);
+  integrator.tolerance = number(tolerance, accepted);
+  if (!(*integrator.tolerance > 0) || *integrator.tolerance > 1)
+    tolerance.fail(fmt::format("{} is no tolerance", *integrator.tolerance), accepted);
+  if (auto const item = table.find("min_dt")) integrator.min_dt = non_negative_number(*item);
+  if (auto const item = table.find("max_dt")) {
+    integrator.max_dt = positive_number(*item);
+    if (integrator.max_dt < integrator.min_dt)
+      item->fail(fmt::format("{} is below min_dt", integrator.max_dt), "a number >= min_dt");
+  }
+}
+
+// What "auto" chooses a method for.
+void read_error(Table const& table, Integrator& integrator) {
+  auto const item = table.find("error");
+  if (integrator.method != Method::automatic) {
+    if (item) item->fail("belongs to method \"auto\"", "no such key");
+    return;
+  }
+  constexpr std::string_view accepted = "a number from 1e-13 to 1";
+  auto const error = table.required("error", accepted);
+  integrator.error = number(error, accepted);
+  if (!(*integrator.error >= 1e-13) || *integrator.error > 1)
+    error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
+}
+
+// An adaptive run that does not say how often to look does so at its end.
+double read_dt(Table const& table, Integrator const& integrator) {
+  auto const end = table.find("end");
+  bool const chooses = is_adaptive(integrator.method) || integrator.method == Method::automatic;
+  if (chooses && end && !table.contains("dt")) return positive_number(*end);
+  return positive_number(table.required("dt", "a number > 0"));
+}
+
 }  // namespace
 
 Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table = root.table("integrator", "a table [integrator]");
   table.accept_only({"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end",
-                     "steps", "energy_guard", "until_torque"});
+                     "steps", "tolerance", "min_dt", "max_dt", "error", "energy_guard",
+                     "until_torque"});
   Integrator integrator;
   integrator.method = word<Method>(table.required("method", all_words<Method>()));
   read_coordinates(table, integrator);
-  integrator.dt = positive_number(table.required("dt", "a number > 0"));
+  read_tolerance(table, integrator);
+  read_error(table, integrator);
+  integrator.dt = read_dt(table, integrator);
   integrator.steps = read_steps(table, integrator.dt);
   if (!std::isfinite(static_cast<double>(integrator.steps) * integrator.dt)) {
     table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");

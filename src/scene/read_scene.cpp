@@ -66,7 +66,7 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
   scene.initial = detail::read_initial(root);
   scene.integrator = detail::read_integrator(root, scene.system.kind);
   scene.output = detail::read_output(root, scene.integrator.steps);
-  detail::check_combination(scene);
+  check_combination(scene);
   return scene;
 }
 

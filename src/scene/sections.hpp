@@ -10,9 +10,6 @@ System read_system(Table const& root);
 Lattice read_lattice(Table const& root, SystemKind kind);
 Field read_field(Table const& root, SystemKind kind);
 Initial read_initial(Table const& root);
-/// Refuses what has no meaning together: method, generator, isotropy, rotation, system and field.
-void check_combination(Scene const& scene);
-
 Integrator read_integrator(Table const& root, SystemKind kind);
 Output read_output(Table const& root, std::int64_t steps);
 

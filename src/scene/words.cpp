@@ -26,12 +26,22 @@ constexpr auto methods = std::to_array<Word<Method>>({
     {"series4_paper", Method::series4_paper},
     {"ab2", Method::ab2},
     {"implicit_midpoint", Method::implicit_midpoint},
+    {"cf4", Method::cf4},
+    {"fx3", Method::fx3},
+    {"fx4", Method::fx4},
+    {"red_black2", Method::red_black2},
+    {"red_black4", Method::red_black4},
+    {"tsit5", Method::tsit5},
+    {"dp5", Method::dp5},
+    {"bs3", Method::bs3},
     {"classical_euler", Method::classical_euler},
     {"classical_heun", Method::classical_heun},
     {"classical_rk4", Method::classical_rk4},
     {"projected_euler", Method::projected_euler},
     {"projected_heun", Method::projected_heun},
     {"projected_rk4", Method::projected_rk4},
+    {"projected_dp5", Method::projected_dp5},
+    {"auto", Method::automatic},
 });
 
 constexpr auto generators = std::to_array<Word<Generator>>({
@@ -88,7 +98,13 @@ bool is_classical(Method method) {
 
 bool is_baseline(Method method) {
   return is_classical(method) || method == Method::projected_euler ||
-         method == Method::projected_heun || method == Method::projected_rk4;
+         method == Method::projected_heun || method == Method::projected_rk4 ||
+         method == Method::projected_dp5;
+}
+
+bool is_adaptive(Method method) {
+  return method == Method::tsit5 || method == Method::dp5 || method == Method::bs3 ||
+         method == Method::projected_dp5;
 }
 
 bool is_series(Method method) {
@@ -97,21 +113,35 @@ bool is_series(Method method) {
 
 bool needs_cayley(Method method) {
   return method == Method::rkmk4_as_printed || method == Method::implicit_midpoint ||
-         is_series(method);
+         is_series(method) || is_red_black(method) || method == Method::fx3 ||
+         method == Method::fx4;
 }
 
-bool takes_tangent(Method method) {
+bool is_red_black(Method method) {
+  return method == Method::red_black2 || method == Method::red_black4;
+}
+
+bool needs_exponential(Method method) { return method == Method::cf4; }
+
+namespace {
+
+bool is_of_the_paper(Method method) {  // its explicit methods
   return method == Method::euler || method == Method::heun || method == Method::rkmk4;
 }
 
+}  // namespace
+
+bool takes_tangent(Method method) {
+  return is_of_the_paper(method) || (is_adaptive(method) && !is_baseline(method));
+}
+
 bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind) {
-  bool const runge_kutta = takes_tangent(method);
   switch (isotropy) {
     case Isotropy::zero:
       return !is_baseline(method);
     case Isotropy::constant:
-      return runge_kutta || method == Method::rkmk4_as_printed || method == Method::ab2 ||
-             method == Method::implicit_euler;
+      return takes_tangent(method) || method == Method::rkmk4_as_printed || method == Method::ab2 ||
+             method == Method::implicit_euler || method == Method::cf4;
     case Isotropy::analytic:
       return method == Method::euler || method == Method::implicit_euler;
     case Isotropy::finite_difference:
@@ -119,7 +149,7 @@ bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind) {
       return method == Method::euler;
     case Isotropy::energy:
       return kind == SystemKind::llg
-                 ? runge_kutta
+                 ? is_of_the_paper(method)
                  : is_series(method) || method == Method::heun || method == Method::rkmk4;
   }
   return false;

@@ -92,8 +92,11 @@ struct Integrator {
   double sigma = 0;  ///< isotropy constant: what is added to A along m
   double isotropy_cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
   Rotation rotation = Rotation::cayley;
-  double dt = 0;
-  std::int64_t steps = 0;  ///< computed from `end` when the scene gives that
+  double dt = 0;                    ///< of adaptive methods: from one look at the spins to the next
+  std::int64_t steps = 0;           ///< computed from `end` when the scene gives that
+  std::optional<double> tolerance;  ///< of adaptive methods, which have one
+  std::optional<double> error;      ///< of method "auto": what its choice is to come to
+  double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();  ///< of their own steps
   bool energy_guard = true;
   std::optional<double> until_torque;
 };
@@ -121,6 +124,10 @@ struct Scene {
 /// order. Files that the scene names are not opened: check_files, initial_spins and inertia do
 /// that. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {});
+
+/// Refuses what has no meaning together, as read_scene does: method, generator, isotropy, rotation,
+/// system, lattice and field. Throws SceneError.
+void check_combination(Scene const& scene);
 
 /// The one-line error for something found wrong with a key after reading, such as a shape that does
 /// not fit in memory: "FILE:LINE: key: message".

@@ -22,12 +22,22 @@ enum class Method {
   series4_paper,
   ab2,
   implicit_midpoint,
+  cf4,
+  fx3,
+  fx4,
+  red_black2,
+  red_black4,
+  tsit5,
+  dp5,
+  bs3,
   classical_euler,
   classical_heun,
   classical_rk4,
   projected_euler,
   projected_heun,
-  projected_rk4
+  projected_rk4,
+  projected_dp5,
+  automatic  ///< the word "auto": chosen by a run's error
 };
 
 /// `standard` is the scene's word "default": the system's own A, unchanged.
@@ -91,8 +101,17 @@ bool is_classical(Method method);
 /// True for series4 and series4_paper.
 bool is_series(Method method);
 
+/// True for the embedded methods, which choose their steps by a tolerance.
+bool is_adaptive(Method method);
+
 /// True for the methods that are formulated in Cayley coordinates only.
 bool needs_cayley(Method method);
+
+/// True for red_black2 and red_black4, which need a lattice of two colours.
+bool is_red_black(Method method);
+
+/// True for the methods that are made of exact exponentials.
+bool needs_exponential(Method method);
 
 /// True for the methods that run in the stereographic chart too.
 bool takes_tangent(Method method);

@@ -46,7 +46,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
       : Base(name),
         isotropy_(isotropy),
         options_(options),
-        controller_(options, Embedded::embedded_order + 1, std::numeric_limits<Real>::epsilon(),
+        controller_(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
                     "cayspin::" + name),
         begin_(name + "::begin", like.lattice()),
         end_(name + "::end", like.lattice()),
@@ -62,6 +62,11 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   }
 
   std::size_t work_bytes() const { return work_fields * begin_.bytes() + square_.bytes(); }
+  /// The same, foretold.
+  static std::size_t work_bytes(Lattice const& lattice, bool, int) {
+    auto const layout = detail::RowLayout::of<Real>(lattice);
+    return (work_fields * layout.allocation(3) + layout.allocation(1)) * sizeof(Real);
+  }
 
   /// Evaluations of the generator so far, and own steps taken and thrown away.
   std::int64_t evaluations_done() const { return evaluations_done_; }

@@ -24,6 +24,12 @@ struct StepOptions {
   double min_dt = 0;        ///< a step that needs less throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage looks beyond this time
+
+  /// Below it, round-off hides the error of a step.
+  template <class Real>
+  static constexpr double least_tolerance() {
+    return 32 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+  }
 };
 
 namespace detail {
@@ -34,11 +40,11 @@ namespace detail {
 class StepController {
  public:
   /// `error_order`: the power of dt that the estimate goes with.
-  StepController(StepOptions const& options, int error_order, double epsilon,
+  StepController(StepOptions const& options, int error_order, double least_tolerance,
                  std::string const& region)
       : options_(options), exponent_(1.0 / error_order) {
     auto const refuse = [&](char const* what) { throw std::invalid_argument(region + what); };
-    if (!(options.tolerance >= 32 * epsilon) || !(options.tolerance <= 1))
+    if (!(options.tolerance >= least_tolerance) || !(options.tolerance <= 1))
       refuse(": the tolerance must be between 32 epsilon of the precision and 1");
     if (!(options.min_dt >= 0) || !(options.max_dt > 0) || options.min_dt > options.max_dt)
       refuse(": 0 <= min_dt <= max_dt and max_dt > 0 must hold");

@@ -46,6 +46,8 @@ io::Integrator Choice::integrator(double dt, double end) const {
           .rotation = rotation,
           .dt = dt,
           .steps = std::llround(end / dt),
+          .tolerance = {},
+          .error = {},
           .until_torque = {}};
 }
 

@@ -18,7 +18,7 @@ HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
   // No plan of the run is made: its search for the stable dt would take longer than the run.
   FlushDenormals const while_stepping;
   find_method(scene).advance(&job,
-                             {integrator.rotation, integrator.sigma, integrator.isotropy_cap});
+                             {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}});
   return job.spins;
 }
 

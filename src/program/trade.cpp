@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "command.hpp"
+#include "failure.hpp"
+#include "kokkos_settings.hpp"
+#include "text.hpp"
+#include "trade/advice.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace cayspin::program {
+namespace {
+
+using namespace trade;
+
+constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
+
+std::string steps_text(Candidate const& candidate, Rung const& rung) {
+  return candidate.is_adaptive() ? fmt::format("tol {:.1e}", rung.steps.tolerance)
+                                 : fmt::format("dt {:.3e}", rung.dt);
+}
+
+std::string amount_text(double amount, char const* form) {
+  return std::isfinite(amount) ? fmt::format(fmt::runtime(form), amount) : "-";
+}
+
+void print_horizon(double horizon, double end, std::string const& why_shorter) {
+  if (why_shorter.empty()) return;
+  fmt::print("horizon     t = {:.6g} of {:.6g}: {}\n", horizon, end, why_shorter);
+}
+
+void print_text(Pilot const& pilot, Reference const& reference,
+                std::vector<Ladder> const& ladders) {
+  fmt::print("scene       {}\n", pilot.scene().path.string());
+  print_horizon(reference.horizon, pilot.end(), reference.why_shorter);
+  fmt::print(
+      "reference   tsit5 and dp5 at a tolerance of 1e-13 agree to {:.1e}\n"
+      "error       the largest distance of any spin at {} times, the last t = {:.6g}\n\n",
+      reference.uncertainty, Pilot::looks, reference.horizon);
+  constexpr auto line = "{:<28} {:>14} {:>10} {:>11} {:>12} {}\n";
+  fmt::print(line, "method", "steps", "error", "seconds", "evaluations", "front");
+  for (auto const& ladder : ladders)
+    for (auto const& rung : ladder.rungs)
+      fmt::print(line, ladder.candidate.name(), steps_text(ladder.candidate, rung),
+                 fmt::format("{:.2e}", rung.error), fmt::format("{:.3e}", rung.seconds),
+                 rung.evaluations, rung.on_front ? "*" : "");
+
+  fmt::print("\nseconds (evaluations) to an error of\n{:<28}", "");
+  for (double const error : errors_compared) fmt::print(" {:>20.0e}", error);
+  fmt::print("\n");
+  for (auto const& ladder : ladders) {
+    fmt::print("{:<28}", ladder.candidate.name());
+    for (double const error : errors_compared)
+      fmt::print(" {:>20}", fmt::format("{} ({})", amount_text(seconds_to(ladder, error), "{:.2e}"),
+                                        amount_text(evaluations_to(ladder, error), "{:.0f}")));
+    fmt::print("\n");
+  }
+}
+
+nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
+                       std::vector<Ladder> const& ladders) {
+  nlohmann::json all;
+  all["scene"] = pilot.scene().path.string();
+  all["horizon"] = reference.horizon;
+  all["end"] = pilot.end();
+  all["why_shorter"] = reference.why_shorter;
+  all["uncertainty"] = reference.uncertainty;
+  for (auto const& ladder : ladders) {
+    nlohmann::json one;
+    one["method"] = ladder.candidate.name();
+    one["baseline"] = ladder.candidate.is_baseline();
+    one["rungs"] = nlohmann::json::array();
+    for (auto const& rung : ladder.rungs) {
+      nlohmann::json step{{"error", rung.error},
+                          {"seconds", rung.seconds},
+                          {"evaluations", rung.evaluations},
+                          {"front", rung.on_front}};
+      if (ladder.candidate.is_adaptive())
+        step["tolerance"] = rung.steps.tolerance;
+      else
+        step["dt"] = rung.dt;
+      one["rungs"].push_back(step);
+    }
+    all["methods"].push_back(one);
+  }
+  return all;
+}
+
+/// How an advice turned out, beside the ladders.
+struct Verdict {
+  double asked;
+  Advised advised;
+  double error = 0, seconds = 0;  // of the advised run
+  double best = 0;                // seconds, of all ladders
+  std::string best_method;
+};
+
+Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
+              double asked) {
+  Verdict verdict{asked, advise(pilot, {asked, {}, {}}), 0, 0, 0, {}};
+  verdict.best = std::numeric_limits<double>::infinity();
+  for (auto const& ladder : ladders) {
+    double const seconds = seconds_to(ladder, asked);
+    if (!(seconds < verdict.best)) continue;
+    verdict.best = seconds;
+    verdict.best_method = ladder.candidate.name();
+  }
+  if (auto const& choice = verdict.advised.choice) {
+    auto steps = choice->steps;
+    // The ladders go to the reference's horizon.
+    double const part = reference.horizon / pilot.end();
+    if (!choice->candidate.is_adaptive())
+      steps.count = Pilot::looks * static_cast<std::int64_t>(std::ceil(
+                                       static_cast<double>(steps.count) * part / Pilot::looks));
+    auto const outcome = pilot.run(choice->candidate, reference.horizon, steps, 3);
+    verdict.error = distance(outcome, reference.solution);
+    verdict.seconds = outcome.seconds / part;
+    verdict.best /= part;
+  }
+  return verdict;
+}
+
+void print_verdicts(std::vector<Verdict> const& verdicts) {
+  constexpr auto line = "{:>8} {:<28} {:>14} {:>15} {:>15} {:>15} {:>10}\n";
+  fmt::print("\nwhat `cayspin advise` says, and how it turns out\n");
+  fmt::print(line, "asked", "advised", "steps", "error / asked", "time / best", "time / foretold",
+             "tried for");
+  for (auto const& [asked, advised, error, seconds, best, best_method] : verdicts) {
+    auto const& choice = advised.choice;
+    if (!choice) {
+      fmt::print(line, fmt::format("{:.0e}", asked), "nothing", "-", "-", "-", "-",
+                 duration_text(advised.seconds));
+      continue;
+    }
+    Rung const rung{choice->steps, choice->dt, 0, 0, 0, false};
+    fmt::print(line, fmt::format("{:.0e}", asked), choice->candidate.name(),
+               steps_text(choice->candidate, rung), fmt::format("{:.2f}", error / asked),
+               fmt::format("{:.2f}", seconds / best),
+               fmt::format("{:.2f}", seconds / choice->seconds), duration_text(advised.seconds));
+  }
+}
+
+}  // namespace
+
+int trade_off(TradeOptions const& options) {
+  auto const scene = io::read_scene(options.scene, options.overrides);
+  io::check_files(scene);
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, {});
+  Pilot const pilot(scene, space);
+  auto const reference = converged_reference(pilot, options.seconds);
+  LadderLimits limits;
+  limits.seconds = options.seconds;
+  limits.least_error = std::max(limits.least_error, 10 * reference.uncertainty);
+  std::vector<Ladder> ladders;
+  for (auto const& candidate : candidates(scene))
+    ladders.push_back(climb(pilot, candidate, reference, ladders, limits));
+  mark_front(ladders);
+  if (options.json)
+    fmt::print("{}\n", as_json(pilot, reference, ladders).dump(1));
+  else
+    print_text(pilot, reference, ladders);
+  if (!options.advice) return Status::done;
+  std::vector<Verdict> verdicts;
+  for (double const error : errors_compared)
+    verdicts.push_back(judge(pilot, reference, ladders, error));
+  print_verdicts(verdicts);
+  return Status::done;
+}
+
+int advise_on(AdviseOptions const& options) {
+  auto const scene = io::read_scene(options.scene, options.overrides);
+  io::check_files(scene);
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, {});
+  Pilot const pilot(scene, space);
+  auto const advised = advise(pilot, {options.error, options.budget, {}});
+  fmt::print("scene       {}\n", scene.path.string());
+  print_horizon(advised.horizon, pilot.end(), advised.why_shorter);
+  if (!advised.choice) {
+    if (advised.others.empty())
+      throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g}", scene.path.string(),
+                                      options.error));
+    auto const& first = advised.others.front();
+    throw NumbersFailed(fmt::format("{}: {} would take {}, beyond the budget of {}",
+                                    scene.path.string(), first.candidate.name(),
+                                    duration_text(first.seconds), duration_text(*options.budget)));
+  }
+  auto const& choice = *advised.choice;
+  auto const& candidate = choice.candidate;
+  fmt::print("method      {}\n", candidate.name());
+  std::string overrides =
+      fmt::format("--set 'integrator.method=\"{}\"'", io::to_string(candidate.method));
+  if (candidate.generator != io::Generator::standard)
+    overrides +=
+        fmt::format(" --set 'integrator.generator=\"{}\"'", io::to_string(candidate.generator));
+  if (candidate.rotation != io::Rotation::cayley)
+    overrides +=
+        fmt::format(" --set 'integrator.rotation=\"{}\"'", io::to_string(candidate.rotation));
+  if (candidate.is_adaptive()) {
+    fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
+    overrides += fmt::format(" --set integrator.tolerance={:.3g}", choice.steps.tolerance);
+  } else {
+    fmt::print("dt          {:.9g}, {} steps\n", choice.dt, choice.steps.count);
+    overrides += fmt::format(" --set integrator.dt={}", choice.dt);
+  }
+  if (candidate.precision == Precision::single_precision) overrides += " --precision single";
+  fmt::print("error       {:.2g}, predicted{}\n", choice.error,
+             advised.why_shorter.empty() ? "" : " at the horizon");
+  fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
+  fmt::print("memory      {}\n", bytes_text(choice.memory));
+  fmt::print("run it      cayspin run {} {}\n", scene.path.string(), overrides);
+  fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
+  for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
+    fmt::print("  {:<26} {}\n", advised.others[i].candidate.name(),
+               duration_text(advised.others[i].seconds));
+  return Status::done;
+}
+
+}  // namespace cayspin::program

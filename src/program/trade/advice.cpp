@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "advice.hpp"
+
+#include <Kokkos_Timer.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cayspin::program::trade {
+namespace {
+
+constexpr double aim = 0.7;       // of the error asked for
+constexpr double seconds = 5;     // that a coarse run of the scene may take
+constexpr double far = 30;        // error over error asked for, from where to foretell
+constexpr double most_finer = 4;  // steps over those of the try before
+constexpr int tries = 12;         // of one candidate
+constexpr int all_tries = 200;
+
+struct Try {
+  Steps steps;
+  Outcome outcome;
+  double error;  // estimated
+};
+
+/// What is known of a candidate. Resolution: its number of steps, or 1 / tolerance.
+struct Prospect {
+  Candidate candidate;
+  double order;       // of the error in the resolution
+  double cost_order;  // of the cost
+  std::vector<Try> tried;
+  Steps coarsest, next;
+  int attempts = 0;
+  bool dropped = false;
+
+  double resolution(Steps const& steps) const {
+    return candidate.is_adaptive() ? 1 / steps.tolerance : static_cast<double>(steps.count);
+  }
+  Steps steps_of(double resolution) const {
+    if (candidate.is_adaptive()) return {0, std::min(1 / resolution, coarsest.tolerance)};
+    auto const per_look = std::ceil(resolution / Pilot::looks - 1e-9);
+    return {std::max(static_cast<std::int64_t>(per_look) * Pilot::looks, coarsest.count), 0};
+  }
+
+  bool can_take(Steps const& steps) const {
+    return !candidate.is_adaptive() || steps.tolerance >= candidate.least_tolerance();
+  }
+  Try const& last() const { return tried.back(); }
+  bool is_judged() const { return tried.size() > 1; }
+  /// From the last two tries; the method's own where they do not say.
+  double seen_order() const {
+    auto const &a = tried[tried.size() - 2], &b = tried.back();
+    double const seen =
+        std::log(a.error / b.error) / std::log(resolution(b.steps) / resolution(a.steps));
+    return std::isfinite(seen) ? seen : order;
+  }
+  Steps needed(double error) const {
+    double const order_used = std::clamp(seen_order(), 0.5 * order, order);
+    double const resolved = resolution(last().steps);
+    return steps_of(resolved * std::pow(last().error / error, 1 / order_used));
+  }
+  double seconds_of(Steps const& steps) const {
+    return last().outcome.seconds *
+           std::pow(resolution(steps) / resolution(last().steps), cost_order);
+  }
+  /// Is it near enough to foretell the rest?
+  bool is_settled(double error) const {
+    double const off = std::abs(seen_order() - order);
+    return last().error < 4 * error || (last().error < far * error && off < 0.3 * order);
+  }
+};
+
+class Search {
+ public:
+  Search(Pilot const& pilot, Reference const& horizon, AdviceRequest const& request)
+      : pilot_(pilot), horizon_(horizon), error_(aim * request.error) {
+    double const error = request.error;
+    // What to measure by: an error of a thirtieth of the one asked for, by a method whose error
+    // follows its tolerance.
+    Candidate const by{io::Method::tsit5, io::Generator::tangent};
+    finest_.steps.tolerance = std::max(error / 100, by.least_tolerance());
+    finest_.outcome = pilot.run(by, horizon.horizon, finest_.steps);
+    if (!finest_.outcome.failure) finest_.error = error / 30;
+    for (auto const& candidate : candidates(pilot.scene()))
+      if (candidate.least_error() < error &&
+          (!request.precision || *request.precision == candidate.precision))
+        add(candidate);
+  }
+
+  /// Best first, until the cheapest one is near enough.
+  void run() {
+    for (auto& prospect : prospects_)
+      while (!prospect.dropped && !prospect.is_judged()) attempt(prospect);
+    for (int i = 0; i < all_tries; ++i) {
+      auto* const best = cheapest();
+      if (!best || best->is_settled(error_)) return;
+      attempt(*best);
+    }
+  }
+
+  std::vector<Advice> advices() const {
+    std::vector<Advice> all;
+    for (auto const& prospect : prospects_) {
+      if (prospect.dropped || !prospect.is_judged()) continue;
+      auto const steps = prospect.needed(error_);
+      if (!prospect.can_take(steps)) continue;
+      Advice advice{prospect.candidate, steps, 0, error_, prospect.seconds_of(steps), 0};
+      double const parts = pilot_.end() / horizon_.horizon;
+      advice.seconds *= parts;
+      if (!prospect.candidate.is_adaptive()) {
+        advice.steps.count =
+            static_cast<std::int64_t>(std::ceil(static_cast<double>(steps.count) * parts));
+        advice.dt = pilot_.end() / static_cast<double>(advice.steps.count);
+      }
+      advice.memory = pilot_.plan(prospect.candidate, horizon_.horizon, steps).memory.total();
+      all.push_back(advice);
+    }
+    std::ranges::sort(all, {}, &Advice::seconds);
+    return all;
+  }
+
+ private:
+  void add(Candidate const& candidate) {
+    auto const coarsest = coarsest_steps(pilot_, candidate, horizon_.horizon, horizon_.own_steps);
+    double const order = pilot_.plan(candidate, horizon_.horizon, coarsest).method.order;
+    bool const adaptive = candidate.is_adaptive();
+    prospects_.push_back(
+        {candidate, adaptive ? 1 : order, adaptive ? 1 / order : 1, {}, coarsest, coarsest});
+  }
+
+  Prospect* cheapest() {
+    Prospect* best = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto& prospect : prospects_) {
+      if (prospect.dropped || !prospect.can_take(prospect.needed(error_))) continue;
+      double const now = prospect.seconds_of(prospect.needed(error_));
+      if (now < least) {
+        least = now;
+        best = &prospect;
+      }
+    }
+    return best;
+  }
+
+  void attempt(Prospect& prospect) {
+    auto const steps = prospect.next;
+    auto outcome = pilot_.run(prospect.candidate, horizon_.horizon, steps, 3);
+    ++prospect.attempts;
+    double const now = prospect.resolution(steps);
+    if (outcome.failure) {
+      prospect.next = prospect.steps_of(1.5 * now);
+    } else {
+      prospect.tried.push_back({steps, std::move(outcome), 0});
+      judge(prospect);
+      double goal = 1.5 * now;
+      if (prospect.is_judged())
+        goal = std::clamp(prospect.resolution(prospect.needed(2 * error_)), 1.3 * now,
+                          most_finer * now);
+      prospect.next = prospect.steps_of(goal);
+    }
+    prospect.dropped = prospect.attempts >= tries || !prospect.can_take(prospect.next) ||
+                       (prospect.is_judged() && is_round_off(prospect));
+  }
+
+  // Finer steps that change the result by no less.
+  bool is_round_off(Prospect const& prospect) const {
+    return prospect.tried.size() > 2 && prospect.last().error > error_ &&
+           prospect.last().error < 1e-3 && prospect.seen_order() < 0.2 * prospect.order;
+  }
+
+  // Of the last try and, once there are two, of the one before: by the finest solution so far where
+  // that is much finer, otherwise by each other.
+  void judge(Prospect& prospect) {
+    auto& tried = prospect.tried;
+    if (tried.size() < 2) return;
+    auto &before = tried[tried.size() - 2], &now = tried.back();
+    double const ratio = std::pow(
+        prospect.resolution(now.steps) / prospect.resolution(before.steps), -prospect.order);
+    double const apart = distance(before.outcome, now.outcome);
+    before.error = apart / (1 - ratio);
+    now.error = std::max(before.error * ratio, 1e-16);
+    if (finest_.error < 0.2 * before.error) {
+      before.error = distance(before.outcome, finest_.outcome);
+      double const direct = distance(now.outcome, finest_.outcome);
+      if (finest_.error < 0.2 * direct) now.error = direct;
+    }
+    bool const twice = prospect.candidate.precision == Precision::double_precision;
+    if (twice && now.error < finest_.error) finest_ = now;
+  }
+
+  Pilot const& pilot_;
+  Reference const& horizon_;
+  double error_;
+  std::vector<Prospect> prospects_;
+  Try finest_{{}, {}, std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace
+
+Advised advise(Pilot const& pilot, AdviceRequest const& request) {
+  Kokkos::Timer const clock;
+  auto const horizon = horizon_alone(pilot, seconds);
+  Search search(pilot, horizon, request);
+  search.run();
+  Advised advised;
+  advised.others = search.advices();
+  advised.horizon = horizon.horizon;
+  advised.why_shorter = horizon.why_shorter;
+  if (!advised.others.empty() &&
+      !(request.budget && advised.others.front().seconds > *request.budget))
+    advised.choice = advised.others.front();
+  advised.seconds = clock.seconds();
+  return advised;
+}
+
+}  // namespace cayspin::program::trade

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "candidate.hpp"
+
+#include <fmt/format.h>
+
+namespace cayspin::program::trade {
+
+std::string Candidate::name() const {
+  std::string name(io::to_string(method));
+  if (generator != io::Generator::standard) name += fmt::format(" {}", io::to_string(generator));
+  if (rotation != io::Rotation::cayley && !io::needs_exponential(method))
+    name += fmt::format(" {}", io::to_string(rotation));
+  if (precision == Precision::single_precision) name += ", single";
+  return name;
+}
+
+double Candidate::least_tolerance() const {
+  return precision == Precision::single_precision ? StepOptions::least_tolerance<float>()
+                                                  : StepOptions::least_tolerance<double>();
+}
+
+namespace {
+
+bool is_possible(io::Scene const& scene, Candidate const& candidate) {
+  try {
+    io::check_combination(with(scene, candidate, 1, 1, {1, 1}));
+    return true;
+  } catch (io::SceneError const&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates(io::Scene const& scene) {
+  using enum io::Method;
+  using enum io::Generator;
+  auto const exponential = io::Rotation::exponential;
+  std::vector<Candidate> all{{rkmk4},
+                             {rkmk4, tangent},
+                             {rkmk4, standard, exponential},
+                             {cf4, standard, exponential},
+                             {bs3},
+                             {bs3, tangent},
+                             {dp5},
+                             {dp5, tangent},
+                             {tsit5},
+                             {tsit5, tangent},
+                             {tsit5, standard, exponential},
+                             {heun},
+                             {heun, tangent},
+                             {ab2},
+                             {euler},
+                             {implicit_midpoint},
+                             {projected_heun},
+                             {projected_rk4},
+                             {projected_dp5}};
+  if (!io::depends_on_time(scene)) all.push_back({series4});
+  for (auto const method : {fx3, fx4, red_black2, red_black4}) all.push_back({method});
+  std::erase_if(all, [&](Candidate const& candidate) { return !is_possible(scene, candidate); });
+  auto const twice = all.size();
+  for (std::size_t i = 0; i < twice; ++i) {
+    auto const method = all[i].method;
+    if (method != heun && method != rkmk4 && method != projected_rk4) continue;
+    all.push_back(all[i]);
+    all.back().precision = Precision::single_precision;
+  }
+  return all;
+}
+
+io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t looks,
+               Steps const& steps) {
+  auto& integrator = scene.integrator;
+  integrator.method = candidate.method;
+  integrator.generator = candidate.generator;
+  integrator.rotation = candidate.rotation;
+  integrator.isotropy = io::Isotropy::zero;
+  integrator.sigma = 0;
+  integrator.until_torque.reset();
+  integrator.error.reset();
+  if (candidate.is_adaptive()) {
+    integrator.tolerance = steps.tolerance;
+    integrator.steps = looks;
+  } else {
+    integrator.tolerance.reset();
+    integrator.steps = steps.count;
+  }
+  integrator.dt = horizon / static_cast<double>(integrator.steps);
+  scene.output.every = scene.output.scalars_every = integrator.steps / looks;
+  return scene;
+}
+
+}  // namespace cayspin::program::trade

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "../plan.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cayspin::program::trade {
+
+/// A method with its coordinates and precision, whose steps are still to be chosen.
+struct Candidate {
+  io::Method method;
+  io::Generator generator = io::Generator::standard;
+  io::Rotation rotation = io::Rotation::cayley;
+  Precision precision = Precision::double_precision;
+
+  bool is_adaptive() const { return io::is_adaptive(method); }
+  bool is_baseline() const { return io::is_baseline(method); }
+  double least_tolerance() const;
+  /// Round-off of a run comes up to here: no smaller error is asked of the candidate.
+  double least_error() const { return 2 * least_tolerance(); }
+  /// Such as "rkmk4 tangent, single".
+  std::string name() const;
+};
+
+/// How a candidate steps: so many equal steps, or as the tolerance asks for.
+struct Steps {
+  std::int64_t count = 0;
+  double tolerance = 0;
+};
+
+/// All that can run a scene.
+std::vector<Candidate> candidates(io::Scene const& scene);
+
+/// The scene up to `horizon` by a candidate, looked at `looks` times on the way, the last at the
+/// end; a whole number of steps falls between two looks.
+io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t looks,
+               Steps const& steps);
+
+}  // namespace cayspin::program::trade

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cayspin::program::trade {
+namespace {
+
+constexpr double finer_by = 1.5;  // steps of a rung over those of the one before
+
+// A whole number of steps between looks.
+std::int64_t with_looks(double steps) {
+  auto const per_look = std::max<double>(1, std::ceil(steps / Pilot::looks));
+  return static_cast<std::int64_t>(per_look) * Pilot::looks;
+}
+
+double amount(Rung const& rung, bool of_evaluations) {
+  return of_evaluations ? static_cast<double>(rung.evaluations) : rung.seconds;
+}
+
+double interpolated(Ladder const& ladder, double error, bool of_evaluations) {
+  double best = std::numeric_limits<double>::infinity();
+  Rung const* before = nullptr;
+  for (auto const& rung : ladder.rungs) {
+    if (rung.error <= error) {
+      best = std::min(best, amount(rung, of_evaluations));
+      if (before && std::isfinite(before->error) && before->error > error && rung.error > 0) {
+        double const share = std::log(before->error / error) / std::log(before->error / rung.error);
+        double const first = amount(*before, of_evaluations);
+        best = std::min(best, first * std::pow(amount(rung, of_evaluations) / first, share));
+      }
+    }
+    before = &rung;
+  }
+  return best;
+}
+
+}  // namespace
+
+Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
+                     std::int64_t own_steps) {
+  if (candidate.is_adaptive()) return {0, 0.1};
+  // Fewer than an adaptive method takes at its coarsest, but stable ones.
+  double const few = static_cast<double>(own_steps) / 4;
+  auto const plan = pilot.plan(candidate, horizon, {Pilot::looks, 0});
+  double const stable =
+      plan.stable_dt > 0 && std::isfinite(plan.stable_dt) ? horizon / plan.stable_dt : 0;
+  return {with_looks(std::max(few, stable)), 0};
+}
+
+Steps finer(Candidate const& candidate, Steps const& steps) {
+  if (candidate.is_adaptive()) return {0, steps.tolerance / std::sqrt(10.0)};
+  return {with_looks(finer_by * static_cast<double>(steps.count)), 0};
+}
+
+Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
+             std::vector<Ladder> const& others, LadderLimits const& limits) {
+  Ladder ladder{candidate, {}};
+  int worse = 0;
+  double best = std::numeric_limits<double>::infinity();
+  Steps steps = coarsest_steps(pilot, candidate, reference.horizon, reference.own_steps);
+  for (int i = 0; i < limits.rungs; ++i, steps = finer(candidate, steps)) {
+    if (candidate.is_adaptive() && steps.tolerance < candidate.least_tolerance()) break;
+    auto const outcome = pilot.run(candidate, reference.horizon, steps, 3);
+    double const error = distance(outcome, reference.solution);
+    double const dt =
+        candidate.is_adaptive() ? 0 : reference.horizon / static_cast<double>(steps.count);
+    if (std::isfinite(error))
+      ladder.rungs.push_back({steps, dt, error, outcome.seconds, outcome.evaluations});
+    worse = error < 0.9 * best ? 0 : worse + 1;
+    best = std::min(best, error);
+    bool const far_behind = std::ranges::any_of(others, [&](Ladder const& other) {
+      return outcome.seconds > limits.far_behind * seconds_to(other, error);
+    });
+    // Round-off, or dt at which the method is of no use.
+    if (error < limits.least_error || outcome.seconds > limits.seconds || far_behind ||
+        (worse > 2 && best < 1e-3) || worse > 12)
+      break;
+  }
+  return ladder;
+}
+
+void mark_front(std::vector<Ladder>& ladders) {
+  for (auto& ladder : ladders)
+    for (auto& rung : ladder.rungs)
+      rung.on_front = std::ranges::none_of(ladders, [&](Ladder const& other) {
+        return std::ranges::any_of(other.rungs, [&](Rung const& it) {
+          return it.error <= rung.error && it.seconds < rung.seconds;
+        });
+      });
+}
+
+double seconds_to(Ladder const& ladder, double error) { return interpolated(ladder, error, false); }
+
+double evaluations_to(Ladder const& ladder, double error) {
+  return interpolated(ladder, error, true);
+}
+
+}  // namespace cayspin::program::trade

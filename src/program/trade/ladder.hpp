@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "reference.hpp"
+
+#include <limits>
+#include <vector>
+
+namespace cayspin::program::trade {
+
+/// One run of a ladder.
+struct Rung {
+  Steps steps;
+  double dt = 0;  // of methods with equal steps
+  double error = 0;
+  double seconds = 0;
+  std::int64_t evaluations = 0;
+  bool on_front = false;  // nothing is both faster and more accurate
+};
+
+/// A candidate's error and cost, from its coarsest steps on.
+struct Ladder {
+  Candidate candidate;
+  std::vector<Rung> rungs;
+};
+
+struct LadderLimits {
+  double least_error = 1e-9;  // nothing finer is run
+  double seconds = 10;        // nor anything that takes longer
+  double far_behind = 100;    // nor by a candidate so many times slower than another
+  int rungs = 40;
+};
+
+/// Steps that a candidate's ladder begins with, as coarse as may be; and those of the next rung.
+Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
+                     std::int64_t own_steps);
+Steps finer(Candidate const& candidate, Steps const& steps);
+
+/// `others`: what has been climbed before.
+Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
+             std::vector<Ladder> const& others, LadderLimits const& limits = {});
+
+/// Marks the Pareto front of all rungs, by error and seconds.
+void mark_front(std::vector<Ladder>& ladders);
+
+/// What a ladder's candidate takes to an error, between rungs by logarithms; infinite where it
+/// does not get there.
+double seconds_to(Ladder const& ladder, double error);
+double evaluations_to(Ladder const& ladder, double error);
+
+}  // namespace cayspin::program::trade

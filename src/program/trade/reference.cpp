@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "reference.hpp"
+
+#include "../failure.hpp"
+
+#include <fmt/format.h>
+
+namespace cayspin::program::trade {
+namespace {
+
+constexpr double enough = 1e-10;
+constexpr double tightest = 1e-13;
+constexpr int most_halvings = 20;
+
+Candidate const coarse{io::Method::tsit5, io::Generator::tangent};
+
+}  // namespace
+
+Reference horizon_alone(Pilot const& pilot, double seconds) {
+  Reference reference;
+  reference.horizon = pilot.end();
+  for (int halving = 0; halving < most_halvings; ++halving, reference.horizon /= 2) {
+    // Doubled from below, so that nothing is run much longer than allowed.
+    double const part = reference.horizon / 64;
+    auto const tried = pilot.run(coarse, part, {0, 1e-2});
+    if (tried.failure) throw NumbersFailed(*tried.failure);
+    if (64 * tried.seconds > seconds) {
+      reference.why_shorter =
+          fmt::format("a coarse run to the end takes {:.2g} s", tried.seconds * pilot.end() / part);
+      continue;
+    }
+    auto const whole = pilot.run(coarse, reference.horizon, {0, 1e-2});
+    if (whole.failure) throw NumbersFailed(*whole.failure);
+    reference.own_steps = whole.own_steps;
+    return reference;
+  }
+  throw NumbersFailed("no part of the scene is short enough to be tried");
+}
+
+Reference converged_reference(Pilot const& pilot, double seconds) {
+  auto reference = horizon_alone(pilot, seconds / 40);
+  for (int halving = 0; halving < most_halvings; ++halving, reference.horizon /= 2) {
+    auto const& horizon = reference.horizon;
+    auto first = pilot.run({io::Method::tsit5}, horizon, {0, tightest});
+    auto const second = pilot.run({io::Method::dp5}, horizon, {0, tightest});
+    reference.uncertainty = distance(first, second);
+    if (reference.uncertainty < enough) {
+      reference.solution = std::move(first);
+      reference.own_steps = pilot.run(coarse, horizon, {0, 1e-2}).own_steps;
+      return reference;
+    }
+    reference.why_shorter =
+        fmt::format("two methods at a tolerance of {:g} differ by {:.1e} at t = {:.6g}", tightest,
+                    reference.uncertainty, horizon);
+  }
+  throw NumbersFailed("no reference could be had: " + reference.why_shorter);
+}
+
+}  // namespace cayspin::program::trade

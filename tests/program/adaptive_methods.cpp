@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Methods that choose their steps by integrator.tolerance: what error they come to, when frames are
+// written, what ends them.
+#include "program_test.hpp"
+
+#include <cayspin/io/words.hpp>
+
+#include <cmath>
+
+namespace cayspin::program::test {
+namespace {
+
+struct AdaptiveMethods : ProgramTest {
+  Outcome start_with(Arguments const& more, std::string const& scene = chain_scene()) const {
+    Arguments arguments{"run",        write("scene.toml", scene), "--quiet", "--output", "out.h5",
+                        "--overwrite"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start(arguments);
+  }
+  std::vector<double> end(Arguments const& more) const {
+    auto const outcome = start_with(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return last_spins("out.h5");
+  }
+  static double distance(std::vector<double> const& a, std::vector<double> const& b) {
+    double largest = a.size() == b.size() ? 0 : INFINITY;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+  }
+};
+
+TEST_F(AdaptiveMethods, FollowTheToleranceInAllCoordinates) {
+  auto const exact = end({"--set", "integrator.dt=0.0005", "--set", "integrator.steps=5000"});
+  int runs = 0;
+  for (auto const& method : io::words<io::Method>()) {
+    if (!io::is_adaptive(method.value)) continue;
+    for (std::string const coordinates : {"", ",rotation='exponential'", ",generator='orthogonal'",
+                                          ",generator='tangent'", ",isotropy={constant=0.7}"}) {
+      if (io::is_baseline(method.value) && !coordinates.empty()) continue;
+      double errors[2];
+      for (int i = 0; i < 2; ++i)
+        errors[i] =
+            distance(exact, end({"--set", "integrator={method='" + std::string(method.name) +
+                                              "',tolerance=" + (i == 0 ? "1e-4" : "1e-6") +
+                                              coordinates + ",end=2.5}"}));
+      EXPECT_LT(errors[0], 30e-4) << method.name << coordinates;
+      EXPECT_LT(errors[1], 30e-6) << method.name << coordinates;
+      EXPECT_LT(errors[1], 0.1 * errors[0]) << method.name << coordinates;
+      ++runs;
+    }
+  }
+  EXPECT_EQ(runs, 16);
+}
+
+TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
+  std::string const method = "method='tsit5',tolerance=1e-7,end=2.5";
+  auto const often =
+      end({"--set", "integrator={" + method + ",dt=0.1}", "--set", "output.every=5"});
+  auto const times = read_dataset("out.h5", "/time").values;
+  ASSERT_EQ(times.size(), 6U);
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_DOUBLE_EQ(times[i], 0.5 * double(i));
+  auto const half = read_dataset("out.h5", "/spins").values;
+  auto const once = end({"--set", "integrator={" + method + "}"});
+  EXPECT_EQ(read_dataset("out.h5", "/time").values.size(), 2U);
+  EXPECT_EQ(often, once);
+  auto const exact = end({"--set", "integrator.dt=0.0005", "--set", "integrator.steps=1000"});
+  std::vector<double> const second(half.begin() + std::ptrdiff_t(once.size()),
+                                   half.begin() + std::ptrdiff_t(2 * once.size()));
+  EXPECT_LT(distance(second, exact), 30e-7);
+}
+
+TEST_F(AdaptiveMethods, AFieldThatIsNotFiniteEndsTheRunWithTheLastFrame) {
+  auto const outcome =
+      start_with({"--set", "integrator={method='dp5',tolerance=1e-6,end=2.5,dt=0.5}", "--set",
+                  "field.applied=['1/(t<1.2 ? 1 : 0)','0','1']"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "the last good frame is"));
+}
+
+TEST_F(AdaptiveMethods, AStepBelowTheLeastEndsTheRun) {
+  auto const outcome = start_with(
+      {"--set", "integrator={method='tsit5',tolerance=1e-12,end=2.5,min_dt=0.5,max_dt=0.6}"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "below"));
+}
+
+TEST_F(AdaptiveMethods, AToleranceBeyondThePrecisionIsRefused) {
+  auto const outcome = start_with(
+      {"--precision", "single", "--set", "integrator={method='tsit5',tolerance=1e-7,end=2.5}"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "integrator.tolerance"));
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// `cayspin trade` and `cayspin advise`: their errors are those of the runs they name.
+#include "program_test.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace cayspin::program::test {
+namespace {
+
+struct Trading : ProgramTest {
+  static std::string scene() {
+    return R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [6]
+[field]
+exchange = 0.5
+applied = [0.4, 0.3, 1.0]
+[initial]
+expression = ["0.3+0.2*cos(pi*x)", "0.5", "0.8*x"]
+[integrator]
+method = "rkmk4"
+dt = 0.1
+end = 4.0
+)toml";
+  }
+  std::vector<double> end(Arguments const& more) const {
+    Arguments arguments{"run",        write("scene.toml", scene()), "--quiet", "--output", "out.h5",
+                        "--overwrite"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto const outcome = start(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return last_spins("out.h5");
+  }
+  std::vector<double> exact() const { return end({"--set", "integrator.dt=0.0005"}); }
+  static double distance(std::vector<double> const& a, std::vector<double> const& b) {
+    double largest = a.size() == b.size() ? 0 : INFINITY;
+    for (std::size_t i = 0; i + 2 < std::min(a.size(), b.size()); i += 3)
+      largest =
+          std::max(largest, std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]));
+    return largest;
+  }
+};
+
+TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
+  auto const outcome = start({"trade", write("scene.toml", scene()), "--json", "--seconds", "0.1"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  auto const all = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(all["horizon"], 4.0);
+  EXPECT_LT(all["uncertainty"].get<double>(), 1e-10);
+  std::set<std::string> names;
+  std::vector<std::pair<double, double>> front;
+  for (auto const& method : all["methods"]) {
+    names.insert(method["method"]);
+    auto const& rungs = method["rungs"];
+    ASSERT_GT(rungs.size(), 1U) << method["method"];
+    EXPECT_LT(rungs.back()["error"].get<double>(), 0.5 * rungs.front()["error"].get<double>())
+        << method["method"];
+    for (auto const& rung : rungs)
+      if (rung["front"].get<bool>()) front.emplace_back(rung["error"], rung["seconds"]);
+  }
+  for (char const* name : {"rkmk4", "rkmk4 tangent", "cf4", "fx4", "red_black4", "tsit5 tangent",
+                           "projected_rk4", "projected_dp5", "rkmk4, single"})
+    EXPECT_TRUE(names.contains(name)) << name;
+  for (auto const& [error, seconds] : front)
+    for (auto const& [other, others] : front) EXPECT_FALSE(other <= error && others < seconds);
+}
+
+// Of what is measured: error and evaluations of the same dt, run by itself.
+TEST_F(Trading, ARungIsARunOfTheScene) {
+  auto const outcome = start({"trade", write("scene.toml", scene()), "--json", "--seconds", "0.1"});
+  auto const reference = exact();
+  auto const trade = nlohmann::json::parse(outcome.output);
+  for (auto const& method : trade["methods"]) {
+    if (method["method"] != "rkmk4") continue;
+    auto const& rung = method["rungs"].front();
+    auto const dt = rung["dt"].get<double>();
+    auto const numbers = end({"--set", "integrator.dt=" + std::to_string(dt), "--set",
+                              "integrator.end=" + std::to_string(4.0)});
+    EXPECT_EQ(rung["evaluations"], std::llround(4 * 4.0 / dt));
+    // The largest of four looks.
+    EXPECT_GE(rung["error"].get<double>(), 0.9 * distance(numbers, reference));
+    EXPECT_LE(rung["error"].get<double>(), 100 * distance(numbers, reference));
+  }
+}
+
+TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
+  auto const reference = exact();
+  for (std::string const error : {"1e-3", "1e-6"}) {
+    auto const outcome = start({"advise", write("scene.toml", scene()), "--error", error});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    std::istringstream lines(outcome.output);
+    Arguments arguments;
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("run it")) continue;
+      std::istringstream words(line.substr(line.find(".toml") + 5));
+      for (std::string word; words >> word;) {
+        std::erase(word, '\'');
+        arguments.push_back(word);
+      }
+    }
+    ASSERT_FALSE(arguments.empty()) << outcome.output;
+    EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << outcome.output;
+  }
+}
+
+TEST_F(Trading, ARunOfMethodAutoHasTheErrorAskedFor) {
+  auto const reference = exact();
+  for (std::string const error : {"1e-3", "1e-6"}) {
+    auto const numbers =
+        end({"--set", "integrator={method='auto',error=" + error + ",end=4.0,dt=0.5}", "--set",
+             "output.every=2"});
+    EXPECT_LT(distance(numbers, reference), 2 * std::stod(error));
+    auto const times = read_dataset("out.h5", "/time").values;
+    ASSERT_EQ(times.size(), 5U);
+    for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], double(i), 1e-12);
+  }
+}
+
+TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {
+  auto const outcome = start(
+      {"advise", write("scene.toml", scene()), "--error", "1e-6", "--budget", "0.000000001s"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "beyond the budget"));
+}
+
+}  // namespace
+}  // namespace cayspin::program::test
