@@ -49,6 +49,10 @@ struct ReproduceOptions {
   int threads = 1;
 };
 
+struct ExtremesOptions {
+  bool json = false, longest = false;
+};
+
 /// What `reproduce` may be asked for.
 std::vector<std::string> reproducible_parts();
 
@@ -60,5 +64,6 @@ int advise_on(AdviseOptions const& options);
 int methods();
 int info(std::filesystem::path const& file);
 int reproduce(ReproduceOptions const& options);
+int extremes(ExtremesOptions const& options);
 
 }  // namespace cayspin::program

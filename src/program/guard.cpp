@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace cayspin::program {
@@ -15,6 +16,10 @@ std::optional<std::string> Guard::judge(Step const& step, Energy const& energy,
   if (!std::isfinite(energy.value))
     return fmt::format("step {}, t = {:.9g}: the energy is not finite any more", step.number,
                        step.time);
+  double const steps = step.number == 0 ? 1 : std::max(1e6, static_cast<double>(step.number));
+  if (keeps_norm_ && !(norm_defect <= std::min(64 * epsilon_ * steps, 0.01)))
+    return fmt::format("step {}, t = {:.9g}: a spin left the sphere: | |m| - 1 | = {:.3g}",
+                       step.number, step.time, norm_defect);
   auto const before = last_;
   last_ = {step.number, energy.value};
   if (!first_) first_ = last_;

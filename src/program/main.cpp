@@ -122,6 +122,12 @@ int perform(int argc, char** argv) {
       "reproduce", "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's");
   add_reproduce_options(*reproduce_command, reproduce_options);
 
+  ExtremesOptions extremes_options;
+  auto* extremes_command =
+      app.add_subcommand("extremes", "What every method does where numbers end");
+  extremes_command->add_flag("--json", extremes_options.json, "One JSON object for each run");
+  extremes_command->add_flag("--long", extremes_options.longest, "Runs of 1e8 steps, in minutes");
+
   require_command(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -135,6 +141,7 @@ int perform(int argc, char** argv) {
   if (*advise_command) return advise_on(advise_options);
   if (*methods_command) return methods();
   if (*reproduce_command) return reproduce(reproduce_options);
+  if (*extremes_command) return extremes(extremes_options);
   return info(info_file);
 }
 

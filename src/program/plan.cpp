@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 
@@ -62,6 +63,20 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
   return bound;
 }
 
+// At most |A|: of rigid bodies the largest row sum of I^-1, where it is in the scene.
+double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+  auto const& system = scene.system;
+  if (system.kind == io::SystemKind::llg)
+    return field_bound(scene, lattice, times) * std::hypot(system.damping, system.precession);
+  double largest = 0;
+  if (std::holds_alternative<io::InertiaFile>(system.inertia)) return largest;
+  for (auto const& [xx, yy, zz, xy, xz, yz] : io::inverse_inertia(scene))
+    largest = std::max({largest, std::abs(xx) + std::abs(xy) + std::abs(xz),
+                        std::abs(xy) + std::abs(yy) + std::abs(yz),
+                        std::abs(xz) + std::abs(yz) + std::abs(zz)});
+  return largest;
+}
+
 // As SceneField says of itself.
 bool by_time_alone(io::Scene const& scene) {
   auto const& slab = scene.field.slab_demag;
@@ -92,8 +107,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, MethodEntry con
     memory.field += field_bytes<Real>(lattice, 6);
     start += 8 * (9 + 6 + 6) * lattice.sites();
   }
-  // A frame, and the copy of it that the file's filter takes.
-  std::int64_t const frame = 2 * static_cast<std::int64_t>(sizeof(Real)) * numbers;
+  // A frame, and the copies of it that a filter of the file reads and writes.
+  std::int64_t const frame = 3 * static_cast<std::int64_t>(sizeof(Real)) * numbers;
   memory.files = std::max(start - memory.work, frame);
   return memory;
 }
@@ -119,6 +134,7 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
             {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
             {0, integrator.dt, integrator.steps},
             std::numeric_limits<double>::infinity(),
+            0,
             {},
             0,
             0};
@@ -145,7 +161,22 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   std::int64_t const sample_bytes = 8 * 7;
   plan.file_bytes = plan.frames * (lattice.sites() * 3 * (twice ? 8 : 4) + sample_bytes) +
                     count(scene.output.scalars_every) * sample_bytes;
+  plan.turn = integrator.dt * largest_rate(scene, lattice, plan.times);
   return plan;
+}
+
+std::optional<std::string> dt_warning(Plan const& plan) {
+  double const dt = plan.times.dt;
+  if (plan.times.steps == 0) return std::nullopt;
+  if (dt > plan.stable_dt && plan.stable_dt > 0)
+    return fmt::format("{:.6g} is above the stable {:.6g}", dt, plan.stable_dt);
+  if (dt > plan.stable_dt)
+    return fmt::format("{:.6g} is not stable: at this damping the method amplifies at every dt",
+                       dt);
+  if (!std::isfinite(plan.stable_dt) && !(plan.turn <= 2))
+    return fmt::format("{:.6g} turns spins by up to {:.3g} radians a step, too many to follow", dt,
+                       plan.turn);
+  return std::nullopt;
 }
 
 bool fits(Plan const& plan) { return plan.memory.total() <= available_memory(); }

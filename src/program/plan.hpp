@@ -7,6 +7,8 @@
 #include <cayspin/lattice/lattice.hpp>
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 namespace cayspin::program {
 
@@ -32,6 +34,7 @@ struct Plan {
   MethodOptions options;
   Times times;
   double stable_dt;  // infinity where there is no limit, 0 when every dt amplifies
+  double turn;       // the most that a spin can turn in a step, in radians
   Memory memory;
   std::int64_t frames;
   std::int64_t file_bytes;
@@ -39,6 +42,10 @@ struct Plan {
 
 /// Throws io::SceneError, among others for a lattice that cannot be.
 Plan make_plan(io::Scene const& scene, Precision precision);
+
+/// Why dt is too large, if it is: above the stable one, or, where none is known, so that a step
+/// turns spins by more than 2 radians.
+std::optional<std::string> dt_warning(Plan const& plan);
 
 /// Is there memory for the run?
 bool fits(Plan const& plan);

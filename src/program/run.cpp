@@ -30,15 +30,9 @@ std::filesystem::path output_file(io::Scene const& scene, RunOptions const& opti
 }
 
 void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
-  if (!(plan.times.dt > plan.stable_dt) || plan.times.steps == 0) return;
-  auto const reason = plan.stable_dt > 0
-                          ? fmt::format("above the stable {:.6g}", plan.stable_dt)
-                          : std::string(
-                                "not stable: at this damping the method amplifies at every "
-                                "dt");
-  auto const line =
-      io::scene_error(scene, "integrator.dt", fmt::format("{:.6g} is {}", plan.times.dt, reason));
-  fmt::print(stderr, "warning: {}\n", line.what());
+  auto const reason = dt_warning(plan);
+  if (!reason) return;
+  fmt::print(stderr, "warning: {}\n", io::scene_error(scene, "integrator.dt", *reason).what());
 }
 
 template <class Space>

@@ -50,8 +50,8 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
         output_(scene.output),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
-        guard_(energy_must_fall(scene), std::numeric_limits<Real>::epsilon(),
-               guard_period(spins.sites())),
+        guard_(energy_must_fall(scene), !io::is_classical(scene.integrator.method),
+               std::numeric_limits<Real>::epsilon(), guard_period(spins.sites())),
         progress_(first, scene.integrator.steps, spins.sites(), quiet),
         frame_("cayspin::frame", static_cast<std::size_t>(spins.sites())),
         host_frame_(Kokkos::create_mirror_view(frame_)) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
@@ -23,9 +24,11 @@ std::string read_text(std::filesystem::path const& path) {
   }
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
-  std::string text(largest + 1, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::string text;
+  for (std::array<char, 4096> piece; text.size() <= largest && stream;) {
+    stream.read(piece.data(), piece.size());
+    text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  }
   if (!stream.is_open() || stream.bad()) {
     auto const reason = errno == 0 ? std::string("cannot be read")
                                    : "cannot be read: " + std::generic_category().message(errno);

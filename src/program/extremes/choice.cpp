@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "choice.hpp"
+
+#include <fmt/format.h>
+
+namespace cayspin::program::extremity {
+
+std::string Choice::method() const {
+  auto const& key = entry->key;
+  std::string name(io::to_string(key.method));
+  if (key.isotropy != io::Isotropy::zero) name += fmt::format(" {}", io::to_string(key.isotropy));
+  if (key.tangent) name += " tangent";
+  if (key.rigid_body) name += " (rigid body)";
+  return name;
+}
+
+std::string Choice::variant() const {
+  if (is_baseline() || entry->key.tangent) return "";
+  return fmt::format("{} {}", io::to_string(generator), io::to_string(rotation));
+}
+
+std::string Choice::toml() const {
+  auto const method = fmt::format("method = \"{}\"\n", io::to_string(entry->key.method));
+  if (is_baseline()) return method;
+  return fmt::format("{}generator = \"{}\"\nisotropy = \"{}\"\nrotation = \"{}\"\n", method,
+                     io::to_string(generator), io::to_string(entry->key.isotropy),
+                     io::to_string(rotation));
+}
+
+std::vector<Choice> all_choices() {
+  using enum io::Generator;
+  std::vector<Choice> choices;
+  for (auto const& entry : method_entries()) {
+    std::vector<io::Generator> generators{standard, orthogonal};
+    if (io::is_baseline(entry.key.method)) generators = {standard};
+    if (entry.key.tangent) generators = {tangent};
+    for (auto const generator : generators) {
+      choices.push_back({&entry, generator, io::Rotation::cayley});
+      if (entry.exponential) choices.push_back({&entry, generator, io::Rotation::exponential});
+    }
+  }
+  return choices;
+}
+
+}  // namespace cayspin::program::extremity

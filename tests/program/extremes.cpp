@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The tables of docs/extremes.md: the page is what is printed, and every run keeps its promise.
+#include "program_test.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace cayspin::program::test {
+namespace {
+
+using Json = nlohmann::json;
+
+class Extremes : public ProgramTest {
+ protected:
+  static std::string page() {
+    std::ifstream const file(CAYSPIN_DOCS "/extremes.md");
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  /// The runs of a section, by situation.
+  std::map<std::string, std::vector<Json>> runs(std::string const& section,
+                                                Arguments const& more = {}) const {
+    Arguments arguments{"extremes", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto const outcome = start(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    std::map<std::string, std::vector<Json>> runs;
+    std::istringstream lines(outcome.output);
+    for (std::string line; std::getline(lines, line);) {
+      auto const run = Json::parse(line);
+      EXPECT_TRUE(run.at("kept")) << line;
+      if (section.empty() || run.at("section") == section) {
+        auto const key = run.at("situation").get<std::string>();
+        runs[section.empty() ? run.at("section").get<std::string>() + ": " + key : key].push_back(
+            run);
+      }
+    }
+    return runs;
+  }
+
+  static double epsilon(Json const& run) {
+    return run.at("precision") == "double" ? 0x1p-52 : 0x1p-23;
+  }
+  static bool is_classical(Json const& run) {
+    return run.at("method").get<std::string>().starts_with("classical");
+  }
+};
+
+TEST_F(Extremes, ThePageIsWhatIsPrinted) {
+  auto const outcome = start({"extremes"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(page().starts_with(outcome.output))
+      << "docs/extremes.md begins with what `cayspin extremes` prints:\n"
+      << outcome.output;
+}
+
+// The promises once more, from the numbers alone.
+TEST_F(Extremes, RunsKeepTheirPromises) {
+  auto const all = runs("");
+  ASSERT_EQ(all.size(), 31U);
+  std::set<std::string> methods;
+  for (auto const& [situation, some] : all) {
+    ASSERT_GT(some.size(), 100U) << situation;
+    for (auto const& run : some) {
+      methods.insert(run.at("method"));
+      std::string const fate = run.at("fate");
+      std::int64_t const step = run.at("step"), steps = run.at("steps");
+      EXPECT_TRUE(fate != "drifts" || is_classical(run)) << run;
+      if (fate == "detected") {
+        EXPECT_GE(step, 0) << run;
+      }
+      if (step >= 0 || fate == "refused") {
+        EXPECT_FALSE(run.at("message").get<std::string>().empty()) << run;
+        continue;
+      }
+      if (!is_classical(run)) {
+        EXPECT_LE(run.at("norm"), 4.0 * (steps + 1)) << run;
+      }
+    }
+  }
+  EXPECT_GE(methods.size(), 28U);
+
+  auto const each = [&](std::string const& situation, auto const& expect) {
+    ASSERT_TRUE(all.contains(situation)) << situation;
+    for (auto const& run : all.at(situation))
+      expect(run, run.at("fate").template get<std::string>());
+  };
+  for (auto const* situation : {"Steps: dt 1e-300", "Steps: dt 1e-12", "Fields: A along m"})
+    each(situation,
+         [](Json const& run, std::string const& fate) { EXPECT_EQ(fate, "exact") << run; });
+  each("Turns: 1e160", [](Json const& run, std::string const&) {
+    EXPECT_LE(run.at("step"), 1) << run;  // -1 where nothing overflows
+  });
+  // The field's jump in the middle of a step: half a step's turn, at most.
+  each("Fields: on within a step", [](Json const& run, std::string const& fate) {
+    bool const body = run.at("method").get<std::string>().ends_with("(rigid body)");
+    if (fate != "bounded" || body) return;
+    EXPECT_LE(run.at("error").get<double>() * epsilon(run), 1. / 128) << run;
+  });
+  each("Starts: 1 + 1e-3", [](Json const& run, std::string const& fate) {
+    if (is_classical(run)) return;
+    EXPECT_EQ(fate, "detected") << run;
+    EXPECT_EQ(run.at("step"), 0) << run;
+  });
+  each("Lattices: 3e8 x 3e6",
+       [](Json const& run, std::string const& fate) { EXPECT_EQ(fate, "refused") << run; });
+  each("Faults: 64 spins",
+       [](Json const& run, std::string const&) { EXPECT_EQ(run.at("step"), 4) << run; });
+  each("Faults: 5000 spins", [](Json const& run, std::string const&) {
+    EXPECT_GT(run.at("step"), 3) << run;
+    EXPECT_LE(run.at("step"), 13) << run;
+  });
+}
+
+// What the table calls warned and refused, as `run` says it.
+TEST_F(Extremes, RunWarnsOfADtThatIsTooLarge) {
+  write("spin.toml", macrospin_scene());
+  for (auto const* method : {"ab2", "implicit_midpoint", "euler"}) {
+    auto const outcome =
+        start({"run", "spin.toml", "--quiet", "--output", "out.h5", "--overwrite", "--set",
+               std::string("integrator={method='") + method + "',dt=3.0,steps=1}", "--set",
+               "integrator.energy_guard=false"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, "warning: ") && contains(outcome.errors, "integrator.dt"));
+  }
+}
+
+TEST_F(Extremes, ALatticeThatDoesNotFitIsRefusedWithItsNeed) {
+  write("chain.toml", chain_scene());
+  auto const outcome = start({"run", "chain.toml", "--set", "lattice={shape=[300000000,3000000]}"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "the run needs ") &&
+              contains(outcome.errors, " of memory, ") && contains(outcome.errors, "available"));
+}
+
+// Minutes: ctest -C long -L long
+TEST_F(Extremes, DISABLED_LongRuns) {
+  auto const outcome = start({"extremes", "--long"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(page().ends_with(outcome.output)) << outcome.output;
+}
+
+}  // namespace
+}  // namespace cayspin::program::test
