@@ -103,7 +103,7 @@ int perform(int argc, char** argv) {
       ->required()
       ->check(CLI::Range(1e-13, 1.0));
   advise_command->add_option("--budget", advise_options.budget, "Time that the run may take")
-      ->check(
+      ->transform(
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                 CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
       ->type_name("TIME");

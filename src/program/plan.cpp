@@ -167,7 +167,7 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
 
 std::optional<std::string> dt_warning(Plan const& plan) {
   double const dt = plan.times.dt;
-  if (plan.times.steps == 0) return std::nullopt;
+  if (plan.times.steps == 0 || io::is_adaptive(plan.method.key.method)) return std::nullopt;
   if (dt > plan.stable_dt && plan.stable_dt > 0)
     return fmt::format("{:.6g} is above the stable {:.6g}", dt, plan.stable_dt);
   if (dt > plan.stable_dt)

@@ -177,8 +177,14 @@ class SceneField {
     return now;
   }
 
-  bool is_stationary() const { return !applied_.depends_on_time() && needs_time_alone(); }
-  bool needs_time_alone() const { return !layers_ && !stored_; }
+  template <class Exec, class Any>
+  bool is_stationary(Exec const& exec, Any const& spins) const {
+    return !applied_.depends_on_time() && needs_time_alone(exec, spins);
+  }
+  template <class Exec, class Any>
+  bool needs_time_alone(Exec const&, Any const&) const {
+    return !layers_ && !stored_;
+  }
 
   /// The same for rates of spins, the applied field's own rate in place of the field.
   template <class Exec>

@@ -94,12 +94,12 @@ class SceneGenerator {
 
   bool is_llg() const { return is_llg_; }
   template <class Exec>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return !is_llg_ || llg_.field().is_stationary();
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.is_stationary(exec, spins);
   }
   template <class Exec>
-  bool needs_time_alone(Exec const&, Spins const&) const {
-    return !is_llg_ || llg_.field().needs_time_alone();
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.needs_time_alone(exec, spins);
   }
   LandauLifshitz<SceneField<Spins>> const& landau_lifshitz() const { return llg_; }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/batch.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/isotropy/zero.hpp>
@@ -18,6 +19,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace cayspin {
@@ -143,41 +145,79 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   /// The error of a step from begin_ to end_: an angle.
   template <class Exec, class Generator>
   double try_step(Exec const& exec, Generator const& generator, double t, double dt) {
-    auto const h = static_cast<Real>(dt);
-    detail::for_each_site<Real>(
-        exec, labels_[0], begin_.layout(),
-        detail::KnownFirstStage<Tableau, Update, Real>{begin_.array(), first_.array(),
-                                                       increments_[0].output(streaming_),
-                                                       level(1).output(streaming_), h});
-    stages_from<1>(exec, generator, t, dt);
-    auto prepared = detail::prepare_term(generator, exec, end_, t + dt);
-    detail::for_each_site<Real>(
-        exec, end_label_, begin_.layout(),
-        detail::EndStage<Tableau, Update, Isotropy, decltype(prepared), Real>{
-            std::move(prepared), isotropy_, begin_.array(), end_.array(), increments(),
-            last_.output(streaming_), square_.output(false), h});
     evaluations_done_ += stages - 1;
+    bool at_once = false;
+    if constexpr (detail::is_host_execution<Exec>) {
+      at_once = detail::runs_on_calling_thread<Exec>(begin_.sites()) &&
+                detail::needs_time_alone(generator, exec, begin_);
+      if (at_once) stages_at_once(exec, generator, t, dt);
+    }
+    if (!at_once) {
+      detail::for_each_site<Real>(exec, labels_[0], begin_.layout(), first_stage(dt));
+      stages_from<1>(exec, generator, t, dt);
+      detail::for_each_site<Real>(
+          exec, end_label_, begin_.layout(),
+          end_stage(detail::prepare_term(generator, exec, end_, t + dt), dt));
+    }
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
   /// Spins that stage `stage` looks at; the last one looks at end_.
   Spins const& level(int stage) const { return (stages - 1 - stage) % 2 == 0 ? end_ : level_; }
 
+  detail::KnownFirstStage<Tableau, Update, Real> first_stage(double dt) const {
+    return {begin_.array(), first_.array(), increments_[0].output(streaming_),
+            level(1).output(streaming_), static_cast<Real>(dt)};
+  }
+  template <class Prepared>
+  auto end_stage(Prepared prepared, double dt) const {
+    return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
+        std::move(prepared),   isotropy_,
+        begin_.array(),        end_.array(),
+        increments(),          last_.output(streaming_),
+        square_.output(false), static_cast<Real>(dt)};
+  }
+  template <int Stage, class Prepared>
+  auto stage(Prepared prepared, double dt) const {
+    return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
+        std::move(prepared), isotropy_, static_cast<Real>(dt)};
+  }
+  template <int Stage>
+  Fields fields() const {
+    Fields fields;
+    fields.start = begin_.array();
+    fields.level = level(Stage).array();
+    for (int i = 0; i < Stage; ++i) fields.increments[i] = increments_[i].array();
+    fields.increment = increments_[Stage].output(streaming_);
+    fields.next = level(Stage + 1).output(streaming_);
+    return fields;
+  }
+
+  // Few spins: all stages in one launch.
+  template <class Exec, class Generator>
+  void stages_at_once(Exec const& exec, Generator const& generator, double t, double dt) {
+    auto const at = [&](double c) {
+      return detail::prepare_term(generator, exec, begin_, t + c * dt);
+    };
+    auto const& layout = begin_.layout();
+    [&]<int... I>(std::integer_sequence<int, I...>) {
+      detail::repeat_on_calling_thread(
+          step_label_, 1,
+          std::tuple(detail::repeated_row_loop<Real>(layout, first_stage(dt)),
+                     detail::StageRowLoop(stage<I + 1>(at(Tableau::c[I + 1]), dt), fields<I + 1>(),
+                                          layout)...,
+                     detail::repeated_row_loop<Real>(layout, end_stage(at(1), dt))));
+    }
+    (std::make_integer_sequence<int, stages - 2>{});
+  }
+
   template <int Stage, class Exec, class Generator>
   void stages_from(Exec const& exec, Generator const& generator, double t, double dt) {
     if constexpr (Stage + 1 < stages) {
       auto prepared =
           detail::prepare_term(generator, exec, level(Stage), t + Tableau::c[Stage] * dt);
-      Fields fields;
-      fields.start = begin_.array();
-      fields.level = level(Stage).array();
-      for (int i = 0; i < Stage; ++i) fields.increments[i] = increments_[i].array();
-      fields.increment = increments_[Stage].output(streaming_);
-      fields.next = level(Stage + 1).output(streaming_);
-      using Kernel =
-          detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, decltype(prepared), Real>;
-      detail::run_pass(exec, labels_[Stage], begin_.layout(),
-                       Kernel{std::move(prepared), isotropy_, static_cast<Real>(dt)}, fields);
+      detail::run_pass(exec, labels_[Stage], begin_.layout(), stage<Stage>(std::move(prepared), dt),
+                       fields<Stage>());
       stages_from<Stage + 1>(exec, generator, t, dt);
     }
   }
@@ -223,7 +263,8 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   }
 
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
-              dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error");
+              dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
+              step_label_ = this->label("::all_stages");
   std::array<std::string, stages> labels_;
   Isotropy isotropy_;
   StepOptions options_;

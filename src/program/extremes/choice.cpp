@@ -31,11 +31,15 @@ std::vector<Choice> all_choices() {
   using enum io::Generator;
   std::vector<Choice> choices;
   for (auto const& entry : method_entries()) {
+    if (io::is_adaptive(entry.key.method)) continue;  // dt is none of their steps
     std::vector<io::Generator> generators{standard, orthogonal};
-    if (io::is_baseline(entry.key.method)) generators = {standard};
+    if (io::is_baseline(entry.key.method) || io::is_red_black(entry.key.method))
+      generators = {standard};
     if (entry.key.tangent) generators = {tangent};
     for (auto const generator : generators) {
-      choices.push_back({&entry, generator, io::Rotation::cayley});
+      choices.push_back({&entry, generator,
+                         io::needs_exponential(entry.key.method) ? io::Rotation::exponential
+                                                                 : io::Rotation::cayley});
       if (entry.exponential) choices.push_back({&entry, generator, io::Rotation::exponential});
     }
   }

@@ -17,6 +17,11 @@ struct Choice {
 
   bool is_baseline() const { return io::is_baseline(entry->key.method); }
   bool is_classical() const { return io::is_classical(entry->key.method); }
+  /// Neighbours count as they were, or as they are foretold, while a spin moves.
+  bool takes_neighbors_apart() const {
+    auto const method = entry->key.method;
+    return io::is_red_black(method) || method == io::Method::fx3 || method == io::Method::fx4;
+  }
   bool of_rigid_bodies() const { return entry->key.rigid_body; }
 
   /// The method with its isotropy, and with its chart.
@@ -27,7 +32,7 @@ struct Choice {
   std::string toml() const;
 };
 
-/// Every method of the program with every generator and rotation it takes.
+/// Every method of the program that takes steps of dt, with every generator and rotation it takes.
 std::vector<Choice> all_choices();
 
 }  // namespace cayspin::program::extremity

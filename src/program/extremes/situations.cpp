@@ -110,7 +110,9 @@ Section lattices() {
   Section section{
       "Lattices",
       "Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact: each "
-      "spin is where one\nalone is, to 8 epsilon. A lattice that does not fit is refused with what "
+      "spin is where one\nalone is, to 8 epsilon; bounded for fx and red_black, which take "
+      "neighbours apart "
+      "from the spin. A lattice that does not fit is refused with what "
       "it needs "
       "and what there is; the largest that fits\nis the one that is not refused.",
       {exact, refused},

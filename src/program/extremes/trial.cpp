@@ -112,6 +112,8 @@ struct Run {
       stop(look.step() + 1, error.what());
     } catch (NotConverged const& error) {
       stop(look.step() + 1, error.what());
+    } catch (StepTooSmall const& error) {
+      stop(look.step() + 1, error.what());
     }
     spins = job.spins;
   }
