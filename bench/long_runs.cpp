@@ -68,22 +68,23 @@ class Runs {
         "and step |\n|---|---|---|---|---|---|---|\n");
   }
 
-  template <class Stepper>
-  void run(std::string const& method) const {
+  /// `made_with`: what the stepper is made with beside the spins.
+  template <class Stepper, class... Arguments>
+  void run(std::string const& method, Arguments const&... made_with) const {
     if (!options_.only.empty() && method != options_.only) return;
-    run<Stepper>(method, false);
-    run<Stepper>(method + ", energy control", true);
+    run_once<Stepper>(method, false, made_with...);
+    run_once<Stepper>(method + ", energy control", true, made_with...);
   }
 
  private:
-  template <class Stepper>
-  void run(std::string const& name, bool controlled) const {
+  template <class Stepper, class... Arguments>
+  void run_once(std::string const& name, bool controlled, Arguments const&... made_with) const {
     Spins spins("spins", lattice_);
     copy_from_host(random_spins(lattice_.sites()), spins);
     Generator const generator(EffectiveField(Exchange(lattice_, 1)), 0);
     Watch watch(generator, lattice_.sites());
     EnergyControl control(generator, spins, {.period = options_.period});
-    Stepper stepper(spins);
+    Stepper stepper(spins, made_with...);
     double const dt = Stepper::evaluations / options_.evaluations;
     Times const times{0, dt, options_.steps};
     Every looks(std::max<std::int64_t>(1, options_.steps / 1000), std::ref(watch));
@@ -134,9 +135,15 @@ int main(int argc, char** argv) {
   Runs const runs(options_of(argc, argv));
   runs.run<ProjectedRk4<Spins>>("RK4 + renormalise");
   runs.run<Rkmk4<Spins>>("RKMK4");
+  // H from the sum of the six neighbours, without the multiple of the spin itself that exchange
+  // has.
+  isotropy::Constant const neighbor_sum{6};
+  runs.run<Rkmk4<Spins, isotropy::Constant>>("RKMK4, sigma = 6", neighbor_sum);
   runs.run<StereographicRungeKutta<Spins, tableau::Classical4>>("RK4 in the chart");
   runs.run<Rkmk4<Spins, isotropy::Zero, Exponential>>("RKMK4, exponential");
   runs.run<CommutatorFree4<Spins>>("commutator-free 4");
+  runs.run<CommutatorFree4<Spins, isotropy::Constant>>("commutator-free 4, sigma = 6",
+                                                       neighbor_sum);
   runs.run<FieldExtrapolation4<Spins>>("field extrapolation 4");
   runs.run<RedBlack2<Spins>>("red-black 2");
   runs.run<RedBlack4<Spins>>("red-black 4");
