@@ -9,10 +9,10 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double aim = 0.7;       // of the error asked for
+constexpr double aim = 0.85;      // of the error asked for
 constexpr double seconds = 5;     // that a coarse run of the scene may take
 constexpr double far = 30;        // error over error asked for, from where to foretell
-constexpr double most_finer = 4;  // steps over those of the try before
+constexpr double most_finer = 4;  // cost over that of the try before
 constexpr int tries = 12;         // of one candidate
 constexpr int all_tries = 200;
 
@@ -123,8 +123,10 @@ class Search {
     auto const coarsest = coarsest_steps(pilot_, candidate, horizon_.horizon, horizon_.own_steps);
     double const order = pilot_.plan(candidate, horizon_.horizon, coarsest).method.order;
     bool const adaptive = candidate.is_adaptive();
+    // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
+    Steps const first = adaptive ? Steps{0, std::min(coarsest.tolerance, 30 * error_)} : coarsest;
     prospects_.push_back(
-        {candidate, adaptive ? 1 : order, adaptive ? 1 / order : 1, {}, coarsest, coarsest});
+        {candidate, adaptive ? 1 : order, adaptive ? 1 / order : 1, {}, coarsest, first});
   }
 
   Prospect* cheapest() {
@@ -151,10 +153,13 @@ class Search {
     } else {
       prospect.tried.push_back({steps, std::move(outcome), 0});
       judge(prospect);
-      double goal = 1.5 * now;
+      auto const at_cost = [&](double factor) {
+        return now * std::pow(factor, 1 / prospect.cost_order);
+      };
+      double goal = at_cost(1.5);
       if (prospect.is_judged())
-        goal = std::clamp(prospect.resolution(prospect.needed(2 * error_)), 1.3 * now,
-                          most_finer * now);
+        goal = std::clamp(prospect.resolution(prospect.needed(2 * error_)), at_cost(1.3),
+                          at_cost(most_finer));
       prospect.next = prospect.steps_of(goal);
     }
     prospect.dropped = prospect.attempts >= tries || !prospect.can_take(prospect.next) ||
@@ -164,7 +169,8 @@ class Search {
   // Finer steps that change the result by no less.
   bool is_round_off(Prospect const& prospect) const {
     return prospect.tried.size() > 2 && prospect.last().error > error_ &&
-           prospect.last().error < 1e-3 && prospect.seen_order() < 0.2 * prospect.order;
+           prospect.last().error < 100 * prospect.candidate.least_tolerance() &&
+           prospect.seen_order() < 0.2 * prospect.order;
   }
 
   // Of the last try and, once there are two, of the one before: by the finest solution so far where
