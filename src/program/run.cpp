@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "controlled_watch.hpp"
 #include "denormals.hpp"
 #include "describe.hpp"
 #include "failure.hpp"
@@ -8,7 +9,6 @@
 #include "restart.hpp"
 #include "text.hpp"
 #include "trade/automatic.hpp"
-#include "watch.hpp"
 
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/version.hpp>
@@ -69,6 +69,11 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
       },
       options.quiet);
   job.observer = &watch;
+  std::optional<ControlledWatch<Real, Space>> controlled;
+  if (scene.integrator.energy_control) {
+    controlled.emplace(watch, job.generator, spins);
+    job.observer = &*controlled;
+  }
 
   auto const kept = [&] {
     if (!watch.file()) return std::string("no frame was written");
@@ -87,6 +92,7 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
   } catch (StepTooSmall const& error) {
     throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
   }
+  if (controlled) summary.evaluations += controlled->evaluations();
   auto const frames = watch.file() ? watch.file()->frames() : 0;
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
   bool const whole = !watch.failure() && !watch.interrupted();
@@ -108,6 +114,10 @@ int run(RunOptions const& options) {
   io::check_files(typed);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
+  if (typed.integrator.energy_control && options.restart)
+    throw UsageError(
+        "--restart: energy_control holds the energy that a run begins with; accepted: "
+        "a run from its begin, or no energy_control");
   if (typed.integrator.method == io::Method::automatic && options.restart)
     throw UsageError(
         "--restart: method \"auto\" may choose other steps; accepted: the method and "

@@ -201,6 +201,8 @@ int advise_on(AdviseOptions const& options) {
   if (candidate.rotation != io::Rotation::cayley)
     overrides +=
         fmt::format(" --set 'integrator.rotation=\"{}\"'", io::to_string(candidate.rotation));
+  if (candidate.sigma != 0)
+    overrides += fmt::format(" --set 'integrator.isotropy={{constant={}}}'", candidate.sigma);
   if (candidate.is_adaptive()) {
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
     overrides += fmt::format(" --set integrator.tolerance={:.3g}", choice.steps.tolerance);

@@ -22,6 +22,21 @@ std::string accepted_isotropies(Integrator const& integrator, SystemKind kind) {
   return list;
 }
 
+void check_energy_control(Scene const& scene) {
+  auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
+  constexpr std::string_view key = "integrator.energy_control";
+  if (!integrator.energy_control) return;
+  if (system.kind == SystemKind::llg && (system.damping != 0 || !system.precession))
+    refuse(scene, key, "needs a system that conserves its energy",
+           "damping = 0 with precession, or no such key");
+  if (depends_on_time(scene)) refuse(scene, key, "needs a field without t", "no such key");
+  if (is_adaptive(integrator.method) || integrator.method == Method::automatic)
+    refuse(scene, key,
+           fmt::format("method \"{}\" does not step from the spins that it changes",
+                       to_string(integrator.method)),
+           "a method with steps of dt, or no such key");
+}
+
 void check_isotropy(Scene const& scene) {
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   constexpr std::string_view key = "integrator.isotropy";
@@ -88,6 +103,7 @@ void check_tangent(Scene const& scene) {
 void check_combination(Scene const& scene) {
   auto const& integrator = scene.integrator;
   auto const method = to_string(integrator.method);
+  check_energy_control(scene);
   if (is_baseline(integrator.method) || integrator.method == Method::automatic) return;
   if (needs_exponential(integrator.method) && integrator.rotation != Rotation::exponential)
     refuse(scene, "integrator.rotation",

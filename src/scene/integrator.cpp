@@ -136,7 +136,7 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table = root.table("integrator", "a table [integrator]");
   table.accept_only({"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end",
                      "steps", "tolerance", "min_dt", "max_dt", "error", "energy_guard",
-                     "until_torque"});
+                     "energy_control", "until_torque"});
   Integrator integrator;
   integrator.method = word<Method>(table.required("method", all_words<Method>()));
   read_coordinates(table, integrator);
@@ -148,6 +148,7 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
     table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");
   }
   if (auto const item = table.find("energy_guard")) integrator.energy_guard = boolean(*item);
+  if (auto const item = table.find("energy_control")) integrator.energy_control = boolean(*item);
   if (auto const item = table.find("until_torque")) {
     if (kind == SystemKind::rigid_body) {
       item->fail("a rigid body has no torque m x H", "no such key");

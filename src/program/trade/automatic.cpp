@@ -22,6 +22,8 @@ io::Scene with_method(io::Scene scene, std::string const& space, Precision preci
   integrator.method = choice.candidate.method;
   integrator.generator = choice.candidate.generator;
   integrator.rotation = choice.candidate.rotation;
+  integrator.sigma = choice.candidate.sigma;
+  if (integrator.sigma != 0) integrator.isotropy = io::Isotropy::constant;
   if (choice.candidate.is_adaptive()) {
     integrator.tolerance = choice.steps.tolerance;
   } else {

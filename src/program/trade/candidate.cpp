@@ -10,6 +10,7 @@ std::string Candidate::name() const {
   if (generator != io::Generator::standard) name += fmt::format(" {}", io::to_string(generator));
   if (rotation != io::Rotation::cayley && !io::needs_exponential(method))
     name += fmt::format(" {}", io::to_string(rotation));
+  if (sigma != 0) name += fmt::format(" sigma {:.3g}", sigma);
   if (precision == Precision::single_precision) name += ", single";
   return name;
 }
@@ -20,6 +21,15 @@ double Candidate::least_tolerance() const {
 }
 
 namespace {
+
+double sum_of_couplings(io::Scene const& scene) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    if (scene.lattice.shape[axis] > 1)
+      sum += 2 * scene.field.exchange.value_or(0) /
+             (scene.lattice.spacing[axis] * scene.lattice.spacing[axis]);
+  return sum;
+}
 
 bool is_possible(io::Scene const& scene, Candidate const& candidate) {
   try {
@@ -55,8 +65,15 @@ std::vector<Candidate> candidates(io::Scene const& scene) {
                              {projected_heun},
                              {projected_rk4},
                              {projected_dp5}};
+  // Exchange holds a multiple of the spin itself, which a constant sigma takes out: what is left
+  // turns neighbours alike.
+  if (double const sum = sum_of_couplings(scene); sum != 0)
+    for (auto const method : {rkmk4, cf4, dp5, tsit5})
+      all.push_back({.method = method, .sigma = sum});
   if (!io::depends_on_time(scene)) all.push_back({series4});
   for (auto const method : {fx3, fx4, red_black2, red_black4}) all.push_back({method});
+  for (auto& candidate : all)
+    if (io::needs_exponential(candidate.method)) candidate.rotation = exponential;
   std::erase_if(all, [&](Candidate const& candidate) { return !is_possible(scene, candidate); });
   auto const twice = all.size();
   for (std::size_t i = 0; i < twice; ++i) {
@@ -74,10 +91,11 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
   integrator.method = candidate.method;
   integrator.generator = candidate.generator;
   integrator.rotation = candidate.rotation;
-  integrator.isotropy = io::Isotropy::zero;
-  integrator.sigma = 0;
+  integrator.isotropy = candidate.sigma != 0 ? io::Isotropy::constant : io::Isotropy::zero;
+  integrator.sigma = candidate.sigma;
   integrator.until_torque.reset();
   integrator.error.reset();
+  integrator.energy_control = false;
   if (candidate.is_adaptive()) {
     integrator.tolerance = steps.tolerance;
     integrator.steps = looks;

@@ -17,6 +17,7 @@ struct Candidate {
   io::Generator generator = io::Generator::standard;
   io::Rotation rotation = io::Rotation::cayley;
   Precision precision = Precision::double_precision;
+  double sigma = 0;  // a constant isotropy
 
   bool is_adaptive() const { return io::is_adaptive(method); }
   bool is_baseline() const { return io::is_baseline(method); }

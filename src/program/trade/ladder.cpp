@@ -43,7 +43,9 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
   if (candidate.is_adaptive()) return {0, 0.1};
   // Fewer than an adaptive method takes at its coarsest, but stable ones.
   double const few = static_cast<double>(own_steps) / 4;
-  auto const plan = pilot.plan(candidate, horizon, {Pilot::looks, 0});
+  auto plain = candidate;
+  plain.sigma = 0;  // it may make slow modes grow by a little, which is no reason to begin finer
+  auto const plan = pilot.plan(plain, horizon, {Pilot::looks, 0});
   double const stable =
       plan.stable_dt > 0 && std::isfinite(plan.stable_dt) ? horizon / plan.stable_dt : 0;
   return {with_looks(std::max(few, stable)), 0};

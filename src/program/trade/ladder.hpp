@@ -27,7 +27,7 @@ struct Ladder {
 struct LadderLimits {
   double least_error = 1e-9;  // nothing finer is run
   double seconds = 10;        // nor anything that takes longer
-  double far_behind = 100;    // nor by a candidate so many times slower than another
+  double far_behind = 30;     // nor by a candidate so many times slower than another
   int rungs = 40;
 };
 
