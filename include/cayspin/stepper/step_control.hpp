@@ -54,7 +54,7 @@ class StepController {
   /// Errors of single steps add up on the way: a step may make this much of one. Calibrated on
   /// switching, films and Heisenberg lattices (docs/trade.md): low orders take more steps.
   double step_tolerance() const {
-    return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 10 : 1.0 / 40);
+    return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);
   }
 
   /// For spins that turn by at most `rate` per unit of time; `asked`: where nothing turns.
