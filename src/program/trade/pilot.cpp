@@ -80,7 +80,11 @@ double distance(Outcome const& a, Outcome const& b) {
 }
 
 Pilot::Pilot(io::Scene scene, std::string space)
-    : scene_(std::move(scene)), space_(std::move(space)), start_(io::initial_spins(scene_)) {}
+    : scene_(std::move(scene)), space_(std::move(space)), start_(io::initial_spins(scene_)) {
+  if (!(end() > 0))
+    throw io::scene_error(scene_, "integrator.steps",
+                          "a scene without steps has no errors; accepted: at least one step");
+}
 
 double Pilot::end() const {
   return static_cast<double>(scene_.integrator.steps) * scene_.integrator.dt;
