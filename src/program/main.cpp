@@ -91,9 +91,10 @@ int perform(int argc, char** argv) {
       ->check(CLI::Range(1, 65536));
   trade_command->add_option("--seconds", trade_options.seconds, "Longest run (default: 10)")
       ->check(CLI::PositiveNumber);
-  trade_command->add_flag("--json", trade_options.json, "The numbers as JSON");
-  trade_command->add_flag("--advice", trade_options.advice,
-                          "Also judge what `advise` says of the scene");
+  auto* json = trade_command->add_flag("--json", trade_options.json, "The numbers as JSON");
+  trade_command
+      ->add_flag("--advice", trade_options.advice, "Also judge what `advise` says of the scene")
+      ->excludes(json);
 
   AdviseOptions advise_options;
   auto* advise_command =

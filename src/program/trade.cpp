@@ -144,6 +144,26 @@ void print_verdicts(std::vector<Verdict> const& verdicts) {
   }
 }
 
+/// The whole [integrator] anew, since the scene's may have keys that this method does not take.
+std::string command_of(AdviseOptions const& options, Pilot const& pilot, Advice const& choice) {
+  auto const& candidate = choice.candidate;
+  std::string keys = fmt::format("method=\"{}\"", io::to_string(candidate.method));
+  if (candidate.generator != io::Generator::standard)
+    keys += fmt::format(",generator=\"{}\"", io::to_string(candidate.generator));
+  if (candidate.rotation != io::Rotation::cayley)
+    keys += fmt::format(",rotation=\"{}\"", io::to_string(candidate.rotation));
+  if (candidate.sigma != 0) keys += fmt::format(",isotropy={{constant={:#}}}", candidate.sigma);
+  if (candidate.is_adaptive())
+    keys += fmt::format(",tolerance={:.3g}", choice.steps.tolerance);
+  else
+    keys += fmt::format(",dt={:#}", choice.dt);
+  std::string command = fmt::format("cayspin run {}", options.scene.string());
+  for (auto const& override : options.overrides) command += fmt::format(" --set '{}'", override);
+  command += fmt::format(" --set 'integrator={{{},end={:#}}}'", keys, pilot.end());
+  if (candidate.precision == Precision::single_precision) command += " --precision single";
+  return command;
+}
+
 }  // namespace
 
 int trade_off(TradeOptions const& options) {
@@ -193,29 +213,15 @@ int advise_on(AdviseOptions const& options) {
   auto const& choice = *advised.choice;
   auto const& candidate = choice.candidate;
   fmt::print("method      {}\n", candidate.name());
-  std::string overrides =
-      fmt::format("--set 'integrator.method=\"{}\"'", io::to_string(candidate.method));
-  if (candidate.generator != io::Generator::standard)
-    overrides +=
-        fmt::format(" --set 'integrator.generator=\"{}\"'", io::to_string(candidate.generator));
-  if (candidate.rotation != io::Rotation::cayley)
-    overrides +=
-        fmt::format(" --set 'integrator.rotation=\"{}\"'", io::to_string(candidate.rotation));
-  if (candidate.sigma != 0)
-    overrides += fmt::format(" --set 'integrator.isotropy={{constant={}}}'", candidate.sigma);
-  if (candidate.is_adaptive()) {
+  if (candidate.is_adaptive())
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
-    overrides += fmt::format(" --set integrator.tolerance={:.3g}", choice.steps.tolerance);
-  } else {
+  else
     fmt::print("dt          {:.9g}, {} steps\n", choice.dt, choice.steps.count);
-    overrides += fmt::format(" --set integrator.dt={}", choice.dt);
-  }
-  if (candidate.precision == Precision::single_precision) overrides += " --precision single";
   fmt::print("error       {:.2g}, predicted{}\n", choice.error,
              advised.why_shorter.empty() ? "" : " at the horizon");
   fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
   fmt::print("memory      {}\n", bytes_text(choice.memory));
-  fmt::print("run it      cayspin run {} {}\n", scene.path.string(), overrides);
+  fmt::print("run it      {}\n", command_of(options, pilot, choice));
   fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
   for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
     fmt::print("  {:<26} {}\n", advised.others[i].candidate.name(),

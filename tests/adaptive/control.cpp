@@ -104,6 +104,18 @@ TEST(AdaptiveFailure, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
   EXPECT_NE(copy_to_host(spins), start);
 }
 
+// Rates whose square overflows, and times that no such step moves on from.
+TEST(AdaptiveFailure, FieldsTooStrongForTimeAreRefused) {
+  for (double const field : {1e30, 1e200}) {
+    auto spins = chain_start();
+    auto const start = copy_to_host(spins);
+    LandauLifshitz const generator(EffectiveField(Zeeman{{field, 0, 1}}), 0.1);
+    Tsit5 stepper(spins, {.tolerance = 1e-6});
+    EXPECT_THROW(stepper.step(Space(), generator, spins, 1, 1), StepTooSmall) << field;
+    EXPECT_EQ(copy_to_host(spins), start);
+  }
+}
+
 TEST(AdaptiveFailure, AStepBelowTheLeastAllowed) {
   auto spins = chain_start();
   Tsit5 stepper(spins, {.tolerance = 1e-10, .first_dt = 0.5, .min_dt = 0.4});

@@ -97,7 +97,10 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
 TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   auto const reference = exact();
   for (std::string const error : {"1e-3", "1e-6"}) {
-    auto const outcome = start({"advise", write("scene.toml", scene()), "--error", error});
+    // Of a scene with keys that not every method takes.
+    auto const outcome =
+        start({"advise", write("scene.toml", scene()), "--error", error, "--set",
+               "integrator={method=\"tsit5\",generator=\"tangent\",tolerance=1e-4,end=4.0}"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     std::istringstream lines(outcome.output);
     Arguments arguments;

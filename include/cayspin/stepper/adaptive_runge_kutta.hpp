@@ -124,6 +124,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     double const t = end_time_;
     while (true) {
       double const dt = within_end(t, next_dt_);
+      if (!(t + dt > t)) give_up(t, dt);  // time would stand still
       double const error = try_step(exec, generator, t, dt);
       double const on = controller_.next_dt(dt, error);
       if (controller_.accepts(error)) {

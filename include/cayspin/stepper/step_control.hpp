@@ -60,7 +60,8 @@ class StepController {
   /// For spins that turn by at most `rate` per unit of time; `asked`: where nothing turns.
   double first_dt(double rate, double asked) const {
     double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
-    double const dt = options_.first_dt > 0 ? options_.first_dt : rate > 0 ? angle / rate : asked;
+    bool const turns = rate > 0 && std::isfinite(rate);
+    double const dt = options_.first_dt > 0 ? options_.first_dt : turns ? angle / rate : asked;
     return std::clamp(dt, options_.min_dt, largest_dt());
   }
 

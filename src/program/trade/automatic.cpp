@@ -12,7 +12,11 @@ namespace cayspin::program::trade {
 
 io::Scene with_method(io::Scene scene, std::string const& space, Precision precision) {
   auto& integrator = scene.integrator;
-  if (integrator.method != io::Method::automatic || integrator.steps == 0) return scene;
+  if (integrator.method != io::Method::automatic) return scene;
+  if (integrator.steps == 0) {
+    integrator.method = io::Method::rkmk4;  // takes none of them
+    return scene;
+  }
   Pilot const pilot(scene, space);
   auto const advised = advise(pilot, {*integrator.error, {}, precision});
   if (!advised.choice)

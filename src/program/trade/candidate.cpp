@@ -96,6 +96,8 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
   integrator.until_torque.reset();
   integrator.error.reset();
   integrator.energy_control = false;
+  integrator.min_dt = io::Integrator{}.min_dt;
+  integrator.max_dt = io::Integrator{}.max_dt;
   if (candidate.is_adaptive()) {
     integrator.tolerance = steps.tolerance;
     integrator.steps = looks;
