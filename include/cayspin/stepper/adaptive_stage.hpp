@@ -54,11 +54,6 @@ struct KnownFirstStage {
 template <class Tableau>
 struct ErrorWeights {
   KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::error[j]; }
-  KOKKOS_FUNCTION static constexpr bool first(int j) {
-    for (int i = 0; i < j; ++i)
-      if (of(i) != 0) return false;
-    return true;
-  }
 };
 
 /// All increments of a step that has been taken.

@@ -14,13 +14,21 @@
 
 namespace cayspin::detail {
 
-/// sum of Weights<j> * v[j] over those j < Count with a weight.
+/// Are the weights before number j 0?
+template <class Weights>
+KOKKOS_FUNCTION constexpr bool is_first(int j) {
+  for (int i = 0; i < j; ++i)
+    if (Weights::of(i) != 0) return false;
+  return true;
+}
+
+/// sum of Weights::of(j) * v[j] over those j < Count with a weight.
 template <class Weights, int Count, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
   unrolled<Count>([&](auto j) {
     constexpr double weight = Weights::of(j());
-    constexpr bool first = Weights::first(j());
+    constexpr bool first = is_first<Weights>(j());
     using Scalar = scalar_t<Value>;
     if constexpr (weight != 0 && first) {
       sum = weight == 1 ? v[j()] : Value(static_cast<Scalar>(weight)) * v[j()];
@@ -34,31 +42,16 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
 template <class Tableau, int Row>
 struct StageWeights {
   KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::a[Row][j]; }
-  KOKKOS_FUNCTION static constexpr bool first(int j) {
-    for (int i = 0; i < j; ++i)
-      if (of(i) != 0) return false;
-    return true;
-  }
 };
 
 template <class Tableau>
 struct FinalWeights {
   KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::b[j]; }
-  KOKKOS_FUNCTION static constexpr bool first(int j) {
-    for (int i = 0; i < j; ++i)
-      if (of(i) != 0) return false;
-    return true;
-  }
 };
 
 template <class Tableau, int Row>
 struct SecondWeights {
   KOKKOS_FUNCTION static constexpr double of(int j) { return second_weight<Tableau>(Row, j); }
-  KOKKOS_FUNCTION static constexpr bool first(int j) {
-    for (int i = 0; i < j; ++i)
-      if (of(i) != 0) return false;
-    return true;
-  }
 };
 
 /// A chain's increments, b[i] times each, in terms of the coordinates of the spins after them.
