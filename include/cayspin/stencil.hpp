@@ -32,17 +32,25 @@ class Stencil {
   /// The same with `missing` for a neighbour where there is none.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type previous(vector_type const& missing) const {
-    return site_.template neighbor_or<Axis, 0>(spins_, missing);
+    return neighbor_or<Axis, 0>(missing);
   }
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type next(vector_type const& missing) const {
-    return site_.template neighbor_or<Axis, 1>(spins_, missing);
+    return neighbor_or<Axis, 1>(missing);
   }
 
   /// Position and loads of further per-site arrays (SiteField::array).
   KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
 
  private:
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type neighbor_or(vector_type const& missing) const {
+    if constexpr (Axis > 0) {
+      if (!site_.row().template has_neighbor<Axis, Direction>()) return missing;
+    }
+    return site_.template neighbor<Axis, Direction>(spins_, missing);
+  }
+
   Site const& site_;
   Spins const& spins_;
   vector_type center_;

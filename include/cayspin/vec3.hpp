@@ -42,4 +42,14 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> cross(Vec3<Value> const& a, Vec3<Value> 
           detail::multiply_subtract(a.x, b.y, Value(a.y * b.x))};
 }
 
+namespace detail {
+
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask const& condition,
+                                               Vec3<Value> const& yes, Vec3<Value> const& no) {
+  return {select<Value>(condition, yes.x, no.x), select<Value>(condition, yes.y, no.y),
+          select<Value>(condition, yes.z, no.z)};
+}
+
+}  // namespace detail
 }  // namespace cayspin

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cayspin/detail/every_other.hpp>
-#include <cayspin/detail/site.hpp>
+#include <cayspin/detail/rows.hpp>
+#include <cayspin/detail/sites_of_row.hpp>
 
 namespace cayspin::detail {
 
@@ -10,18 +11,15 @@ namespace cayspin::detail {
 /// x + 2, ... What is loaded lies between the first lane's neighbour before and the last one's
 /// behind, in the row's own memory, and is of the other colour but for the sites themselves.
 template <class Value, bool AtEdge>
-class ColourSite {
+class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
+  using Base = SitesOfRow<Value, AtEdge, 2>;
+  using Base::row_, Base::x_;
+
  public:
-  using value_type = Value;
-  using scalar_type = scalar_t<Value>;
+  using typename Base::scalar_type;
   using mask_type = typename ValueTraits<Value>::mask;
-  static constexpr int lanes = lanes_of<Value>;
+  using Base::Base, Base::lanes;
 
-  KOKKOS_FORCEINLINE_FUNCTION ColourSite(Row const& row, std::int32_t x) : row_(row), x_(x) {}
-
-  KOKKOS_FORCEINLINE_FUNCTION Row const& row() const { return row_; }
-  KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
-  KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return row_.z; }
   /// x + the lane's number is not where the lane is.
   std::int32_t x() const = delete;
 
@@ -87,27 +85,6 @@ class ColourSite {
     else
       return beside<Direction>(row, center);
   }
-  template <int Axis, int Direction, class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor_or(SiteArray<Real, 3> const& array,
-                                                      Vec3<Value> const& missing) const {
-    if constexpr (Axis > 0) {
-      if (row_.to_neighbor[Axis - 1][Direction] == 0) return missing;
-    }
-    return neighbor<Axis, Direction>(array, missing);
-  }
-  /// `found`, a neighbour along x, but `missing` on the lane at an open end.
-  template <int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
-                                                          Vec3<Value> const& missing) const {
-    if constexpr (AtEdge) {
-      if (!row_.periodic_x && holds_end<Direction>()) {
-        auto const end = is_end<Direction>();
-        return {select<Value>(end, missing.x, found.x), select<Value>(end, missing.y, found.y),
-                select<Value>(end, missing.z, found.z)};
-      }
-    }
-    return found;
-  }
 
  private:
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t count() const {
@@ -116,17 +93,6 @@ class ColourSite {
   }
   /// Do whole packs stay within the row's memory?
   KOKKOS_FORCEINLINE_FUNCTION bool has_room() const { return x_ + 2 * lanes <= row_.pitch; }
-
-  template <int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
-    std::int32_t const ahead = row_.nx - 1 - x_;
-    return Direction == 0 ? x_ == 0 : ahead % 2 == 0 && ahead < 2 * lanes;
-  }
-  template <int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
-    std::int32_t const lane = Direction == 0 ? 0 : (row_.nx - 1 - x_) / 2;
-    return lane_numbers<Value>() == Value(static_cast<scalar_type>(lane));
-  }
 
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value at(Real const* row) const {
@@ -149,11 +115,9 @@ class ColourSite {
                         : load_every_other_of<Value>(row + x_ + (Direction == 0 ? -1 : 1),
                                                      Direction == 0 && x_ == 0 ? 1 : 0,
                                                      row_.nx - 1 - x_ + (Direction == 0 ? 1 : -1));
-      if (holds_end<Direction>()) {
-        Value const past =
-            row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;
-        found = select<Value>(is_end<Direction>(), past, found);
-      }
+      if (this->template holds_end<Direction>())
+        found = select<Value>(this->template is_end<Direction>(),
+                              this->template past_end<Direction>(row, center), found);
       return found;
     } else {
       return whole_beside<Direction>(row);
@@ -166,9 +130,6 @@ class ColourSite {
     else
       return load_every_other<1, Value>(row + x_);
   }
-
-  Row const& row_;
-  std::int32_t x_;
 };
 
 }  // namespace cayspin::detail

@@ -56,8 +56,7 @@ struct ExactFlow {
     Vec3<Value> const end = small(f, turn2, q);
     if (holds_everywhere(Mask(near || others))) return end;
     Vec3<Value> const far = large(h, q);
-    return {select<Value>(near, end.x, far.x), select<Value>(near, end.y, far.y),
-            select<Value>(near, end.z, far.z)};
+    return select<Value>(near, end, far);
   }
 
   /// Where q is after dt/2, to first order; q itself where that is far off.
@@ -66,8 +65,7 @@ struct ExactFlow {
     Vec3<Value> const a = precession ? h + relaxing : relaxing;
     Vec3<Value> const way = Value(Scalar(0.5) * dt) * cross(a, q);
     auto const near = dot(way, way) < Value(Scalar(1));
-    return {select<Value>(near, q.x + way.x, q.x), select<Value>(near, q.y + way.y, q.y),
-            select<Value>(near, q.z + way.z, q.z)};
+    return select<Value>(near, q + way, q);
   }
 
  private:

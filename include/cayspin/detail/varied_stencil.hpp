@@ -27,14 +27,10 @@ class NeighborsOfSite {
     if constexpr (Axis == 0)
       return site_.template unless_past_end<Direction>(found, missing);
     else
-      return is_missing<Axis, Direction>() ? missing : found;
+      return site_.row().template has_neighbor<Axis, Direction>() ? found : missing;
   }
 
  private:
-  template <int Axis, int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION bool is_missing() const {
-    return site_.row().to_neighbor[Axis - 1][Direction] == 0;
-  }
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION void load(SiteArray<Real, 3> const& spins) {
     value_type const zero(Real(0));
@@ -42,9 +38,9 @@ class NeighborsOfSite {
     if constexpr (Axis == 0)
       found_[Axis][Direction] = site_.template neighbor<Axis, Direction>(spins, none);
     else
-      found_[Axis][Direction] = is_missing<Axis, Direction>()
-                                    ? none
-                                    : site_.template neighbor<Axis, Direction>(spins, none);
+      found_[Axis][Direction] = site_.row().template has_neighbor<Axis, Direction>()
+                                    ? site_.template neighbor<Axis, Direction>(spins, none)
+                                    : none;
   }
 
   Site const& site_;

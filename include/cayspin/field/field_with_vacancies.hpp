@@ -58,9 +58,7 @@ class StencilAmongVacancies {
                                                         vector_type const& missing) const {
     value_type const zero(0);  // past an open end too, where the neighbour is the spin itself
     auto const vacant = site().template neighbor<Axis, Direction>(occupation_, zero) == zero;
-    return {select<value_type>(vacant, missing.x, neighbor.x),
-            select<value_type>(vacant, missing.y, neighbor.y),
-            select<value_type>(vacant, missing.z, neighbor.z)};
+    return select<value_type>(vacant, missing, neighbor);
   }
 
   Stencil const& stencil_;

@@ -55,9 +55,7 @@ struct ProjectStage {
     Vec3<Value> const projected = Cayley::rotate(multiply_add(Value(epsilon), m0, f), m0);
     // Where there is no f the step stays as it is.
     auto const none = dot(f, f) == Value(0);
-    site.store({select<Value>(none, m1.x, projected.x), select<Value>(none, m1.y, projected.y),
-                select<Value>(none, m1.z, projected.z)},
-               next);
+    site.store(select<Value>(none, m1, projected), next);
   }
 };
 

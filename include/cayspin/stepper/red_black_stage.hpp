@@ -173,8 +173,7 @@ struct RedBlackStage {
     KOKKOS_FORCEINLINE_FUNCTION bool settles() {
       Vector const next = own(Value(Real(0.5)) * (q_ + end_));
       Mask const rests = largest_component(next - d_) < enough_;
-      d_ = {select<Value>(rests, d_.x, next.x), select<Value>(rests, d_.y, next.y),
-            select<Value>(rests, d_.z, next.z)};
+      d_ = select<Value>(rests, d_, next);
       return holds_everywhere(Mask(rests || outside()));
     }
     KOKKOS_FORCEINLINE_FUNCTION void arrive() { q_ = end_; }

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cayspin::detail {
+
+/// A row along x and the way to its neighbour rows; an open end leads back to the row itself.
+struct Row {
+  std::ptrdiff_t offset;
+  std::ptrdiff_t to_neighbor[2][2];  // [axis - 1][previous, next], relative to `offset`
+  std::int32_t nx, y, z;
+  bool periodic_x;
+  std::ptrdiff_t pitch;
+
+  KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int64_t row)
+      : Row(layout, static_cast<std::int32_t>(row % layout.ny),
+            static_cast<std::int32_t>(row / layout.ny)) {}
+  KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int32_t at_y, std::int32_t at_z)
+      : offset((std::int64_t(at_z) * layout.ny + at_y) * layout.pitch),
+        nx(layout.nx),
+        y(at_y),
+        z(at_z),
+        periodic_x(layout.periodic[0]),
+        pitch(layout.pitch) {
+    step(0, y, layout.ny, layout.pitch, layout.periodic[1]);
+    step(1, z, layout.nz, layout.pitch * layout.ny, layout.periodic[2]);
+  }
+
+  /// Of the rows beside it: along x it depends on the site.
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
+    return to_neighbor[Axis - 1][Direction] != 0;
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION void step(int which, std::int32_t index, std::int32_t extent,
+                                        std::ptrdiff_t stride, bool periodic) {
+    std::ptrdiff_t const around = periodic ? (extent - 1) * stride : 0;
+    to_neighbor[which][0] = index > 0 ? -stride : around;
+    to_neighbor[which][1] = index + 1 < extent ? stride : -around;
+  }
+};
+
+/// The sites that one iteration works on, as many as Value has lanes: x, x + Spacing, ... in one
+/// row. AtEdge: they may hold the first or the last site of the row.
+template <class Value, bool AtEdge, int Spacing>
+class SitesOfRow {
+ public:
+  using value_type = Value;
+  using scalar_type = scalar_t<Value>;
+  static constexpr int lanes = lanes_of<Value>;
+
+  KOKKOS_FORCEINLINE_FUNCTION SitesOfRow(Row const& row, std::int32_t x) : row_(row), x_(x) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION Row const& row() const { return row_; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return row_.z; }
+
+  /// `found`, a neighbour along x, but `missing` on the lane at an open end.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
+                                                          Vec3<Value> const& missing) const {
+    if constexpr (AtEdge) {
+      if (!row_.periodic_x && holds_end<Direction>())
+        return select<Value>(is_end<Direction>(), missing, found);
+    }
+    return found;
+  }
+
+ protected:
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
+    std::int32_t const way = to_end<Direction>();
+    return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
+  }
+  /// The lane without a neighbour beside it in the row, where it holds_end.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
+    return lane_numbers<Value>() == Value(static_cast<scalar_type>(to_end<Direction>() / Spacing));
+  }
+  /// What stands for the neighbour past the end of a row: the other end, or `center`.
+  template <int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value past_end(Real const* row, Value const& center) const {
+    return row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;
+  }
+
+  Row const& row_;
+  std::int32_t x_;
+
+ private:
+  /// From the first lane to the end of the row.
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t to_end() const {
+    return Direction == 0 ? -x_ : row_.nx - 1 - x_;
+  }
+};
+
+}  // namespace cayspin::detail
