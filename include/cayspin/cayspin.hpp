@@ -44,4 +44,5 @@
 #include <cayspin/stepper/rkmk.hpp>
 #include <cayspin/stepper/rkmk4.hpp>
 #include <cayspin/stepper/series4.hpp>
+#include <cayspin/stepper/tableau_dormand_prince8.hpp>
 #include <cayspin/vec3.hpp>

@@ -56,6 +56,8 @@ MethodEntries euler_entries();
 MethodEntries corrected_euler_entries();
 MethodEntries heun_entries();
 MethodEntries rkmk4_entries();
+MethodEntries rkmk5_entries();
+MethodEntries rkmk8_entries();
 MethodEntries adams_bashforth_entries();
 MethodEntries implicit_entries();
 MethodEntries series4_entries();

@@ -11,10 +11,11 @@ std::span<MethodEntry const> method_entries() {
     MethodEntries all;
     for (auto const& some :
          {euler_entries(), corrected_euler_entries(), heun_entries(), rkmk4_entries(),
-          adams_bashforth_entries(), implicit_entries(), series4_entries(), tangent_entries(),
-          commutator_free_entries(), field_extrapolation_entries(), red_black_entries(),
-          tsitouras_entries(), dormand_prince_entries(), bogacki_shampine_entries(),
-          classical_entries(), projected_entries()})
+          rkmk5_entries(), rkmk8_entries(), adams_bashforth_entries(), implicit_entries(),
+          series4_entries(), tangent_entries(), commutator_free_entries(),
+          field_extrapolation_entries(), red_black_entries(), tsitouras_entries(),
+          dormand_prince_entries(), bogacki_shampine_entries(), classical_entries(),
+          projected_entries()})
       all.insert(all.end(), some.begin(), some.end());
     return all;
   }();

@@ -22,6 +22,8 @@ constexpr auto methods = std::to_array<Word<Method>>({
     {"heun", Method::heun},
     {"rkmk4", Method::rkmk4},
     {"rkmk4_as_printed", Method::rkmk4_as_printed},
+    {"rkmk5", Method::rkmk5},
+    {"rkmk8", Method::rkmk8},
     {"series4", Method::series4},
     {"series4_paper", Method::series4_paper},
     {"ab2", Method::ab2},
@@ -40,6 +42,8 @@ constexpr auto methods = std::to_array<Word<Method>>({
     {"projected_euler", Method::projected_euler},
     {"projected_heun", Method::projected_heun},
     {"projected_rk4", Method::projected_rk4},
+    {"projected_rk5", Method::projected_rk5},
+    {"projected_rk8", Method::projected_rk8},
     {"projected_dp5", Method::projected_dp5},
     {"auto", Method::automatic},
 });
@@ -91,6 +95,12 @@ std::span<Word<Rotation> const> words() {
   return rotations;
 }
 
+namespace {
+
+bool is_of_high_order(Method method) { return method == Method::rkmk5 || method == Method::rkmk8; }
+
+}  // namespace
+
 bool is_classical(Method method) {
   return method == Method::classical_euler || method == Method::classical_heun ||
          method == Method::classical_rk4;
@@ -99,6 +109,7 @@ bool is_classical(Method method) {
 bool is_baseline(Method method) {
   return is_classical(method) || method == Method::projected_euler ||
          method == Method::projected_heun || method == Method::projected_rk4 ||
+         method == Method::projected_rk5 || method == Method::projected_rk8 ||
          method == Method::projected_dp5;
 }
 
@@ -112,9 +123,9 @@ bool is_series(Method method) {
 }
 
 bool needs_cayley(Method method) {
-  return method == Method::rkmk4_as_printed || method == Method::implicit_midpoint ||
-         is_series(method) || is_red_black(method) || method == Method::fx3 ||
-         method == Method::fx4;
+  return method == Method::rkmk4_as_printed || is_of_high_order(method) ||
+         method == Method::implicit_midpoint || is_series(method) || is_red_black(method) ||
+         method == Method::fx3 || method == Method::fx4;
 }
 
 bool is_red_black(Method method) {
@@ -132,7 +143,8 @@ bool is_of_the_paper(Method method) {  // its explicit methods
 }  // namespace
 
 bool takes_tangent(Method method) {
-  return is_of_the_paper(method) || (is_adaptive(method) && !is_baseline(method));
+  return is_of_the_paper(method) || is_of_high_order(method) ||
+         (is_adaptive(method) && !is_baseline(method));
 }
 
 bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind) {

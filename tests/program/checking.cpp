@@ -141,7 +141,8 @@ TEST_F(Checking, CountsMemory) {
   EXPECT_NEAR(bytes("euler", "double") / (2 * 24), 1, 0.15);
   EXPECT_NEAR(bytes("euler", "single") / (2 * 12), 1, 0.3);
   EXPECT_NEAR(bytes("euler", "double") / bytes("series4", "double"), 2. / 8, 1e-12);
-  // A sweep's two fields and its buffers, or, where the cores' caches are large, the five of passes.
+  // A sweep's two fields and its buffers, or, where the cores' caches are large, the five of
+  // passes.
   EXPECT_GT(bytes("rkmk4", "double"), bytes("euler", "double"));
   EXPECT_LE(bytes("rkmk4", "double"), 5. / 2 * bytes("euler", "double") * (1 + 1e-12));
 }
@@ -194,9 +195,10 @@ TEST_F(Checking, MethodsListsEveryMethodOnce) {
   EXPECT_EQ(outcome.errors, "");
   write("chain.toml", chain_scene());
   for (std::string const method :
-       {"euler", "implicit_euler", "heun", "rkmk4", "rkmk4_as_printed", "series4", "series4_paper",
-        "ab2", "implicit_midpoint", "classical_euler", "classical_heun", "classical_rk4",
-        "projected_euler", "projected_heun", "projected_rk4"}) {
+       {"euler", "implicit_euler", "heun", "rkmk4", "rkmk4_as_printed", "rkmk5", "rkmk8", "series4",
+        "series4_paper", "ab2", "implicit_midpoint", "classical_euler", "classical_heun",
+        "classical_rk4", "projected_euler", "projected_heun", "projected_rk4", "projected_rk5",
+        "projected_rk8"}) {
     EXPECT_TRUE(contains(outcome.output, "\n" + method + " "));
     EXPECT_EQ(start({"check", "chain.toml", "--set", "integrator.method='" + method + "'"}).status,
               0)

@@ -132,16 +132,20 @@ TEST_F(SamePhysics, OrthogonalConstantAndExponentialAgreeToTheMethodsOrder) {
 }
 
 TEST_F(SamePhysics, MethodsAgreeToTheirOrder) {
-  auto const reference = spins(chain_scene(), {});
+  auto const reference = spins(chain_scene(), {"--set", "integrator.method='rkmk8'"});
   for (auto const& [method, tolerance] :
        std::vector<std::pair<std::string, double>>{{"euler", 0.2},
                                                    {"rkmk4_as_printed", 1e-4},
+                                                   {"rkmk5", 1e-7},
+
                                                    {"classical_euler", 0.2},
                                                    {"classical_heun", 5e-3},
                                                    {"classical_rk4", 1e-5},
                                                    {"projected_euler", 0.2},
                                                    {"projected_heun", 5e-3},
-                                                   {"projected_rk4", 1e-5}}) {
+                                                   {"projected_rk4", 1e-5},
+                                                   {"projected_rk5", 1e-7},
+                                                   {"projected_rk8", 5e-9}}) {
     auto const difference =
         distance(spins(chain_scene(), {"--set", "integrator.method='" + method + "'", "--set",
                                        "integrator.energy_guard=false"}),

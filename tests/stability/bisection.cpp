@@ -95,6 +95,9 @@ TEST(TrueLimit, LieEuler) { expect_limits<LieEuler<Spins, Constant>>("Euler"); }
 TEST(TrueLimit, LieHeun) { expect_limits<LieHeun<Spins, Constant>>("Heun"); }
 TEST(TrueLimit, Rkmk4) { expect_limits<Rkmk4<Spins, Constant>>("rkmk4"); }
 TEST(TrueLimit, CommutatorFree4) { expect_limits<CommutatorFree4<Spins, Constant>>("cf4"); }
+TEST(TrueLimit, DormandPrince8) {
+  expect_limits<Rkmk<Spins, tableau::DormandPrince8, Constant>>("order 8");
+}
 TEST(TrueLimit, Tsitouras5) {
   expect_limits<Rkmk<Spins, tableau::Tsitouras5, Constant>>("Tsitouras");
 }

@@ -18,6 +18,8 @@ enum class Method {
   heun,
   rkmk4,
   rkmk4_as_printed,
+  rkmk5,
+  rkmk8,
   series4,
   series4_paper,
   ab2,
@@ -36,6 +38,8 @@ enum class Method {
   projected_euler,
   projected_heun,
   projected_rk4,
+  projected_rk5,
+  projected_rk8,
   projected_dp5,
   automatic  ///< the word "auto": chosen by a run's error
 };

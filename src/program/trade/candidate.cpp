@@ -49,6 +49,10 @@ std::vector<Candidate> candidates(io::Scene const& scene) {
   std::vector<Candidate> all{{rkmk4},
                              {rkmk4, tangent},
                              {rkmk4, standard, exponential},
+                             {rkmk5},
+                             {rkmk5, tangent},
+                             {rkmk8},
+                             {rkmk8, tangent},
                              {cf4, standard, exponential},
                              {bs3},
                              {bs3, tangent},
@@ -64,11 +68,13 @@ std::vector<Candidate> candidates(io::Scene const& scene) {
                              {implicit_midpoint},
                              {projected_heun},
                              {projected_rk4},
+                             {projected_rk5},
+                             {projected_rk8},
                              {projected_dp5}};
   // Exchange holds a multiple of the spin itself, which a constant sigma takes out: what is left
   // turns neighbours alike.
   if (double const sum = sum_of_couplings(scene); sum != 0)
-    for (auto const method : {rkmk4, cf4, dp5, tsit5})
+    for (auto const method : {rkmk4, rkmk8, cf4, dp5, tsit5})
       all.push_back({.method = method, .sigma = sum});
   if (!io::depends_on_time(scene)) all.push_back({series4});
   for (auto const method : {fx3, fx4, red_black2, red_black4}) all.push_back({method});
