@@ -7,9 +7,9 @@ namespace cayspin::program {
 namespace {
 
 template <class Spins, class>
-using Standard = CommutatorFree4<Spins, SceneIsotropy>;
+using CommutatorFree = CommutatorFree4<Spins, SceneIsotropy>;
 
-struct Family : LieFamily<Standard> {
+struct Family : LieFamily<CommutatorFree> {
   static constexpr bool exponential = false;  // the stepper has its own
 };
 

@@ -90,7 +90,8 @@ struct Entry {
 };
 
 /// What methods on the Lie group have in common: both rotations, a constant sigma, any generator, a
-/// bound on dt by the stepper's own stages.
+/// bound on dt by the stepper's own stages. (Templates given as StepperOf need names of their own:
+/// g++ takes aliases of one name for the same, even out of unnamed namespaces of different files.)
 template <template <class, class> class StepperOf>
 struct LieFamily {
   static constexpr bool exponential = true;

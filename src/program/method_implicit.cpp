@@ -7,13 +7,13 @@ namespace cayspin::program {
 namespace {
 
 template <class Spins, class Rotation>
-using Euler = ImplicitLieEuler<Spins, SceneIsotropy, Rotation>;
+using ImplicitEuler = ImplicitLieEuler<Spins, SceneIsotropy, Rotation>;
 template <class Spins, class Rotation>
 using CorrectedEuler = ImplicitLieEuler<Spins, isotropy::Analytic, Rotation>;
 template <class Spins, class Rotation>
 using Midpoint = ImplicitMidpoint<Spins>;
 
-struct Family : LieFamily<Euler>, Unbounded {
+struct Family : LieFamily<ImplicitEuler>, Unbounded {
   using Unbounded::Linear;
 };
 struct CorrectedFamily : LieFamily<CorrectedEuler>, Unbounded {

@@ -7,9 +7,9 @@ namespace cayspin::program {
 namespace {
 
 template <class Spins, class>
-using Second = RedBlack<Spins, 2>;
+using RedBlack2 = RedBlack<Spins, 2>;
 template <class Spins, class>
-using Fourth = RedBlack<Spins, 4>;
+using RedBlack4 = RedBlack<Spins, 4>;
 
 template <template <class, class> class Stepper>
 struct OfSpins : PlainFamily<Stepper> {
@@ -25,7 +25,8 @@ struct OfSpins : PlainFamily<Stepper> {
 
 MethodEntries red_black_entries() {
   using enum io::Method;
-  return {Entry<OfSpins<Second>>::make({red_black2}), Entry<OfSpins<Fourth>>::make({red_black4})};
+  return {Entry<OfSpins<RedBlack2>>::make({red_black2}),
+          Entry<OfSpins<RedBlack4>>::make({red_black4})};
 }
 
 }  // namespace cayspin::program

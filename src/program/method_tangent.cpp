@@ -7,20 +7,20 @@ namespace cayspin::program {
 namespace {
 
 template <class Spins, class Rotation>
-using Euler = StereographicRungeKutta<Spins, tableau::Euler>;
+using ChartEuler = StereographicRungeKutta<Spins, tableau::Euler>;
 template <class Spins, class Rotation>
-using Heun = StereographicRungeKutta<Spins, tableau::Heun>;
+using ChartHeun = StereographicRungeKutta<Spins, tableau::Heun>;
 template <class Spins, class Rotation>
-using RungeKutta4 = StereographicRungeKutta<Spins, tableau::Classical4>;
+using ChartRungeKutta4 = StereographicRungeKutta<Spins, tableau::Classical4>;
 
 }  // namespace
 
 MethodEntries tangent_entries() {
   using enum io::Method;
   using enum io::Isotropy;
-  return {Entry<PlainFamily<Euler>>::make({euler, zero, true}),
-          Entry<PlainFamily<Heun>>::make({heun, zero, true}),
-          Entry<PlainFamily<RungeKutta4>>::make({rkmk4, zero, true})};
+  return {Entry<PlainFamily<ChartEuler>>::make({euler, zero, true}),
+          Entry<PlainFamily<ChartHeun>>::make({heun, zero, true}),
+          Entry<PlainFamily<ChartRungeKutta4>>::make({rkmk4, zero, true})};
 }
 
 }  // namespace cayspin::program

@@ -163,6 +163,23 @@ TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
   expect_orders(bodies_scene(), io::SystemKind::rigid_body, 95, 1e-12, 2e-5);
 }
 
+// Steps so long that their orders, of whose errors little is left above, are told apart.
+TEST_F(AllMethods, OrderEightIsFarMoreAccurateThanOrderFive) {
+  auto const with = [&](std::string const& method, std::string const& generator, char const* dt) {
+    return end(bodies_scene(),
+               {"--set", "integrator.method='" + method + "'", "--set",
+                "integrator.generator='" + generator + "'"},
+               dt);
+  };
+  for (std::string const generator : {"default", "orthogonal", "tangent"}) {
+    auto const exact = with("rkmk8", generator, "0.0125");
+    double const fifth = distance(with("rkmk5", generator, "0.1"), exact);
+    double const eighth = distance(with("rkmk8", generator, "0.1"), exact);
+    EXPECT_LT(eighth, 0.02 * fifth) << generator;
+    EXPECT_GT(eighth, 0) << generator;
+  }
+}
+
 TEST_F(AllMethods, WithoutMeaningAreRefusedInOneLine) {
   auto const scene = write("scene.toml", bodies_scene());
   int refused = 0;

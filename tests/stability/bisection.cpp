@@ -52,7 +52,7 @@ double across(Spins const& spins) {
 /// The dt from which on the mode grows, near `guess`.
 template <class Stepper, class Generator>
 double bisected(Generator const& generator, Spins const& start, double guess, double sigma) {
-  double stable = 0.9 * guess, unstable = 1.2 * guess;
+  double stable = 0.95 * guess, unstable = 1.05 * guess;
   auto const grows = [&](double dt) {
     return !(across(run<Stepper>(generator, start, dt, 200, Constant{sigma})) < across(start));
   };
