@@ -5,8 +5,6 @@
 
 #include <cayspin/io/words.hpp>
 
-#include <cmath>
-
 namespace cayspin::program::test {
 namespace {
 
@@ -21,12 +19,6 @@ struct AdaptiveMethods : ProgramTest {
     auto const outcome = start_with(more);
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     return last_spins("out.h5");
-  }
-  static double distance(std::vector<double> const& a, std::vector<double> const& b) {
-    double largest = a.size() == b.size() ? 0 : INFINITY;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-      largest = std::max(largest, std::abs(a[i] - b[i]));
-    return largest;
   }
 };
 

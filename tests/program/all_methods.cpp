@@ -74,13 +74,6 @@ class AllMethods : public ProgramTest {
     return last_spins("out.h5");
   }
 
-  static double distance(std::vector<double> const& a, std::vector<double> const& b) {
-    double largest = a.size() == b.size() ? 0 : INFINITY;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-      largest = std::max(largest, std::abs(a[i] - b[i]));
-    return largest;
-  }
-
   // Calls work with each choice; counts those that have a meaning.
   template <class Work>
   static int for_each_choice(io::SystemKind kind, Work const& work) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -116,6 +117,17 @@ std::vector<double> ProgramTest::last_spins(std::string const& name) const {
   auto const spins = read_dataset(name, "/spins");
   auto const frame = static_cast<std::ptrdiff_t>(spins.values.size()) / spins.extents.at(0);
   return {spins.values.end() - frame, spins.values.end()};
+}
+
+double distance(std::vector<double> const& a, std::vector<double> const& b) {
+  if (a.size() != b.size()) return INFINITY;
+  double largest = 0;
+  for (std::size_t i = 0; i + 2 < a.size(); i += 3) {
+    double const apart = std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]);
+    if (!std::isfinite(apart)) return INFINITY;
+    largest = std::max(largest, apart);
+  }
+  return largest;
 }
 
 testing::AssertionResult is_one_line(std::string const& text) {

@@ -59,6 +59,9 @@ class ProgramTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
+/// The largest distance of any spin; infinity where there are more of one, or NaN.
+double distance(std::vector<double> const& a, std::vector<double> const& b);
+
 /// Exactly one line, with a line end.
 testing::AssertionResult is_one_line(std::string const& text);
 testing::AssertionResult contains(std::string const& text, std::string const& part);

@@ -16,14 +16,6 @@ class SamePhysics : public ProgramTest {
   }
 };
 
-double distance(std::vector<double> const& a, std::vector<double> const& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
-
 TEST_F(SamePhysics, SpacesAndThreadsGiveTheSameBits) {
   for (std::string const precision : {"double", "single"}) {
     auto const serial = spins(chain_scene(), {"--space", "serial", "--precision", precision});

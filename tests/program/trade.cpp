@@ -38,13 +38,6 @@ end = 4.0
     return last_spins("out.h5");
   }
   std::vector<double> exact() const { return end({"--set", "integrator.dt=0.0005"}); }
-  static double distance(std::vector<double> const& a, std::vector<double> const& b) {
-    double largest = a.size() == b.size() ? 0 : INFINITY;
-    for (std::size_t i = 0; i + 2 < std::min(a.size(), b.size()); i += 3)
-      largest =
-          std::max(largest, std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]));
-    return largest;
-  }
 };
 
 TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
