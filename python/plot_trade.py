@@ -12,8 +12,10 @@ from cayspin_plots import trade_figure
 
 def read(path):
     try:
-        return json.loads(path.read_text())
-    except (OSError, ValueError) as error:
+        trade = json.loads(path.read_text())
+        trade_figure.require_keys(trade)
+        return trade
+    except (OSError, ValueError, KeyError, TypeError) as error:
         sys.exit(f"{path}: cannot be read as the JSON of cayspin trade: {error}")
 
 

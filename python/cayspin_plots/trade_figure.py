@@ -11,6 +11,18 @@ COLORS = (style.BLUE, style.RED, style.COMPONENTS[1], "#7a4fa3", "#c98a1b", "#2a
 AXES = (("seconds", "seconds of stepping"), ("evaluations", "evaluations of the field"))
 
 
+def require_keys(trade):
+    """Raises KeyError or TypeError where something is missing that is drawn."""
+    for name in ("scene", "horizon", "end"):
+        trade[name]
+    for method in trade["methods"]:
+        for name in ("method", "baseline"):
+            method[name]
+        for rung in method["rungs"]:
+            for name in ("error", "seconds", "evaluations", "front"):
+                rung[name]
+
+
 def cost(method, key, error):
     """The least cost of a run of at most this error; none where there is no such run."""
     return min((rung[key] for rung in method["rungs"] if rung["error"] <= error), default=None)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Runs the scripts that draw, as a user does: plots.py FOLDER_OF_SCRIPTS WRITER_OF_TRAJECTORIES."""
 
+import json
 import os
 import pathlib
 import struct
@@ -16,7 +17,8 @@ import numpy as np
 SCRIPTS, WRITER = map(pathlib.Path, sys.argv[1:3])
 sys.path.insert(0, str(SCRIPTS))
 
-from cayspin_plots.read import read_trajectory  # noqa: E402  the folder has to be known before
+from cayspin_plots import trade_figure  # noqa: E402  the folder has to be known before
+from cayspin_plots.read import read_trajectory  # noqa: E402
 from cayspin_plots.table import read_table  # noqa: E402
 
 BLUE, RED = (0x1B, 0x5F, 0xA7), (0xCF, 0x3F, 0x2B)
@@ -131,6 +133,61 @@ class PlotDemo(ScriptTest):
                           (self.geometric, self.classical, "--reference", text)):
             with self.subTest(arguments):
                 self.assert_refused(self.png, text, "cannot read", self.plot(*arguments))
+
+
+class PlotTrade(ScriptTest):
+    """What `cayspin trade --json` prints of four methods, the third never near the front."""
+
+    def setUp(self):
+        super().setUp()
+        self.file = self.folder / "trade.json"
+        self.trade = {"scene": "scenes/film.toml", "horizon": 2.0, "end": 8.0,
+                      "why_shorter": "chaos", "uncertainty": 1e-11,
+                      "methods": [self.method("rkmk4", False, 1.0, True),
+                                  self.method("rkmk4 tangent", False, 2.0, False),
+                                  self.method("euler", False, 1e4, False),
+                                  self.method("projected_rk4", True, 3.0, False)]}
+
+    @staticmethod
+    def method(name, baseline, cost, front):
+        return {"method": name, "baseline": baseline,
+                "rungs": [{"error": 0.1 * dt**4, "dt": dt, "seconds": 1e-3 * cost / dt,
+                           "evaluations": round(40 * cost / dt), "front": front}
+                          for dt in (0.4, 0.2, 0.1, 0.05)]}
+
+    def plot(self, *arguments):
+        self.file.write_text(json.dumps(self.trade))
+        return self.run_script("plot_trade.py", self.file, *arguments)
+
+    def test_methods_and_front(self):
+        png = self.file.with_suffix(".png")
+        self.assert_drawn(png, (13, 6), (BLUE, RED), self.plot())
+        every = png.read_bytes()
+        for rung in self.trade["methods"][0]["rungs"]:
+            rung["front"] = False
+        self.assert_drawn(png, (13, 6), (BLUE, RED), self.plot())
+        self.assertNotEqual(png.read_bytes(), every)
+
+    def test_a_method_without_runs_under_another_name(self):
+        self.trade["methods"][1]["rungs"] = []
+        png = self.folder / "other.png"
+        self.assert_drawn(png, (13, 6), (BLUE,), self.plot("--output", png))
+
+    def test_cheapest_method_comes_first(self):
+        names = [method["method"] for method in trade_figure.best_first(self.trade)]
+        self.assertEqual(names, ["rkmk4", "rkmk4 tangent", "projected_rk4", "euler"])
+        euler = self.trade["methods"][2]
+        self.assertEqual(trade_figure.cost(euler, "evaluations", 2e-4), 2_000_000)
+        self.assertIsNone(trade_figure.cost(euler, "seconds", 1e-8))
+
+    def test_what_is_no_trade(self):
+        png = self.folder / "trade.png"
+        for content in ("method steps error", "[]", '{"scene": "a.toml"}',
+                        '{"scene": "a.toml", "horizon": 1, "end": 1, "methods": [{}]}'):
+            with self.subTest(content):
+                self.file.write_text(content)
+                self.assert_refused(png, self.file, "cannot be read as the JSON of cayspin trade",
+                                    self.run_script("plot_trade.py", self.file))
 
 
 class PlotPaper(ScriptTest):
