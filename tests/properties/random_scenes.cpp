@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What holds for every scene, on scenes drawn anew in each run: |m| = 1, an energy that falls, the
-// same bits on every host space, and a symmetric method that finds its way back.
+// same bits on every host space, and symmetric methods that find their way back.
 #include "../support/backends.hpp"
 #include "random_scene.hpp"
+#include "red_black_reversal.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +53,7 @@ struct Property {
 };
 
 struct Properties {
-  Property norm, energy, bits, reversal;
+  Property norm, energy, bits, reversal, red_black;
   std::int64_t not_reversed = 0;  // by methods that are not symmetric
 };
 
@@ -194,20 +195,26 @@ TEST(Properties, OfRandomScenes) {
     auto const scene = RandomScene::drawn(seed, number);
     if (only) std::cout << "    " << scene << '\n';
     scene.single ? check<float>(scene, properties) : check<double>(scene, properties);
+    if (scene.slab.damping != 0 || !is_bipartite(scene.slab.lattice)) return;
+    properties.red_black.saw(
+        scene.single ? red_black_reversal<float>(scene) : red_black_reversal<double>(scene), scene,
+        "distance from the start after red-black steps back");
   };
   if (only) return run(static_cast<std::int64_t>(number_from("CAYSPIN_SCENE", 0)));
   for (std::int64_t number = 0; number < count; ++number) run(number);
-  auto const& [norm, energy, bits, reversal, not_reversed] = properties;
+  auto const& [norm, energy, bits, reversal, red_black, not_reversed] = properties;
   norm.print("norm");
   energy.print("energy");
   bits.print("bits");
   reversal.print("time reversal");
+  red_black.print("red-black");
   std::printf("    by methods that are not symmetric %lld scenes are not found back\n",
               static_cast<long long>(not_reversed));
   EXPECT_GT(norm.scenes, count * 9 / 10);
   EXPECT_EQ(bits.scenes, count);
   EXPECT_GT(energy.scenes, count / 4);
   EXPECT_GT(reversal.scenes, count / 10);
+  EXPECT_GT(red_black.scenes, count / 10);
   EXPECT_GT(not_reversed, count / 20);
 }
 
