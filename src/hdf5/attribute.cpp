@@ -41,8 +41,10 @@ void RootAttributes::create(char const* name, double value) const {
   create(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
+bool RootAttributes::has(char const* name) const { return H5Aexists(file_, name) > 0; }
+
 AttributeHandle RootAttributes::open(char const* name) const {
-  if (H5Aexists(file_, name) <= 0) throw_failure(path_, action("read", name), "it is not there");
+  if (!has(name)) throw_failure(path_, action("read", name), "it is not there");
   return AttributeHandle(check(H5Aopen(file_, name, H5P_DEFAULT), path_, action("open", name)));
 }
 

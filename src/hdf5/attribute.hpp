@@ -22,6 +22,7 @@ class RootAttributes {
   void replace(char const* name, std::int64_t value) const;
   void replace(char const* name, double value) const;
 
+  bool has(char const* name) const;
   std::string read_text(char const* name) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;

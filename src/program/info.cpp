@@ -20,6 +20,10 @@ void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t f
       m[0], m[1], m[2]);
 }
 
+void print_scene(char const* name, std::string const& text) {
+  fmt::print("{}:\n{}{}", name, text, text.ends_with('\n') ? "" : "\n");
+}
+
 }  // namespace
 
 int info(std::filesystem::path const& file) {
@@ -38,7 +42,8 @@ int info(std::filesystem::path const& file) {
   fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
   fmt::print("{:<12} cayspin {} ({}), Kokkos {}\n", "written by", header.cayspin_version,
              header.git_commit, header.kokkos_version);
-  fmt::print("scene:\n{}{}", header.scene_text, header.scene_text.ends_with('\n') ? "" : "\n");
+  print_scene("scene", header.scene_text);
+  if (!header.resolved_scene.empty()) print_scene("scene as resolved", header.resolved_scene);
   return Status::done;
 }
 

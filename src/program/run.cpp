@@ -36,9 +36,11 @@ void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
 }
 
 template <class Space>
-io::TrajectoryHeader make_header(io::Scene const& scene, Precision precision, Space const& exec) {
+io::TrajectoryHeader make_header(io::Scene const& typed, io::Scene const& scene,
+                                 Precision precision, Space const& exec) {
   io::TrajectoryHeader header;
-  header.scene_text = scene.text;
+  header.scene_text = typed.text;
+  if (typed.integrator.method == io::Method::automatic) header.resolved_scene = scene.text;
   header.cayspin_version = CAYSPIN_VERSION_STRING;
   header.git_commit = CAYSPIN_GIT_COMMIT;
   header.kokkos_version = fmt::format("{}.{}.{}", KOKKOS_VERSION / 10000,
@@ -51,8 +53,8 @@ io::TrajectoryHeader make_header(io::Scene const& scene, Precision precision, Sp
 }
 
 template <class Real, class Space>
-int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
-           Restart const* restart) {
+int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
+           RunOptions const& options, Restart const* restart) {
   Kokkos::Timer const clock;
   using Job = Simulation<Real, Space>;
   typename Job::Spins const spins("spins", plan.lattice);
@@ -64,7 +66,7 @@ int run_on(io::Scene const& scene, Plan const& plan, RunOptions const& options,
   Watch<Real, Space> watch(
       scene, job.generator, spins, job.times.first,
       [&] {
-        return io::TrajectoryFile(path, make_header(scene, options.precision, job.exec),
+        return io::TrajectoryFile(path, make_header(typed, scene, options.precision, job.exec),
                                   options.overwrite);
       },
       options.quiet);
@@ -145,8 +147,8 @@ int run(RunOptions const& options) {
   EnabledSpaces::for_each([&]<class Space>() {
     if (space_name<Space>() != space) return;
     status = options.precision == Precision::double_precision
-                 ? run_on<double, Space>(scene, plan, options, from)
-                 : run_on<float, Space>(scene, plan, options, from);
+                 ? run_on<double, Space>(typed, scene, plan, options, from)
+                 : run_on<float, Space>(typed, scene, plan, options, from);
   });
   return status;
 }

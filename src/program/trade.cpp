@@ -3,7 +3,7 @@
 #include "failure.hpp"
 #include "kokkos_settings.hpp"
 #include "text.hpp"
-#include "trade/advice.hpp"
+#include "trade/resolved.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -144,23 +144,12 @@ void print_verdicts(std::vector<Verdict> const& verdicts) {
   }
 }
 
-/// The whole [integrator] anew, since the scene's may have keys that this method does not take.
-std::string command_of(AdviseOptions const& options, Pilot const& pilot, Advice const& choice) {
-  auto const& candidate = choice.candidate;
-  std::string keys = fmt::format("method=\"{}\"", io::to_string(candidate.method));
-  if (candidate.generator != io::Generator::standard)
-    keys += fmt::format(",generator=\"{}\"", io::to_string(candidate.generator));
-  if (candidate.rotation != io::Rotation::cayley)
-    keys += fmt::format(",rotation=\"{}\"", io::to_string(candidate.rotation));
-  if (candidate.sigma != 0) keys += fmt::format(",isotropy={{constant={:#}}}", candidate.sigma);
-  if (candidate.is_adaptive())
-    keys += fmt::format(",tolerance={:.3g}", choice.steps.tolerance);
-  else
-    keys += fmt::format(",dt={:#}", choice.dt);
+std::string command_of(AdviseOptions const& options, Resolved const& resolved,
+                       Precision precision) {
   std::string command = fmt::format("cayspin run {}", options.scene.string());
-  for (auto const& override : options.overrides) command += fmt::format(" --set '{}'", override);
-  command += fmt::format(" --set 'integrator={{{},end={:#}}}'", keys, pilot.end());
-  if (candidate.precision == Precision::single_precision) command += " --precision single";
+  for (auto const& overrides : {options.overrides, resolved.overrides})
+    for (auto const& override : overrides) command += fmt::format(" --set '{}'", override);
+  if (precision == Precision::single_precision) command += " --precision single";
   return command;
 }
 
@@ -212,16 +201,17 @@ int advise_on(AdviseOptions const& options) {
   }
   auto const& choice = *advised.choice;
   auto const& candidate = choice.candidate;
+  auto const resolved = resolve(scene, choice);
   fmt::print("method      {}\n", candidate.name());
   if (candidate.is_adaptive())
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
   else
-    fmt::print("dt          {:.9g}, {} steps\n", choice.dt, choice.steps.count);
+    fmt::print("dt          {:.9g}, {} steps\n", resolved.dt, resolved.steps);
   fmt::print("error       {:.2g}, predicted{}\n", choice.error,
              advised.why_shorter.empty() ? "" : " at the horizon");
   fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
   fmt::print("memory      {}\n", bytes_text(choice.memory));
-  fmt::print("run it      {}\n", command_of(options, pilot, choice));
+  fmt::print("run it      {}\n", command_of(options, resolved, candidate.precision));
   fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
   for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
     fmt::print("  {:<26} {}\n", advised.others[i].candidate.name(),

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 namespace cayspin::io {
 namespace {
@@ -47,12 +48,11 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-}  // namespace
-
-Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
+Scene read(std::string text, std::filesystem::path const& path,
+           std::vector<std::string> const& overrides) {
   Scene scene;
   scene.path = path;
-  scene.text = read_text(path);
+  scene.text = std::move(text);
   auto document = parse(scene.text, path);
   for (auto const& assignment : overrides) detail::apply_override(document, assignment);
   if (!overrides.empty()) {
@@ -71,6 +71,18 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
   scene.output = detail::read_output(root, scene.integrator.steps);
   check_combination(scene);
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
+  return read(read_text(path), path, overrides);
+}
+
+Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
+  auto changed = read(scene.text, scene.path, overrides);
+  changed.places = scene.places;
+  return changed;
 }
 
 SceneError scene_error(Scene const& scene, std::string_view key, std::string_view message) {

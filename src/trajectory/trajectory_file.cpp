@@ -32,6 +32,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   RootAttributes const attributes(file, path);
   attributes.create("format", std::int64_t{format_version});
   attributes.create("scene", header.scene_text);
+  if (!header.resolved_scene.empty()) attributes.create("resolved_scene", header.resolved_scene);
   attributes.create("cayspin_version", header.cayspin_version);
   attributes.create("git_commit", header.git_commit);
   attributes.create("kokkos_version", header.kokkos_version);
@@ -77,7 +78,7 @@ class TrajectoryFile::Implementation {
     require_valid(header);
     NewFile file(path_, overwrite);
     space_ = OpenFileSpace(file.get(), path_);
-    space_.reserve(overhead_bytes + header.scene_text.size(), path_);
+    space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
     write_attributes(file.get(), header, path_);
     create_datasets(file.get(), header);
     check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");

@@ -25,6 +25,8 @@ TrajectoryInfo read_info(std::filesystem::path const& path) {
                   "its format is " + std::to_string(info.format) + "; accepted is " +
                       std::to_string(format_version));
   info.header.scene_text = attributes.read_text("scene");
+  if (attributes.has("resolved_scene"))
+    info.header.resolved_scene = attributes.read_text("resolved_scene");
   info.header.cayspin_version = attributes.read_text("cayspin_version");
   info.header.git_commit = attributes.read_text("git_commit");
   info.header.kokkos_version = attributes.read_text("kokkos_version");

@@ -37,6 +37,13 @@ end = 4.0
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     return last_spins("out.h5");
   }
+  // Of out.h5.
+  void expect_equal_times(char const* dataset, double apart, std::size_t count) const {
+    auto const times = read_dataset("out.h5", dataset).values;
+    ASSERT_EQ(times.size(), count) << dataset;
+    for (std::size_t i = 0; i < count; ++i)
+      EXPECT_NEAR(times[i], apart * double(i), 1e-12) << dataset;
+  }
   std::vector<double> exact() const { return end({"--set", "integrator.dt=0.0005"}); }
 };
 
@@ -89,11 +96,14 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
 
 TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   auto const reference = exact();
-  for (std::string const error : {"1e-3", "1e-6"}) {
-    // Of a scene with keys that not every method takes.
-    auto const outcome =
-        start({"advise", write("scene.toml", scene()), "--error", error, "--set",
-               "integrator={method=\"tsit5\",generator=\"tangent\",tolerance=1e-4,end=4.0}"});
+  for (bool const fine : {false, true}) {
+    std::string const error = fine ? "1e-6" : "1e-3";
+    // The finer one of a scene with keys that not every method takes.
+    auto const outcome = start(
+        {"advise", write("scene.toml", scene()), "--error", error, "--set",
+         fine ? "integrator={method=\"tsit5\",generator=\"tangent\",tolerance=1e-4,dt=0.1,end=4.0}"
+              : "integrator.energy_guard=false",
+         "--set", "output={every=10,scalars_every=4}"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     std::istringstream lines(outcome.output);
     Arguments arguments;
@@ -107,6 +117,11 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
     }
     ASSERT_FALSE(arguments.empty()) << outcome.output;
     EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << outcome.output;
+    // As the scene has it, whatever the steps are.
+    expect_equal_times("/time", 1.0, 5);
+    expect_equal_times("/scalars/time", 0.4, 11);
+    auto const text = io::read_info(in_folder("out.h5")).header.scene_text;
+    EXPECT_EQ(text.find("energy_guard = false") != text.npos, !fine) << text;
   }
 }
 
@@ -117,10 +132,21 @@ TEST_F(Trading, ARunOfMethodAutoHasTheErrorAskedFor) {
         end({"--set", "integrator={method='auto',error=" + error + ",end=4.0,dt=0.5}", "--set",
              "output.every=2"});
     EXPECT_LT(distance(numbers, reference), 2 * std::stod(error));
-    auto const times = read_dataset("out.h5", "/time").values;
-    ASSERT_EQ(times.size(), 5U);
-    for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], double(i), 1e-12);
+    expect_equal_times("/time", 1.0, 5);
+    auto const header = io::read_info(in_folder("out.h5")).header;
+    EXPECT_TRUE(contains(header.scene_text, "auto"));
+    auto const info = start({"info", "out.h5"}).output;
+    EXPECT_TRUE(contains(info, "scene as resolved:\n" + header.resolved_scene));
+    auto const spins = read_dataset("out.h5", "/spins").values;
+    auto const again = run(header.resolved_scene).header;
+    EXPECT_EQ(read_dataset("out.h5", "/spins").values, spins);
+    EXPECT_EQ(again.resolved_scene, "");
   }
+}
+
+TEST_F(Trading, AScenesStartAloneIsNoChoice) {
+  end({"--set", "integrator={method='auto',error=1e-3,steps=0,dt=0.5}"});
+  EXPECT_EQ(read_dataset("out.h5", "/time").values, std::vector<double>{0});
 }
 
 TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {

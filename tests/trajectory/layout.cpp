@@ -103,6 +103,7 @@ TEST_F(TrajectoryTest, EveryAttributeStandsFromTheFirstMoment) {
     EXPECT_EQ(class_of(name), H5T_INTEGER) << name;
   for (auto const* name : {"wall_seconds", "step_seconds"})
     EXPECT_EQ(class_of(name), H5T_FLOAT) << name;
+  EXPECT_EQ(H5Aexists(file.get(), "resolved_scene"), 0);
 }
 
 TEST_F(TrajectoryTest, LongSceneIsKept) {

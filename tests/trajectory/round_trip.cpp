@@ -28,7 +28,8 @@ TYPED_TEST(RoundTrip, LastFrameKeepsItsBits) {
 
 TYPED_TEST(RoundTrip, InfoGivesHeaderAndFrames) {
   auto const path = this->folder_ / "a.h5";
-  auto const header = small_header(this->precision());
+  auto header = small_header(this->precision());
+  header.resolved_scene = header.scene_text + "# resolved\n";
   TrajectoryFile file(path, header, false);
   std::vector<TypeParam> const spins = numbered_spins<TypeParam>(header, 0);
   for (int frame = 0; frame < 3; ++frame) {
@@ -44,6 +45,7 @@ TYPED_TEST(RoundTrip, InfoGivesHeaderAndFrames) {
   EXPECT_EQ(info.path, path);
   EXPECT_EQ(info.format, 1);
   EXPECT_EQ(info.header.scene_text, header.scene_text);
+  EXPECT_EQ(info.header.resolved_scene, header.resolved_scene);
   EXPECT_EQ(info.header.cayspin_version, header.cayspin_version);
   EXPECT_EQ(info.header.git_commit, header.git_commit);
   EXPECT_EQ(info.header.kokkos_version, header.kokkos_version);

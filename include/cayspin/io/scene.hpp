@@ -126,6 +126,10 @@ struct Scene {
 /// that. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {});
 
+/// A scene with more overrides, and its text with them. Errors found later name the keys of
+/// `scene`, where its author finds them. Throws SceneError.
+Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides);
+
 /// Refuses what has no meaning together, as read_scene does: method, generator, isotropy, rotation,
 /// system, lattice and field. Throws SceneError.
 void check_combination(Scene const& scene);

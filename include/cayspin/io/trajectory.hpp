@@ -17,7 +17,8 @@ namespace cayspin::io {
 
 /// What a trajectory file says about the run that writes it.
 struct TrajectoryHeader {
-  std::string scene_text;  ///< the scene as run, command line overrides applied
+  std::string scene_text;      ///< the scene as run, command line overrides applied
+  std::string resolved_scene;  ///< of method "auto": with the method it chose; otherwise empty
   std::string cayspin_version;
   std::string git_commit;
   std::string kokkos_version;
@@ -95,9 +96,9 @@ struct TrajectoryInfo {
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 
-/// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last of
-/// (frame, nz, ny, nx, 3), of a trajectory file the last whole one. Float or double, bits are kept;
-/// the result is packed as (nz, ny, nx, 3).
+/// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last
+/// of (frame, nz, ny, nx, 3), of a trajectory file the last whole one. Float or double, bits are
+/// kept; the result is packed as (nz, ny, nx, 3).
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
 
