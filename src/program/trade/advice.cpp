@@ -54,7 +54,7 @@ struct Prospect {
     return std::isfinite(seen) ? seen : order;
   }
   Steps needed(double error) const {
-    double const order_used = std::clamp(seen_order(), 0.5 * order, order);
+    double const order_used = std::clamp(seen_order(), 0.5 * order, order + 1);
     double const resolved = resolution(last().steps);
     return steps_of(resolved * std::pow(last().error / error, 1 / order_used));
   }

@@ -48,7 +48,6 @@ std::vector<Candidate> candidates(io::Scene const& scene) {
   auto const exponential = io::Rotation::exponential;
   std::vector<Candidate> all{{rkmk4},
                              {rkmk4, tangent},
-                             {rkmk4, standard, exponential},
                              {rkmk5},
                              {rkmk5, tangent},
                              {rkmk8},
@@ -60,7 +59,6 @@ std::vector<Candidate> candidates(io::Scene const& scene) {
                              {dp5, tangent},
                              {tsit5},
                              {tsit5, tangent},
-                             {tsit5, standard, exponential},
                              {heun},
                              {heun, tangent},
                              {ab2},
