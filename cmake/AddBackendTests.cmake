@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cayspin_add_test(<name> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>...]
-#                  [THREADS <count>...] [TIMEOUT <seconds>])
+#                  [THREADS <count>...] [TIMEOUT <seconds>] [FAST])
 # One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
 # inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads.
+# otherwise there is one entry with two threads. FAST: compiled to run fast.
 function(cayspin_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS;THREADS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "FAST" "TIMEOUT" "SOURCES;LIBRARIES;LABELS;THREADS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
     message(FATAL_ERROR "cayspin_add_test(${name}): wrong arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -14,9 +14,15 @@ function(cayspin_add_test name)
   endif()
 
   add_executable(test_${name} ${arg_SOURCES})
-  target_link_libraries(test_${name} PRIVATE cayspin_test_main ${arg_LIBRARIES})
-  target_compile_options(test_${name} PRIVATE ${CAYSPIN_TEST_OPTIONS})
-  target_precompile_headers(test_${name} REUSE_FROM cayspin_test_main)
+  set(main cayspin_test_main)
+  set(options ${CAYSPIN_TEST_OPTIONS})
+  if(arg_FAST)
+    set(main cayspin_fast_test_main)
+    set(options ${CAYSPIN_FAST_TEST_OPTIONS})
+  endif()
+  target_link_libraries(test_${name} PRIVATE ${main} ${arg_LIBRARIES})
+  target_compile_options(test_${name} PRIVATE ${options})
+  target_precompile_headers(test_${name} REUSE_FROM ${main})
 
   if(arg_THREADS AND (Kokkos_ENABLE_OPENMP OR Kokkos_ENABLE_THREADS))
     foreach(count IN LISTS arg_THREADS)
