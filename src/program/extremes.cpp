@@ -23,19 +23,20 @@ std::vector<extremity::Choice> simplest(std::vector<extremity::Choice> const& al
 
 int extremes(ExtremesOptions const& options) {
   KokkosSession const kokkos(space_name<Kokkos::DefaultHostExecutionSpace>(), 1, {});
-  auto choices = extremity::all_choices();
-  auto sections = extremity::sections();
-  if (options.longest) {
-    choices = simplest(choices);
-    sections = {extremity::longest_runs()};
-  } else if (!options.json) {
-    extremity::print_head();
-  }
+  auto const choices = extremity::fixed_step_choices();
   bool kept = true;
-  for (auto const& section : sections) {
-    extremity::Table const table(section, choices);
+  auto const show = [&](extremity::Section const& section,
+                        std::vector<extremity::Choice> const& tried) {
+    extremity::Table const table(section, tried);
     options.json ? table.print_json() : table.print_markdown();
     kept = kept && table.is_kept();
+  };
+  if (options.longest) {
+    show(extremity::longest_runs(), simplest(choices));
+  } else {
+    if (!options.json) extremity::print_head();
+    for (auto const& section : extremity::sections()) show(section, choices);
+    show(extremity::adaptive_steps(), extremity::adaptive_choices());
   }
   if (!kept) throw NumbersFailed("cayspin: a promise of the tables is broken");
   return Status::done;

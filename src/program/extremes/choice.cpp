@@ -27,11 +27,13 @@ std::string Choice::toml() const {
                      io::to_string(rotation));
 }
 
-std::vector<Choice> all_choices() {
+namespace {
+
+std::vector<Choice> choices_of(bool adaptive) {
   using enum io::Generator;
   std::vector<Choice> choices;
   for (auto const& entry : method_entries()) {
-    if (io::is_adaptive(entry.key.method)) continue;  // dt is none of their steps
+    if (io::is_adaptive(entry.key.method) != adaptive) continue;
     std::vector<io::Generator> generators{standard, orthogonal};
     if (io::is_baseline(entry.key.method) || io::is_red_black(entry.key.method))
       generators = {standard};
@@ -45,5 +47,10 @@ std::vector<Choice> all_choices() {
   }
   return choices;
 }
+
+}  // namespace
+
+std::vector<Choice> fixed_step_choices() { return choices_of(false); }
+std::vector<Choice> adaptive_choices() { return choices_of(true); }
 
 }  // namespace cayspin::program::extremity

@@ -15,6 +15,7 @@ struct Choice {
   io::Generator generator;
   io::Rotation rotation;
 
+  bool is_adaptive() const { return io::is_adaptive(entry->key.method); }
   bool is_baseline() const { return io::is_baseline(entry->key.method); }
   bool is_classical() const { return io::is_classical(entry->key.method); }
   /// Neighbours count as they were, or as they are foretold, while a spin moves.
@@ -33,6 +34,9 @@ struct Choice {
 };
 
 /// Every method of the program that takes steps of dt, with every generator and rotation it takes.
-std::vector<Choice> all_choices();
+std::vector<Choice> fixed_step_choices();
+
+/// The same of those that choose their steps.
+std::vector<Choice> adaptive_choices();
 
 }  // namespace cayspin::program::extremity

@@ -34,10 +34,13 @@ std::string scene_text(Choice const& choice, Setting const& setting) {
                          : fmt::format("[field]\nexchange = 1.0\napplied = [0, 0, {}]\n", strength);
   return fmt::format(
       "[system]\n{}[lattice]\nshape = [{}]\n{}[initial]\nuniform = [{}, 0, {}]\n"
-      "[integrator]\n{}dt = {}\nsteps = {}\n",
+      "[integrator]\n{}{}dt = {}\nsteps = {}\n",
       system,
       body ? fmt::format("{}", n[0] * n[1] * n[2]) : fmt::format("{}, {}, {}", n[0], n[1], n[2]),
       field, setting.along_field ? 0 : across, setting.along_field ? 1 : along, choice.toml(),
+      choice.is_adaptive() ? fmt::format("tolerance = {}\nmin_dt = {}\n",
+                                         decimal(setting.tolerance), decimal(setting.min_dt))
+                           : std::string(),
       decimal(setting.dt), setting.steps);
 }
 

@@ -27,10 +27,11 @@ struct Setting {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   bool asks_for_damping = false;  // of methods that conserve the energy too
   bool along_field = false;
-  double switched_on_at = 0;    // > 0: the field is 0 before
-  double start_length = 1;      // of the first spin, behind the program's own normalising
-  std::int64_t fault_at = -1;   // step behind which a spin is made NaN
-  std::int64_t normalized = 0;  // steps between Newton steps; 0: none
+  double switched_on_at = 0;            // > 0: the field is 0 before
+  double start_length = 1;              // of the first spin, behind the program's own normalising
+  std::int64_t fault_at = -1;           // step behind which a spin is made NaN
+  std::int64_t normalized = 0;          // steps between Newton steps; 0: none
+  double tolerance = 1e-4, min_dt = 0;  // of adaptive methods, which look at the spins every dt
 };
 
 /// What the end is compared with.
@@ -53,6 +54,9 @@ struct Section {
 };
 
 std::vector<Section> sections();
+
+/// For the adaptive methods.
+Section adaptive_steps();
 
 /// 1e8 steps, for the simplest methods.
 Section longest_runs();

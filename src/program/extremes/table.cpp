@@ -48,8 +48,7 @@ Tests hold this page to what is printed, and every run to the promise above its 
 
 Six steps of 1/128 where not said. Two words are for double and for single precision. In brackets are generators and
 rotations, where not all fare alike. Constant sigmas fare as zero does. Methods that conserve the energy are run without
-damping where that is not asked for. The adaptive methods, whose steps dt is not, are in no table: a step that would
-have to be too short, or is not finite however short, stops them with status 3 (`test_adaptive`).
+damping where that is not asked for. The adaptive methods have a table of their own.
 
 A program of your own has neither warnings nor guard: where a table says warned or detected, ask `largest_stable_step`
 beforehand, and `energy` and `norm_defect` on the way.

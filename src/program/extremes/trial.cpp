@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace cayspin::program::extremity {
@@ -88,7 +89,7 @@ struct Run {
   using Spins = typename Simulation<Real, HostSpace>::Spins;
   Setting const& setting;
   Spins spins;
-  std::int64_t stopped_at = -1;
+  std::int64_t stopped_at = -1, own_steps = 0;
   std::string why = {};
 
   void go(io::Scene const& scene, Plan const& plan) {
@@ -106,7 +107,7 @@ struct Run {
     };
     try {
       FlushDenormals const while_stepping;
-      plan.method.advance(&job, plan.options);
+      own_steps = plan.method.advance(&job, plan.options).own_steps;
       if (look.failure()) stop(look.step(), *look.failure());
     } catch (NumbersFailed const& error) {
       stop(look.step() + 1, error.what());
@@ -147,7 +148,8 @@ Outcome try_out(Choice const& choice, Situation const& situation, Setting const&
   bool const body = choice.of_rigid_bodies();
   auto const time = static_cast<long double>(setting.dt) * setting.steps;
   auto const [off, error] = distances(run.spins, exact_end(setting, body, time));
-  std::int64_t const counted = setting.normalized ? setting.normalized : setting.steps;
+  std::int64_t const counted =
+      setting.normalized ? setting.normalized : std::max(setting.steps, run.own_steps);
   auto const steps = static_cast<double>(counted);
   // Round-off, and what is not known of an angle that large.
   double const angle = std::fabs(static_cast<double>(exact_angle(setting, body, time)));
