@@ -83,6 +83,30 @@ TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
   }
 }
 
+struct OffAndOn {
+  static constexpr bool depends_on_time = true;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    return Zeeman{{0, 0, t < 2.5 ? 0.0 : 1.0}};
+  }
+};
+
+// The steps of a spin at rest are long when its field comes, and turn it by so much that all
+// solutions are near half a turn.
+TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
+  double const tolerance = 1e-4;
+  auto const start = [] {
+    return make_spins(Lattice::chain(1), [](auto...) { return Vector{0.6, 0, 0.8}; });
+  };
+  auto const exact = run<Rkmk4<Spins>>(LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1),
+                                       start(), 1e-3, 3500);
+  auto spins = start();
+  AdaptiveRkmk<Spins, tableau::DormandPrince5> stepper(spins, {.tolerance = tolerance});
+  LandauLifshitz const generator(EffectiveField(OffAndOn{}), 0.1);
+  for (double t = 0; t < 6; ++t) stepper.step(Space(), generator, spins, t, 1);
+  expect_below("error after the jump", largest_distance(spins, exact), 30 * tolerance);
+}
+
 /// Not a number from a time on.
 struct Failing {
   static constexpr bool depends_on_time = true;

@@ -83,7 +83,7 @@ double largest_stable_extrapolation(double field_bound, double damping, bool pre
   double limit = 1e3 * unit;             // of the scan; the method does not get there
   for (double const along : {0.0, own})  // A's part along the spin: of `orthogonal`, and of others
     limit = first_amplifying_step(
-        [&](double dt) {
+        [&](double dt, bool) {
           return extrapolated_mode_grows<Order>(dt * field_bound * rate, own,
                                                 precession ? dt * field_bound * along : 0);
         },

@@ -11,20 +11,13 @@ Section adaptive_steps() {
   using Single = std::numeric_limits<float>;
   Section section{
       "Adaptive steps",
-      "Tolerance 1e-4 where not said; dt is from one look to the next. A spin without a field, or "
-      "along it, rests.\nWhere nothing is said of the field it is 1, from t = 0 to 6 or 6/128, and "
-      "the "
-      "error stays below 30 times the tolerance,\nalso where the field is switched on within a "
-      "step. "
-      "A tolerance below 32 epsilon is refused. Stopped are: a step that\nwould have to be below "
-      "min_dt, numbers too large for the precision at the first step, an energy that rises where "
-      "damping\ntakes less than the error, a start that is off before the first step. Damping of "
-      "1e12 takes steps of 1e-12: only min_dt\nbounds their number. A step that the field turns "
-      "spins by more than pi in may hide its error in Cayley coordinates: where\na field is off "
-      "for "
-      "long and then switched on, max_dt has to be below its reach. The methods go on from spins "
-      "of "
-      "their own:\none that an observer changes is as it was at the next look.",
+      R"(Tolerance 1e-4 where not said; dt is from one look to the next. A spin without a field, or along it, rests.
+Where nothing is said of the field it is 1, from t = 0 to 6 or 6/128, and the error stays below 30 times the tolerance,
+also where the field is switched on within a step. A tolerance below 32 epsilon is refused. Stopped are: a step that
+would have to be below min_dt, numbers too large for the precision at the first step, an energy that rises where damping
+takes less than the error, a start that is off before the first step. Damping of 1e12 takes steps of 1e-12: only min_dt
+bounds their number. Steps at rest grow: a field that is on for less than one may fall between its stages, unless max_dt
+is below it. The methods go on from spins of their own: one that an observer changes is as it was at the next look.)",
       {exact, bounded, refused, detected},
       {},
       {}};
