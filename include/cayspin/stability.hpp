@@ -132,23 +132,39 @@ Complex mode_growth(Complex z, double q) {
   return growth_to<Tableau, Linear>(stages, total, increments);
 }
 
+/// The largest sum of a row's magnitudes, by which a tableau magnifies round-off.
+template <class Tableau>
+constexpr double largest_row() {
+  double largest = 1;
+  for (int row = 0; row <= Tableau::stages; ++row) {
+    double sum = 0;
+    for (int j = 0; j < Tableau::stages; ++j) {
+      double const weight = row < Tableau::stages ? Tableau::a[row][j] : Tableau::b[j];
+      sum += weight < 0 ? -weight : weight;
+    }
+    if (largest < sum) largest = sum;
+  }
+  return largest;
+}
+
 /// Clearly: by more than round-off. If not, what cannot be told from no change counts too.
 template <class Tableau, class Update>
 bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
   Complex const growth = mode_growth<Tableau, Update>(dt * rate, dt * sigma);
   double const excess = 2 * growth.real() + std::norm(growth);  // |1 + growth|^2 - 1
-  double const size = 4 * std::numeric_limits<double>::epsilon() * std::abs(growth);
+  double const size =
+      4 * std::numeric_limits<double>::epsilon() * largest_row<Tableau>() * std::abs(growth);
   // Round-off is relative to |growth|^2 without sigma, to |growth| with it.
   if (sigma != 0) return !(excess < size);
   return !(excess < (clearly ? size : -size) * std::abs(growth));
 }
 
 /// The smallest dt below `limit` from which on grows(dt, clearly); `limit` when there is none, 0
-/// when every dt down to 1e-9 of the mode's time amplifies. `unit`: that time. Short steps of high
-/// order change nothing that round-off would show.
+/// when every dt down to 1e-9 of the mode's time `unit` amplifies. Looked for upwards of `from`
+/// units. Short steps of high order change nothing that round-off would show.
 template <class Grows>
-double first_amplifying_step(Grows const& grows, double unit, double limit) {
-  double stable = 1e-3 * unit, unstable = stable;
+double first_amplifying_step(Grows const& grows, double unit, double limit, double from) {
+  double stable = from * unit, unstable = stable;
   if (stable >= limit) return limit;
   bool const clearly = !grows(stable, true);
   if (!clearly) {
@@ -189,8 +205,9 @@ inline double exchange_bound(Lattice const& lattice, double constant) {
   return bound;
 }
 
-/// The largest dt at which no mode of a nearly uniform state grows, an a-priori bound that is never
-/// above the linear limit. 0 when every dt amplifies, infinity when none does.
+/// The largest dt at which no mode of a nearly uniform state grows by more than round-off, an
+/// a-priori bound that is never above the linear limit. 0 when every dt amplifies, infinity when
+/// none does.
 /// A stepper that is no Runge-Kutta method has a function of its own, of the first three arguments.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
 template <class Stepper>
@@ -214,7 +231,7 @@ double largest_stable_step(double field_bound, double damping, bool precession =
           [&](double dt, bool clearly) {
             return detail::amplifies<Tableau, Update>(of_mode, dt, sigma, clearly);
           },
-          1 / std::abs(of_mode), limit);
+          1 / std::abs(of_mode), limit, sigma == 0 ? 0.05 : 1e-3);
     }
     return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
   }

@@ -87,7 +87,7 @@ double largest_stable_extrapolation(double field_bound, double damping, bool pre
           return extrapolated_mode_grows<Order>(dt * field_bound * rate, own,
                                                 precession ? dt * field_bound * along : 0);
         },
-        unit, limit);
+        unit, limit, 1e-3);
   return limit;
 }
 
