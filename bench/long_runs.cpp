@@ -147,6 +147,10 @@ int main(int argc, char** argv) {
   runs.run<FieldExtrapolation4<Spins>>("field extrapolation 4");
   runs.run<RedBlack2<Spins>>("red-black 2");
   runs.run<RedBlack4<Spins>>("red-black 4");
+  runs.run<Rkmk<Spins, tableau::Tsitouras5>>("order 5");
+  runs.run<Rkmk<Spins, tableau::DormandPrince8>>("order 8");
+  runs.run<StereographicRungeKutta<Spins, tableau::DormandPrince8>>("order 8 in the chart");
+  runs.run<LieAdamsBashforth2<Spins>>("Adams-Bashforth 2");
   runs.run<LieHeun<Spins>>("geometric Heun");
   runs.run<LieEuler<Spins>>("geometric Euler");
 }

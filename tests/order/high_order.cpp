@@ -22,7 +22,7 @@ class HighOrder : public ChainOrder {
 TEST_P(HighOrder, OnTheGroup) {
   using Stepper = Rkmk<Spins, DormandPrince8, isotropy::Constant>;
   expect<Stepper>("default", 8, slab.natural(), isotropy::Constant{0});
-  expect<Stepper>("default, sigma 2", 8, slab.natural(), isotropy::Constant{2});
+  expect<Stepper>("default, sigma 0.7", 8, slab.natural(), isotropy::Constant{0.7});
 }
 
 TEST_P(HighOrder, InTheChart) {
