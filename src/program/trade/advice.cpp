@@ -11,7 +11,8 @@ namespace {
 
 constexpr double aim = 0.85;      // of the error asked for
 constexpr double seconds = 5;     // that a coarse run of the scene may take
-constexpr double far = 30;        // error over error asked for, from where to foretell
+constexpr double near = 4;        // error over error asked for, from where to foretell
+constexpr double far = 30;        // the same, where the order is as expected
 constexpr double most_finer = 4;  // cost over that of the try before
 constexpr int tries = 12;         // of one candidate
 constexpr int all_tries = 200;
@@ -54,18 +55,23 @@ struct Prospect {
     return std::isfinite(seen) ? seen : order;
   }
   Steps needed(double error) const {
-    double const order_used = std::clamp(seen_order(), 0.5 * order, order + 1);
+    double const most = last().error < near * error ? order + 1 : order;
+    return needed(error, std::clamp(seen_order(), 0.5 * order, most));
+  }
+  Steps needed(double error, double order_used) const {
     double const resolved = resolution(last().steps);
     return steps_of(resolved * std::pow(last().error / error, 1 / order_used));
   }
   double seconds_of(Steps const& steps) const {
+    for (auto const& one : tried)
+      if (resolution(one.steps) == resolution(steps)) return one.outcome.seconds;
     return last().outcome.seconds *
            std::pow(resolution(steps) / resolution(last().steps), cost_order);
   }
   /// Is it near enough to foretell the rest?
   bool is_settled(double error) const {
     double const off = std::abs(seen_order() - order);
-    return last().error < 4 * error || (last().error < far * error && off < 0.3 * order);
+    return last().error < near * error || (last().error < far * error && off < 0.3 * order);
   }
 };
 
@@ -91,8 +97,9 @@ class Search {
     for (auto& prospect : prospects_)
       while (!prospect.dropped && !prospect.is_judged()) attempt(prospect);
     for (int i = 0; i < all_tries; ++i) {
-      auto* const best = cheapest();
-      if (!best || best->is_settled(error_)) return;
+      auto* best = cheapest();
+      if (best && best->is_settled(error_)) best = hope_against(*best);
+      if (!best) return;
       attempt(*best);
     }
   }
@@ -141,6 +148,21 @@ class Search {
       }
     }
     return best;
+  }
+
+  // One that would be cheaper by a fifth, should its error fall as its order says.
+  Prospect* hope_against(Prospect const& best) {
+    Prospect* hope = nullptr;
+    double least = 0.8 * best.seconds_of(best.needed(error_));
+    for (auto& prospect : prospects_) {
+      if (prospect.dropped || prospect.is_settled(error_)) continue;
+      double const seconds = prospect.seconds_of(prospect.needed(error_, prospect.order));
+      if (seconds < least) {
+        least = seconds;
+        hope = &prospect;
+      }
+    }
+    return hope;
   }
 
   void attempt(Prospect& prospect) {
