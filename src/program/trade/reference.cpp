@@ -20,19 +20,20 @@ Reference horizon_alone(Pilot const& pilot, double seconds) {
   Reference reference;
   reference.horizon = pilot.end();
   for (int halving = 0; halving < most_halvings; ++halving, reference.horizon /= 2) {
-    // Doubled from below, so that nothing is run much longer than allowed.
-    double const part = reference.horizon / 64;
-    auto const tried = pilot.run(coarse, part, {0, 1e-2});
-    if (tried.failure) throw NumbersFailed(*tried.failure);
-    if (64 * tried.seconds > seconds) {
-      reference.why_shorter =
-          fmt::format("a coarse run to the end takes {:.2g} s", tried.seconds * pilot.end() / part);
-      continue;
+    // From below, so that nothing is run much longer than allowed.
+    bool fits = true;
+    for (double part = reference.horizon / 64; fits; part *= 4) {
+      auto const tried = pilot.run(coarse, part, {0, 1e-2});
+      if (tried.failure) throw NumbersFailed(*tried.failure);
+      fits = tried.seconds <= seconds;
+      if (!fits)
+        reference.why_shorter = fmt::format("a coarse run to the end takes {:.2g} s",
+                                            tried.seconds * pilot.end() / part);
+      if (fits && part == reference.horizon) {
+        reference.own_steps = tried.own_steps;
+        return reference;
+      }
     }
-    auto const whole = pilot.run(coarse, reference.horizon, {0, 1e-2});
-    if (whole.failure) throw NumbersFailed(*whole.failure);
-    reference.own_steps = whole.own_steps;
-    return reference;
   }
   throw NumbersFailed("no part of the scene is short enough to be tried");
 }
