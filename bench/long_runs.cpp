@@ -149,8 +149,6 @@ int main(int argc, char** argv) {
   runs.run<RedBlack4<Spins>>("red-black 4");
   runs.run<Rkmk<Spins, tableau::Tsitouras5>>("order 5");
   runs.run<Rkmk<Spins, tableau::DormandPrince8>>("order 8");
-  runs.run<StereographicRungeKutta<Spins, tableau::DormandPrince8>>("order 8 in the chart");
-  runs.run<LieAdamsBashforth2<Spins>>("Adams-Bashforth 2");
   runs.run<LieHeun<Spins>>("geometric Heun");
   runs.run<LieEuler<Spins>>("geometric Euler");
 }
