@@ -10,7 +10,7 @@ Usage: bash cmake/bootstrap.sh deps|build|compile|test|demo|bench [--preset NAME
   build    deps, then the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
   test     build everything and run the tests
-  demo     build the program, run the example scenes and draw them
+  demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
 NAME is a preset of CMakePresets.json; the default is release.
 TXT
@@ -96,6 +96,12 @@ case $verb in
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
   compile) build all; say "compiled for the preset $preset: $build_dir" ;;
   test) build all; ctest --preset "$preset" -j "$(nproc)" ;;
-  demo) choose_python; build cayspin_program; bash scenes/demo.sh "$build_dir" ;;
+  demo)
+    choose_python
+    build cayspin_demo
+    bash demo/run.sh "$build_dir"
+    say "the program, which runs scenes: bash cmake/bootstrap.sh build, then"
+    say "  build/$preset/bin/cayspin run scenes/slab_switching.toml; your own code: examples/"
+    ;;
   bench) choose_python; build bench; bash bench/run.sh "$build_dir" ;;
 esac
