@@ -34,6 +34,7 @@
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>
 #include <cayspin/stepper/classical.hpp>
 #include <cayspin/stepper/commutator_free4.hpp>
+#include <cayspin/stepper/compensated.hpp>
 #include <cayspin/stepper/energy_projection.hpp>
 #include <cayspin/stepper/field_extrapolation.hpp>
 #include <cayspin/stepper/implicit.hpp>

@@ -21,11 +21,12 @@ struct MethodOptions {
 
 /// What tells integrators apart that are compiled for themselves. isotropy: zero also stands for a
 /// constant; tangent: the generator of that name; rigid_body: for energy, which has its formulas
-/// there and projects elsewhere, and for series, which are local there.
+/// there and projects elsewhere, and for series, which are local there; compensated: with
+/// compensated sums.
 struct MethodKey {
   io::Method method;
   io::Isotropy isotropy = io::Isotropy::zero;
-  bool tangent = false, rigid_body = false;
+  bool tangent = false, rigid_body = false, compensated = false;
 
   friend bool operator==(MethodKey const&, MethodKey const&) = default;
 };

@@ -7,6 +7,7 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/stability.hpp>
+#include <cayspin/stepper/compensated.hpp>
 #include <cayspin/stepper/energy_projection.hpp>
 
 #include <limits>
@@ -141,6 +142,27 @@ struct OfRigidBodies {
     return of_the_scene.rigid_bodies();
   }
 };
+
+/// A method with compensated sums.
+template <class Family>
+struct WithCompensation : Family {
+  static constexpr bool exponential = false;
+  template <class Spins, class Rotation>
+  using Stepper = Compensated<typename Family::template Stepper<Spins, Rotation>>;
+};
+
+/// The entries of a method without and with compensated sums.
+template <class Family>
+MethodEntries plain_and_compensated(MethodKey key) {
+  MethodKey const other{key.method, key.isotropy, key.tangent, key.rigid_body, true};
+  return {Entry<Family>::make(key), Entry<WithCompensation<Family>>::make(other)};
+}
+
+inline MethodEntries together(std::initializer_list<MethodEntries> groups) {
+  MethodEntries all;
+  for (auto const& some : groups) all.insert(all.end(), some.begin(), some.end());
+  return all;
+}
 
 /// A method whose steps are projected to the energy; the bound on dt is the method's own.
 template <template <class, class> class StepperOf>

@@ -23,10 +23,19 @@ struct HighOrder {
   };
 
   static MethodEntries entries(io::Method on_sphere, io::Method projected) {
-    return {Entry<Group>::make({on_sphere}),
-            Entry<PlainFamily<OnChart>>::make({on_sphere, io::Isotropy::zero, true}),
-            Entry<typename Baseline<InSpace>::Family>::make({projected})};
+    return {Entry<Group>::make({on_sphere}), Entry<OnChartFamily>::make(on_chart(on_sphere)),
+            Entry<InSpaceFamily>::make({projected})};
   }
+  static MethodEntries entries_with_compensation(io::Method on_sphere, io::Method projected) {
+    return together({plain_and_compensated<Group>({on_sphere}),
+                     plain_and_compensated<OnChartFamily>(on_chart(on_sphere)),
+                     plain_and_compensated<InSpaceFamily>({projected})});
+  }
+
+ private:
+  using OnChartFamily = PlainFamily<OnChart>;
+  using InSpaceFamily = typename Baseline<InSpace>::Family;
+  static MethodKey on_chart(io::Method method) { return {method, io::Isotropy::zero, true}; }
 };
 
 }  // namespace cayspin::program

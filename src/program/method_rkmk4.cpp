@@ -25,10 +25,10 @@ struct AsPrinted : LieFamily<Printed> {
 MethodEntries rkmk4_entries() {
   using enum io::Method;
   using enum io::Isotropy;
-  return {Entry<LieFamily<Standard>>::make({rkmk4}),
-          Entry<Bodies>::make({rkmk4, energy, false, true}),
-          Entry<ProjectedToEnergy<Standard>>::make({rkmk4, energy}),
-          Entry<AsPrinted>::make({rkmk4_as_printed})};
+  return together({plain_and_compensated<LieFamily<Standard>>({rkmk4}),
+                   {Entry<Bodies>::make({rkmk4, energy, false, true}),
+                    Entry<ProjectedToEnergy<Standard>>::make({rkmk4, energy}),
+                    Entry<AsPrinted>::make({rkmk4_as_printed})}});
 }
 
 }  // namespace cayspin::program

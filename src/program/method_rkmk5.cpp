@@ -6,7 +6,7 @@
 namespace cayspin::program {
 
 MethodEntries rkmk5_entries() {
-  return HighOrder<tableau::Tsitouras5, tableau::DormandPrince5>::entries(
+  return HighOrder<tableau::Tsitouras5, tableau::DormandPrince5>::entries_with_compensation(
       io::Method::rkmk5, io::Method::projected_rk5);
 }
 

@@ -25,7 +25,7 @@ std::span<MethodEntry const> method_entries() {
 MethodEntry const& find_method(io::Scene const& scene) {
   auto const& integrator = scene.integrator;
   MethodKey key{integrator.method, integrator.isotropy,
-                integrator.generator == io::Generator::tangent, false};
+                integrator.generator == io::Generator::tangent, false, integrator.compensated};
   if (key.isotropy == io::Isotropy::constant) key.isotropy = io::Isotropy::zero;
   if (key.isotropy == io::Isotropy::energy || io::is_series(key.method))
     key.rigid_body = scene.system.kind == io::SystemKind::rigid_body;

@@ -18,9 +18,9 @@ using ChartRungeKutta4 = StereographicRungeKutta<Spins, tableau::Classical4>;
 MethodEntries tangent_entries() {
   using enum io::Method;
   using enum io::Isotropy;
-  return {Entry<PlainFamily<ChartEuler>>::make({euler, zero, true}),
-          Entry<PlainFamily<ChartHeun>>::make({heun, zero, true}),
-          Entry<PlainFamily<ChartRungeKutta4>>::make({rkmk4, zero, true})};
+  return together({{Entry<PlainFamily<ChartEuler>>::make({euler, zero, true}),
+                    Entry<PlainFamily<ChartHeun>>::make({heun, zero, true})},
+                   plain_and_compensated<PlainFamily<ChartRungeKutta4>>({rkmk4, zero, true})});
 }
 
 }  // namespace cayspin::program

@@ -7,6 +7,10 @@
 namespace cayspin::program {
 namespace {
 
+std::string method(MethodKey const& key) {
+  return std::string(io::to_string(key.method)) + (key.compensated ? " compensated" : "");
+}
+
 std::string isotropies(MethodKey const& key) {
   if (io::is_baseline(key.method)) return "-";
   if (key.isotropy == io::Isotropy::energy)
@@ -35,22 +39,23 @@ std::string evaluations(MethodEntry const& entry) {
 }  // namespace
 
 int methods() {
-  constexpr auto line = "{:<17} {:<27} {:<20} {:<20} {:>5} {:>11} {:>11}\n";
+  constexpr auto line = "{:<25} {:<27} {:<20} {:<20} {:>5} {:>11} {:>11}\n";
   fmt::print(line, "method", "isotropy", "generator", "rotation", "order", "evaluations",
              "work fields");
   for (auto const& entry : method_entries()) {
     if (io::is_series(entry.key.method) && entry.key.rigid_body &&
         entry.key.isotropy == io::Isotropy::zero)
       continue;  // the same words as on spins
-    fmt::print(line, io::to_string(entry.key.method), isotropies(entry.key), generators(entry.key),
+    fmt::print(line, method(entry.key), isotropies(entry.key), generators(entry.key),
                rotations(entry), entry.order, evaluations(entry), entry.work_fields);
   }
   fmt::print(
       "\nevaluations: of the generator, per step; adaptive methods choose their steps by\n"
       "integrator.tolerance. work fields: memory beside the state, in fields\n"
       "of three numbers per site; at most so many. A constant isotropy is typed\n"
-      "{{ constant = SIGMA }}. The baselines, at the end, take neither generator, isotropy nor\n"
-      "rotation.\n");
+      "{{ constant = SIGMA }}, compensated as integrator.compensated = true. The baselines, at "
+      "the\n"
+      "end, take neither generator, isotropy nor rotation.\n");
   return Status::done;
 }
 

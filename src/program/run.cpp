@@ -120,6 +120,10 @@ int run(RunOptions const& options) {
     throw UsageError(
         "--restart: energy_control holds the energy that a run begins with; accepted: "
         "a run from its begin, or no energy_control");
+  if (typed.integrator.compensated && options.restart)
+    throw UsageError(
+        "--restart: compensated goes on with what rounding left over, which is in no file; "
+        "accepted: a run without it");
   if (typed.integrator.method == io::Method::automatic && options.restart)
     throw UsageError(
         "--restart: method \"auto\" may choose other steps; accepted: the method and "

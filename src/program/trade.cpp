@@ -41,7 +41,7 @@ void print_text(Pilot const& pilot, Reference const& reference,
       "reference   tsit5 and dp5 at a tolerance of 1e-13 agree to {:.1e}\n"
       "error       the largest distance of any spin at {} times, the last t = {:.6g}\n\n",
       reference.uncertainty, Pilot::looks, reference.horizon);
-  constexpr auto line = "{:<28} {:>14} {:>10} {:>11} {:>12} {}\n";
+  constexpr auto line = "{:<33} {:>14} {:>10} {:>11} {:>12} {}\n";
   fmt::print(line, "method", "steps", "error", "seconds", "evaluations", "front");
   for (auto const& ladder : ladders)
     for (auto const& rung : ladder.rungs)
@@ -49,11 +49,11 @@ void print_text(Pilot const& pilot, Reference const& reference,
                  fmt::format("{:.2e}", rung.error), fmt::format("{:.3e}", rung.seconds),
                  rung.evaluations, rung.on_front ? "*" : "");
 
-  fmt::print("\nseconds (evaluations) to an error of\n{:<28}", "");
+  fmt::print("\nseconds (evaluations) to an error of\n{:<33}", "");
   for (double const error : errors_compared) fmt::print(" {:>20.0e}", error);
   fmt::print("\n");
   for (auto const& ladder : ladders) {
-    fmt::print("{:<28}", ladder.candidate.name());
+    fmt::print("{:<33}", ladder.candidate.name());
     for (double const error : errors_compared)
       fmt::print(" {:>20}", fmt::format("{} ({})", amount_text(seconds_to(ladder, error), "{:.2e}"),
                                         amount_text(evaluations_to(ladder, error), "{:.0f}")));
@@ -125,7 +125,7 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
 }
 
 void print_verdicts(std::vector<Verdict> const& verdicts) {
-  constexpr auto line = "{:>8} {:<28} {:>14} {:>15} {:>15} {:>15} {:>10}\n";
+  constexpr auto line = "{:>8} {:<33} {:>14} {:>15} {:>15} {:>15} {:>10}\n";
   fmt::print("\nwhat `cayspin advise` says, and how it turns out\n");
   fmt::print(line, "asked", "advised", "steps", "error / asked", "time / best", "time / foretold",
              "tried for");
@@ -214,7 +214,7 @@ int advise_on(AdviseOptions const& options) {
   fmt::print("run it      {}\n", command_of(options, resolved, candidate.precision));
   fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
   for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
-    fmt::print("  {:<26} {}\n", advised.others[i].candidate.name(),
+    fmt::print("  {:<33} {}\n", advised.others[i].candidate.name(),
                duration_text(advised.others[i].seconds));
   return Status::done;
 }

@@ -37,6 +37,28 @@ void check_energy_control(Scene const& scene) {
            "a method with steps of dt, or no such key");
 }
 
+std::string compensated_methods() {
+  std::string list;
+  for (auto const& word : words<Method>())
+    if (takes_compensation(word.value))
+      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word.name);
+  return list;
+}
+
+void check_compensation(Scene const& scene) {
+  auto const& integrator = scene.integrator;
+  if (!integrator.compensated) return;
+  if (!takes_compensation(integrator.method))
+    refuse(scene, "integrator.compensated",
+           fmt::format("does not go with method \"{}\"", to_string(integrator.method)),
+           compensated_methods());
+  if (integrator.isotropy == Isotropy::energy)
+    refuse(scene, "integrator.isotropy", "\"energy\" does not go with compensated",
+           "\"zero\", { constant = sigma }");
+  if (integrator.rotation != Rotation::cayley)
+    refuse(scene, "integrator.rotation", "compensated belongs to Cayley coordinates", "\"cayley\"");
+}
+
 void check_isotropy(Scene const& scene) {
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   constexpr std::string_view key = "integrator.isotropy";
@@ -104,6 +126,7 @@ void check_combination(Scene const& scene) {
   auto const& integrator = scene.integrator;
   auto const method = to_string(integrator.method);
   check_energy_control(scene);
+  check_compensation(scene);
   if (is_baseline(integrator.method) || integrator.method == Method::automatic) return;
   if (needs_exponential(integrator.method) && integrator.rotation != Rotation::exponential)
     refuse(scene, "integrator.rotation",

@@ -135,8 +135,8 @@ double read_dt(Table const& table, Integrator const& integrator) {
 Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table = root.table("integrator", "a table [integrator]");
   table.accept_only({"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end",
-                     "steps", "tolerance", "min_dt", "max_dt", "error", "energy_guard",
-                     "energy_control", "until_torque"});
+                     "steps", "tolerance", "min_dt", "max_dt", "error", "compensated",
+                     "energy_guard", "energy_control", "until_torque"});
   Integrator integrator;
   integrator.method = word<Method>(table.required("method", all_words<Method>()));
   read_coordinates(table, integrator);
@@ -147,6 +147,7 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   if (!std::isfinite(static_cast<double>(integrator.steps) * integrator.dt)) {
     table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");
   }
+  if (auto const item = table.find("compensated")) integrator.compensated = boolean(*item);
   if (auto const item = table.find("energy_guard")) integrator.energy_guard = boolean(*item);
   if (auto const item = table.find("energy_control")) integrator.energy_control = boolean(*item);
   if (auto const item = table.find("until_torque")) {

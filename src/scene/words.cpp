@@ -147,6 +147,11 @@ bool takes_tangent(Method method) {
          (is_adaptive(method) && !is_baseline(method));
 }
 
+bool takes_compensation(Method method) {
+  return method == Method::rkmk4 || method == Method::rkmk5 || method == Method::projected_rk4 ||
+         method == Method::projected_rk5;
+}
+
 bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind) {
   switch (isotropy) {
     case Isotropy::zero:

@@ -91,6 +91,10 @@ TYPED_TEST(Sweep, StereographicRungeKutta) {
       StereographicRungeKutta<typename TestFixture::Field, tableau::Classical4>>(turning);
 }
 
+TYPED_TEST(Sweep, Compensated) {
+  expect_same_on_both_paths<Compensated<Rkmk4<typename TestFixture::Field>>>(turning);
+}
+
 // Coefficients and vacancies are read where the lattice has them, not where the buffers are.
 TYPED_TEST(Sweep, SiteDependentCoefficients) {
   using Field = typename TestFixture::Field;
@@ -126,9 +130,9 @@ TYPED_TEST(Sweep, LeavesOffUnderANonlocalField) {
   expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
 }
 
-TYPED_TEST(Sweep, ChosenAndForetoldBySize) {
-  using Field = typename TestFixture::Field;
-  using Stepper = Rkmk4<Field>;
+template <class Stepper>
+void expect_chosen_and_foretold(int fields_of_sweep, std::size_t fields_of_pass) {
+  using Field = typename Stepper::spins_type;
   int const threads = Threaded().concurrency();
   for (auto const& [n, path] : {std::pair(8, Path::pass), std::pair(150, Path::sweep)}) {
     auto const lattice = Lattice::cubic(n, n, n);
@@ -137,9 +141,15 @@ TYPED_TEST(Sweep, ChosenAndForetoldBySize) {
     EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << n;
     if (path == Path::pass) continue;
     std::size_t const field = Field("spins", lattice).bytes();
-    EXPECT_LT(stepper.work_bytes(), 2 * field);
-    EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), 4 * field);
+    EXPECT_LT(stepper.work_bytes(), fields_of_sweep * field);
+    EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), fields_of_pass * field);
   }
+}
+
+TYPED_TEST(Sweep, ChosenAndForetoldBySize) {
+  using Field = typename TestFixture::Field;
+  expect_chosen_and_foretold<Rkmk4<Field>>(2, 4);
+  expect_chosen_and_foretold<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
 TEST(SweepRefusals, OneStageAndFewPeriodicRows) {

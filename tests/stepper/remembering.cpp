@@ -25,7 +25,14 @@ using Steppers =
     ::testing::Types<LieAdamsBashforth2<Spins>, LieEuler<Spins, FiniteDifferenceBackward>>;
 TYPED_TEST_SUITE(Remembering, Steppers);
 
-TYPED_TEST(Remembering, StartsAnewAfterReset) {
+template <class Stepper>
+class Forgetting : public ::testing::Test {};
+using AllThatRemember =
+    ::testing::Types<LieAdamsBashforth2<Spins>, LieEuler<Spins, FiniteDifferenceBackward>,
+                     Compensated<Rkmk4<Spins>>>;
+TYPED_TEST_SUITE(Forgetting, AllThatRemember);
+
+TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   Spins const start = random_spins(slab.lattice, 5);
   auto const fresh = copy_to_host(run<TypeParam>(slab.natural(), start, 0.05, 2));
   TypeParam stepper(start);

@@ -97,6 +97,7 @@ struct Integrator {
   std::optional<double> tolerance;  ///< of adaptive methods, which have one
   std::optional<double> error;      ///< of method "auto": what its choice is to come to
   double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();  ///< of their own steps
+  bool compensated = false;  ///< what rounding takes off the spins goes into the next step
   bool energy_guard = true;
   bool energy_control = false;  ///< holds the energy of a run without damping
   std::optional<double> until_torque;

@@ -120,6 +120,9 @@ bool needs_exponential(Method method);
 /// True for the methods that run in the stereographic chart too.
 bool takes_tangent(Method method);
 
+/// True for the methods that come with compensated sums too.
+bool takes_compensation(Method method);
+
 /// Is there such a sigma for the method on such a system?
 bool takes_isotropy(Method method, Isotropy isotropy, SystemKind kind);
 

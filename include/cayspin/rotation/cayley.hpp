@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 
 namespace cayspin {
@@ -12,11 +13,17 @@ struct Cayley {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
-    Vec3<Value> const c = cross(f, m);
     // Written as m plus a small change: the quotient form of the same map drifts off the sphere.
+    return displacement(f, m).from(m);
+  }
+  /// cay(f) m - m
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const& m) {
+    Vec3<Value> const c = cross(f, m);
     Value const four_and_f2 = detail::multiply_add(
         f.x, f.x, detail::multiply_add(f.y, f.y, detail::multiply_add(f.z, f.z, Value(4))));
-    return multiply_add(Value(Value(4) / four_and_f2), multiply_add(Value(0.5), cross(f, c), c), m);
+    return {Value(Value(4) / four_and_f2), multiply_add(Value(0.5), cross(f, c), c)};
   }
 
   /// dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4)
@@ -41,12 +48,17 @@ struct OverflowSafeCayley : Cayley {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
+    return displacement(f, m).from(m);
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const& m) {
     Vec3<Value> const h = Value(0.5) * f;
     Value const t = Value(1) / largest_or_one(h);
     Vec3<Value> const p = t * h;
     Vec3<Value> const c = cross(p, m);
     Value const scale = Value(2) / detail::multiply_add(t, t, dot(p, p));
-    return multiply_add(scale, multiply_add(t, c, cross(p, c)), m);
+    return {scale, multiply_add(t, c, cross(p, c))};
   }
 
   template <class Value>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/half_angle.hpp>
+#include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 
 namespace cayspin {
@@ -14,11 +15,17 @@ struct Exponential {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
+    return displacement(f, m).from(m);
+  }
+  /// exp(f) m - m
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const& m) {
     auto const half = detail::half_angle(f);
     // The unit quaternion (cosine, v) turns m by m + 2 (cosine v x m + v x (v x m)).
     Vec3<Value> const v = half.sine * half.direction;
     Vec3<Value> const c = cross(v, m);
-    return multiply_add(Value(2), multiply_add(half.cosine, c, cross(v, c)), m);
+    return {Value(2), multiply_add(half.cosine, c, cross(v, c))};
   }
 
   /// dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace cayspin {
@@ -36,6 +37,7 @@ class RungeKutta {
   using spins_type = Spins;
   using tableau_type = Tableau;
   using update_type = Update;
+  using isotropy_type = Isotropy;
   using Real = typename Spins::value_type;
   static constexpr int order = Tableau::order;
   static constexpr int evaluations = Tableau::stages;  // of the generator, per step
@@ -73,7 +75,7 @@ class RungeKutta {
 
   /// Bytes of work memory.
   std::size_t work_bytes() const {
-    std::size_t bytes = sum_.bytes() + buffers_.size() * sizeof(Real);
+    std::size_t bytes = sum_.bytes() + residual_.bytes() + buffers_.size() * sizeof(Real);
     for (auto const& level : levels_) bytes += level.bytes();
     constexpr int distinct = detail::keeps_sum<Tableau, Update> ? 1 : stages;
     for (int i = 0; i < distinct; ++i) bytes += increments_[i].bytes();
@@ -85,7 +87,8 @@ class RungeKutta {
     auto const layout = detail::RowLayout::of<Real>(lattice);
     std::size_t const field = layout.allocation(3) * sizeof(Real);
     if (!by_time_alone || !sweeps_by_itself(layout, threads)) return work_fields * field;
-    return field + sweep_plan(layout, threads).size() * sizeof(Real);
+    std::size_t const fields = 1 + detail::is_compensated<Update>;
+    return fields * field + sweep_plan(layout, threads).size() * sizeof(Real);
   }
 
   /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
@@ -106,6 +109,13 @@ class RungeKutta {
     }
     stages_from<0>(exec, generator, spins, t, dt);
     if constexpr (stages == 1) swap(spins, levels_[0]);
+  }
+
+  /// Forgets what rounding left over of the spins of the step before.
+  void reset() requires(detail::is_compensated<Update>) {
+    DefaultExec const exec;
+    Kokkos::deep_copy(exec, residual_.allocation(), Real(0));
+    exec.fence(region_ + "::reset");
   }
 
   /// Can `batch` take these steps? Few spins on a host space, under a generator that is the same at
@@ -133,6 +143,7 @@ class RungeKutta {
   static constexpr int level_count = detail::level_fields<Tableau, Update>();
   using Fields = detail::StageFields<Real, stages>;
   using DefaultExec = typename Spins::memory_space::execution_space;
+  using Residual = SiteField<Real, 3, typename Spins::memory_space>;
   using Buffers = Kokkos::View<Real*, typename Spins::memory_space>;
 
   static constexpr bool has_sweep =
@@ -160,6 +171,7 @@ class RungeKutta {
   }
 
   void release() {
+    residual_ = {};
     levels_ = {};
     increments_ = {};
     sum_ = Spins();
@@ -195,6 +207,8 @@ class RungeKutta {
   // Stores go around the caches where the fields are larger than those. A sweep comes back to what
   // it has written a whole step later, when of a cache that is shared not much is left.
   void settle() {
+    if constexpr (detail::is_compensated<Update>)
+      residual_ = Residual(name_ + "::residual", lattice_);
     if constexpr (detail::is_host_execution<DefaultExec>) {
       std::size_t const cache = detail::last_level_cache_bytes();
       streaming_ = levels_[0].bytes() + work_bytes() >
@@ -209,8 +223,11 @@ class RungeKutta {
 
   template <int Stage, class Prepared>
   auto kernel(Prepared prepared, double dt) const {
-    return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
-        std::move(prepared), isotropy_, static_cast<Real>(dt)};
+    using Plain = typename detail::PlainUpdate<Update>::type;
+    constexpr bool as_plain = Stage + 1 < stages && !detail::recovers_increments<Tableau, Plain>();
+    return detail::RungeKuttaStage<Tableau, std::conditional_t<as_plain, Plain, Update>, Isotropy,
+                                   Stage, Prepared, Real>{std::move(prepared), isotropy_,
+                                                          static_cast<Real>(dt)};
   }
 
   template <int Stage>
@@ -229,6 +246,7 @@ class RungeKutta {
       fields.increment = increments_[Stage].output(streaming_ && (Stage == 0 || !keeps_sum));
     if constexpr (keeps_sum) fields.sum = sum_.output(streaming_);
     fields.next = next.output(streaming_ && !in_place);
+    if constexpr (last && detail::is_compensated<Update>) fields.residual = residual_.array();
     return fields;
   }
 
@@ -251,7 +269,8 @@ class RungeKutta {
       std::tuple const kernels{kernel_at(std::integral_constant<int, Stage>{})...};
       detail::SweepLoop<Tableau, Update, Real,
                         std::tuple_element_t<Stage, decltype(kernels)>...> const loop{
-          kernels, plan_, spins.array(), levels_[0].output(streaming_), buffers_.data()};
+          kernels,           plan_,          spins.array(), levels_[0].output(streaming_),
+          residual_.array(), buffers_.data()};
       detail::for_each_task(exec, sweep_label_, plan_.parts(), spins.sites(), loop);
     }
     (std::make_integer_sequence<int, stages>{});
@@ -289,6 +308,7 @@ class RungeKutta {
   std::array<Spins, level_count> levels_;  // the first one only, in a sweep
   std::array<Spins, stages> increments_;   // one field in all places where keeps_sum
   Spins sum_;
+  Residual residual_;
   Buffers buffers_;
   bool streaming_ = false;
 };

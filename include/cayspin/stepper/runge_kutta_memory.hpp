@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/rows.hpp>
+#include <cayspin/stepper/update_compensated.hpp>
 
 // What an explicit Runge-Kutta method keeps between its stages: found from the tableau and the
 // geometry when compiled.
@@ -48,7 +49,8 @@ inline constexpr bool keeps_sum = Tableau::stages > 2 &&
 /// store their spins alone.
 template <class Tableau, class Update>
 constexpr bool recovers_increments() {
-  if constexpr (requires { Update::has_chart; }) return Tableau::stages > 1 && is_chain<Tableau>();
+  if constexpr (requires { Update::has_chart; })
+    return Update::has_chart && Tableau::stages > 1 && is_chain<Tableau>();
   return false;
 }
 
@@ -89,7 +91,7 @@ constexpr int level_fields() {
 }
 template <class Tableau, class Update>
 constexpr int work_fields() {
-  int const levels = level_fields<Tableau, Update>();
+  int const levels = level_fields<Tableau, Update>() + is_compensated<Update>;
   if (keeps_sum<Tableau, Update>) return levels + 2;
   int increments = 0;
   for (int stage = 0; stage + 1 < Tableau::stages; ++stage)
@@ -105,8 +107,10 @@ struct StageRows {
   RowInput<Real> increments[Stages > 1 ? Stages - 1 : 1];  // of earlier stages, or their spins
   RowInput<Real> sum_before;                               // of weighted increments
   RowOutput<Real> sum;
-  RowOutput<Real> increment;  // of this stage
-  RowOutput<Real> next;       // spins of the next stage, or of the end
+  RowOutput<Real> increment;       // of this stage
+  RowOutput<Real> next;            // spins of the next stage, or of the end
+  RowInput<Real> residual_before;  // what the rounding of `start` left over
+  RowOutput<Real> residual;        // what the rounding of the end leaves over
 };
 
 }  // namespace cayspin::detail

@@ -16,6 +16,7 @@ template <class Real, int Stages>
 struct StageFields {
   SiteArray<Real, 3> start, level, increments[Stages > 1 ? Stages - 1 : 1];
   OutputArray<Real, 3> sum, increment, next;
+  SiteArray<Real, 3> residual;
 
   /// Their plane z.
   template <class Kernel>
@@ -36,6 +37,7 @@ struct StageFields {
     planes.sum = at(sum, z);
     planes.increment = at(increment, z);
     planes.next = at(next, z);
+    if constexpr (Kernel::compensates) planes.residual = at(residual, z);
     planes.from_memory = planes.level_from_memory = true;
     planes.sum_streams = sum.streaming;
     planes.increment_streams = increment.streaming;
@@ -52,6 +54,8 @@ struct StageFields {
     at.sum = output(sum, row);
     at.increment = output(increment, row);
     at.next = output(next, row);
+    at.residual_before = input(residual, row);
+    at.residual = output({residual, false}, row);
     at.level.data = level.data + row.offset;
     at.level.stride = level.stride;
     for (int axis = 0; axis < 2; ++axis)

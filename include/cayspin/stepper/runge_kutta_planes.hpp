@@ -18,7 +18,7 @@ struct StagePlanes {
 
   Axis y;
   PlaneRows<Real> start, level[3], increments[stages > 1 ? stages - 1 : 1];
-  PlaneRows<Real> sum_before, sum, increment, next;
+  PlaneRows<Real> sum_before, sum, increment, next, residual;
   bool from_memory = false, level_from_memory = false;  // not from a cache
   bool sum_streams = false, increment_streams = false, next_streams = false;
 
@@ -45,6 +45,10 @@ struct StagePlanes {
     if constexpr (Kernel::stores_increment)
       rows.increment = increment.output(at, increment_streams);
     rows.next = next.output(at, next_streams);
+    if constexpr (Kernel::compensates) {
+      rows.residual_before = residual.input(at, ahead);
+      rows.residual = residual.output(at, false);
+    }
     return rows;
   }
 };

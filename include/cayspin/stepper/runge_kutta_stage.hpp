@@ -96,6 +96,7 @@ struct RungeKuttaStage {
 
   using value_type = Real;
   using Rows = StageRows<Real, stages>;
+  static constexpr bool compensates = last && is_compensated<Update>;
   static constexpr bool recovers = recovers_increments<Tableau, Update>();
   static constexpr bool reads_start = StageIndex > 0;
   static constexpr bool reads_sum = detail::reads_sum<Tableau, Update>(StageIndex);
@@ -139,8 +140,11 @@ struct RungeKuttaStage {
 
     if constexpr (last) {
       if constexpr (Update::keeps_generators) increments_from_generators(f, m0);
-      site.store(turned_again(f, Update::finish(completed(site, total(site, rows, f), m0), m0)),
-                 rows.next);
+      Vec3<Value> const on = completed(site, total(site, rows, f), m0);
+      if constexpr (compensates)
+        store_compensated(site, rows, f, on, m0);
+      else
+        site.store(turned_again(f, Update::finish(on, m0)), rows.next);
     } else {
       if constexpr (writes_sum) site.store(sum_up_to_here(site, rows, f), rows.sum);
       if constexpr (stores_increment) site.store(f[StageIndex], rows.increment);
@@ -180,6 +184,22 @@ struct RungeKuttaStage {
                             m);
     else
       return m;
+  }
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static void store_compensated(Site const& site, Rows const& rows,
+                                                            Vec3<Value> const* f,
+                                                            Vec3<Value> const& on,
+                                                            Vec3<Value> const& m0) {
+    Vec3<Value> displacement = Update::displacement(on, m0).vector();
+    if constexpr (has_second_rotation<Tableau>(stages)) {
+      auto const again = weighted_sum<SecondWeights<Tableau, stages>, stages>(f);
+      displacement =
+          displacement + Update::displacement(again, Vec3<Value>(m0 + displacement)).vector();
+    }
+    auto const end = rounded_sum(m0, Vec3<Value>(site.load(rows.residual_before) + displacement));
+    site.store(end.sum, rows.next);
+    site.store(end.residual, rows.residual);
   }
 
   template <class Site, class Value>

@@ -68,6 +68,7 @@ struct SweepLoop {
   SweepPlan plan;
   SiteArray<Real, 3> start;
   OutputArray<Real, 3> next;
+  SiteArray<Real, 3> residual;
   Real* memory;
 
   void operator()(std::int64_t task) const {
@@ -102,6 +103,7 @@ struct SweepLoop {
     if constexpr (Kernel::writes_sum) planes.sum = part.rows(Buffers::sum(Stage), z);
     if constexpr (Kernel::stores_increment)
       planes.increment = part.rows(Buffers::increment(Stage), z);
+    if constexpr (Kernel::compensates) planes.residual = plane_rows(residual, plan.layout, here);
     if constexpr (Stage + 1 < stages) {
       planes.next = part.rows(Buffers::spins(Stage + 1), z);
     } else {

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cayspin/detail/unrolled.hpp>
+#include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <type_traits>
 
 // How an increment moves a spin, and which increment a generator gives at a stage: the part of a
 // Runge-Kutta method that is geometry. Coordinates f are taken at the spin m0 of the step's begin;
-// increment(f, dt A, m, m0) belongs to the stage's spin m, which f moves m0 to.
+// increment(f, dt A, m, m0) belongs to the stage's spin m, which f moves m0 to. move is for stages,
+// finish for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
 namespace cayspin::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
@@ -31,6 +33,11 @@ struct Lie {
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
     return Rotation::rotate(f, m0);
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const& m0) {
+    return Rotation::displacement(f, m0);
   }
 };
 
@@ -83,6 +90,18 @@ struct Classical {
       return m;
     }
   }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const& m0) {
+    if constexpr (Renormalise) {
+      Value const longer = dot(f, f) + Value(2) * dot(f, m0);  // |m0 + f|^2 - 1
+      Value const length = detail::square_root<Value>(Value(1) + longer);
+      Value const along = longer / (Value(1) + length);  // |m0 + f| - 1
+      return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
+    } else {
+      return {Value(1), f};
+    }
+  }
 };
 
 /// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
@@ -106,14 +125,18 @@ struct Stereographic {
   }
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> move(Vec3<Value> const& f, Vec3<Value> const& m0) {
-    Value const s = dot(f, f);
-    return multiply_add(Value(Value(2) / (Value(1) + s)), multiply_add(Value(Value(0) - s), m0, f),
-                        m0);
+    return displacement(f, m0).from(m0);
   }
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
     return move(f, m0);
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const& m0) {
+    Value const s = dot(f, f);
+    return {Value(Value(2) / (Value(1) + s)), multiply_add(Value(Value(0) - s), m0, f)};
   }
 
   /// move(increment(step a, m, m0), m0) for unit spins, with one division.

@@ -10,6 +10,7 @@ std::string Choice::method() const {
   std::string name(io::to_string(key.method));
   if (key.isotropy != io::Isotropy::zero) name += fmt::format(" {}", io::to_string(key.isotropy));
   if (key.tangent) name += " tangent";
+  if (key.compensated) name += " compensated";
   if (key.rigid_body) name += " (rigid body)";
   return name;
 }
@@ -20,7 +21,8 @@ std::string Choice::variant() const {
 }
 
 std::string Choice::toml() const {
-  auto const method = fmt::format("method = \"{}\"\n", io::to_string(entry->key.method));
+  auto const method = fmt::format("method = \"{}\"\ncompensated = {}\n",
+                                  io::to_string(entry->key.method), entry->key.compensated);
   if (is_baseline()) return method;
   return fmt::format("{}generator = \"{}\"\nisotropy = \"{}\"\nrotation = \"{}\"\n", method,
                      io::to_string(generator), io::to_string(entry->key.isotropy),

@@ -18,6 +18,7 @@ struct Candidate {
   io::Rotation rotation = io::Rotation::cayley;
   Precision precision = Precision::double_precision;
   double sigma = 0;  // a constant isotropy
+  bool compensated = false;
 
   bool is_adaptive() const { return io::is_adaptive(method); }
   bool is_baseline() const { return io::is_baseline(method); }

@@ -36,6 +36,7 @@ std::string integrator_table(io::Integrator const& of_scene, Advice const& advic
   if (candidate.rotation != io::Rotation::cayley)
     keys += fmt::format(",rotation=\"{}\"", io::to_string(candidate.rotation));
   if (candidate.sigma != 0) keys += fmt::format(",isotropy={{constant={:#}}}", candidate.sigma);
+  if (candidate.compensated) keys += ",compensated=true";
   if (candidate.is_adaptive()) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
   keys += fmt::format(",dt={:#},steps={}", dt, steps);
   if (!of_scene.energy_guard) keys += ",energy_guard=false";

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// integrator.compensated: in single precision, many short steps leave the digits that double has.
+#include "program_test.hpp"
+
+#include <limits>
+
+namespace cayspin::program::test {
+namespace {
+
+struct CompensatedRuns : ProgramTest {
+  static std::string scene() {
+    return R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [9, 5]
+[field]
+exchange = 1.0
+slab_demag = { normal = [0, 0, 1] }
+applied = [0.4, -0.2, 0.6]
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "rkmk4"
+dt = 1e-4
+end = 1.0
+)toml";
+  }
+
+  std::vector<double> end(std::string const& integrator, std::string const& precision) const {
+    auto const outcome =
+        start({"run", write("scene.toml", scene()), "--quiet", "--output", "out.h5", "--overwrite",
+               "--precision", precision, "--set", "output.every=10000", "--set",
+               "integrator={dt=1e-4,end=1.0," + integrator + "}"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return last_spins("out.h5");
+  }
+};
+
+TEST_F(CompensatedRuns, KeepTheDigitsOfDouble) {
+  constexpr double epsilon = std::numeric_limits<float>::epsilon();
+  for (std::string const method :
+       {"method='rkmk4'", "method='rkmk4',generator='tangent'", "method='rkmk5'",
+        "method='rkmk5',generator='tangent'", "method='projected_rk4'", "method='projected_rk5'"}) {
+    auto const exact = end(method, "double");
+    EXPECT_LT(distance(end(method + ",compensated=true", "single"), exact), 10 * epsilon) << method;
+    EXPECT_GT(distance(end(method, "single"), exact), 30 * epsilon) << method;
+  }
+}
+
+// What rounding left over is not in the file.
+TEST_F(CompensatedRuns, DoNotGoOnFromAFile) {
+  end("method='rkmk4',compensated=true", "double");
+  auto const outcome =
+      start({"run", "scene.toml", "--quiet", "--output", "more.h5", "--restart", "out.h5", "--set",
+             "integrator={method='rkmk4',dt=1e-4,end=2.0,compensated=true}"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(contains(outcome.errors, "accepted: a run without it")) << outcome.errors;
+}
+
+}  // namespace
+}  // namespace cayspin::program::test
