@@ -99,6 +99,7 @@ struct Verdict {
   std::string best_method;
 };
 
+// `pilot`: of the scene up to the reference's horizon, where the ladders end.
 Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
               double asked) {
   Verdict verdict{asked, advise(pilot, {asked, {}, {}}), 0, 0, 0, {}};
@@ -111,15 +112,11 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
   }
   if (auto const& choice = verdict.advised.choice) {
     auto steps = choice->steps;
-    // The ladders go to the reference's horizon.
-    double const part = reference.horizon / pilot.end();
-    if (!choice->candidate.is_adaptive())
-      steps.count = Pilot::looks * static_cast<std::int64_t>(std::ceil(
-                                       static_cast<double>(steps.count) * part / Pilot::looks));
+    auto& count = steps.count;
+    count = (count + Pilot::looks - 1) / Pilot::looks * Pilot::looks;
     auto const outcome = pilot.run(choice->candidate, reference.horizon, steps, 3);
     verdict.error = distance(outcome, reference.solution);
-    verdict.seconds = outcome.seconds / part;
-    verdict.best /= part;
+    verdict.seconds = outcome.seconds;
   }
   return verdict;
 }
@@ -174,9 +171,12 @@ int trade_off(TradeOptions const& options) {
   else
     print_text(pilot, reference, ladders);
   if (!options.advice) return Status::done;
+  auto as_far = scene;
+  as_far.integrator.dt *= reference.horizon / pilot.end();
+  Pilot const pilot_as_far(as_far, space);
   std::vector<Verdict> verdicts;
   for (double const error : errors_compared)
-    verdicts.push_back(judge(pilot, reference, ladders, error));
+    verdicts.push_back(judge(pilot_as_far, reference, ladders, error));
   print_verdicts(verdicts);
   return Status::done;
 }

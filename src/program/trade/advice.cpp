@@ -46,6 +46,10 @@ struct Prospect {
     return !candidate.is_adaptive() || steps.tolerance >= candidate.least_tolerance();
   }
   Try const& last() const { return tried.back(); }
+  /// Of the coarsest steps that ran.
+  double least_seconds() const {
+    return tried.empty() ? std::numeric_limits<double>::infinity() : tried.front().outcome.seconds;
+  }
   bool is_judged() const { return tried.size() > 1; }
   /// From the last two tries; the method's own where they do not say.
   double seen_order() const {
@@ -95,7 +99,16 @@ class Search {
   /// Best first, until the cheapest one is near enough.
   void run() {
     for (auto& prospect : prospects_)
+      while (!prospect.dropped && prospect.tried.empty()) attempt(prospect);
+    std::ranges::stable_sort(prospects_, {}, &Prospect::least_seconds);
+    for (auto& prospect : prospects_) {
+      auto const* best = cheapest();
+      if (best && best->is_settled(error_) &&
+          best->seconds_of(best->needed(error_)) < prospect.least_seconds())
+        break;  // nothing that follows takes less
       while (!prospect.dropped && !prospect.is_judged()) attempt(prospect);
+    }
+    std::erase_if(prospects_, [](Prospect const& one) { return !one.is_judged(); });
     for (int i = 0; i < all_tries; ++i) {
       auto* best = cheapest();
       if (best && best->is_settled(error_)) best = hope_against(*best);
@@ -107,7 +120,7 @@ class Search {
   std::vector<Advice> advices() const {
     std::vector<Advice> all;
     for (auto const& prospect : prospects_) {
-      if (prospect.dropped || !prospect.is_judged()) continue;
+      if (prospect.dropped) continue;
       auto const steps = prospect.needed(error_);
       if (!prospect.can_take(steps)) continue;
       Advice advice{prospect.candidate, steps, 0, error_, prospect.seconds_of(steps), 0};
@@ -140,7 +153,8 @@ class Search {
     Prospect* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (auto& prospect : prospects_) {
-      if (prospect.dropped || !prospect.can_take(prospect.needed(error_))) continue;
+      if (prospect.dropped || !prospect.is_judged() || !prospect.can_take(prospect.needed(error_)))
+        continue;
       double const now = prospect.seconds_of(prospect.needed(error_));
       if (now < least) {
         least = now;
