@@ -12,12 +12,10 @@ namespace {
 // Those that the many steps can be had of in minutes.
 std::vector<extremity::Choice> simplest(std::vector<extremity::Choice> const& all) {
   std::vector<extremity::Choice> few;
-  for (auto const& choice : all) {
-    auto key = choice.entry->key;
-    key.compensated = false;
-    if (key == MethodKey{io::Method::rkmk4} && choice.generator == io::Generator::standard)
+  for (auto const& choice : all)
+    if (choice.entry->key == MethodKey{io::Method::rkmk4} &&
+        choice.generator == io::Generator::standard)
       few.push_back(choice);
-  }
   return few;
 }
 
