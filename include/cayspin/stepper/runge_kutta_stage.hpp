@@ -140,11 +140,12 @@ struct RungeKuttaStage {
 
     if constexpr (last) {
       if constexpr (Update::keeps_generators) increments_from_generators(f, m0);
-      Vec3<Value> const on = completed(site, total(site, rows, f), m0);
+      // Nested, since g++ copies what has a name through memory.
       if constexpr (compensates)
-        store_compensated(site, rows, f, on, m0);
+        store_compensated(site, rows, f, completed(site, total(site, rows, f), m0), m0);
       else
-        site.store(turned_again(f, Update::finish(on, m0)), rows.next);
+        site.store(turned_again(f, Update::finish(completed(site, total(site, rows, f), m0), m0)),
+                   rows.next);
     } else {
       if constexpr (writes_sum) site.store(sum_up_to_here(site, rows, f), rows.sum);
       if constexpr (stores_increment) site.store(f[StageIndex], rows.increment);
