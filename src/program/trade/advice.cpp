@@ -64,7 +64,20 @@ struct Prospect {
   }
   Steps needed(double error, double order_used) const {
     double const resolved = resolution(last().steps);
-    return steps_of(resolved * std::pow(last().error / error, 1 / order_used));
+    double const by_order = resolved * std::pow(last().error / error, 1 / order_used);
+    return steps_of(std::max(by_order, finer_than_failures(error)));
+  }
+  /// Tries that fell short bound it, wherever the order leads: where steps become unstable, errors
+  /// fall all at once.
+  double finer_than_failures(double error) const {
+    for (auto i = tried.size() - 1; i > 0; --i) {
+      auto const &coarse = tried[i - 1], &fine = tried[i];
+      if (coarse.error <= error || fine.error > error) continue;
+      double const from = resolution(coarse.steps), to = resolution(fine.steps);
+      double const slope = std::log(coarse.error / fine.error) / std::log(to / from);
+      return slope > order + 1 ? to : from * std::pow(coarse.error / error, 1 / slope);
+    }
+    return 0;
   }
   double seconds_of(Steps const& steps) const {
     for (auto const& one : tried)
@@ -185,7 +198,7 @@ class Search {
     ++prospect.attempts;
     double const now = prospect.resolution(steps);
     if (outcome.failure) {
-      prospect.next = prospect.steps_of(1.5 * now);
+      prospect.coarsest = prospect.next = prospect.steps_of(1.5 * now);
     } else {
       prospect.tried.push_back({steps, std::move(outcome), 0});
       judge(prospect);
