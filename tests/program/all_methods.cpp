@@ -67,7 +67,8 @@ class AllMethods : public ProgramTest {
   std::vector<double> end(std::string const& scene, Arguments arguments, char const* dt) const {
     arguments.insert(arguments.end(), {"--set", std::string("integrator.dt=") + dt, "--overwrite",
                                        "--set", "integrator.energy_guard=false"});
-    Arguments all{"run", write("scene.toml", scene), "--quiet", "--output", in_folder("out.h5")};
+    Arguments all{"run",      write("scene.toml", scene), "--quiet", "--threads", "1",
+                  "--output", in_folder("out.h5")};
     all.insert(all.end(), arguments.begin(), arguments.end());
     auto const outcome = start(all);
     EXPECT_EQ(outcome.status, 0) << outcome.errors;

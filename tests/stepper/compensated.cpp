@@ -76,7 +76,6 @@ TYPED_TEST(Compensation, ManyShortStepsAddNothing) {
   using Field = typename TestFixture::Field;
   expect_no_growth<Rkmk4<Field>>("rkmk4");
   expect_no_growth<StereographicRungeKutta<Field, tableau::Classical4>>("in the chart");
-  expect_no_growth<Rkmk<Field, tableau::Tsitouras5>>("order 5");
   expect_no_growth<CommutatorFree4<Field>>("two rotations");
   expect_no_growth<ProjectedRk4<Field>>("projected");
 }
