@@ -27,25 +27,38 @@ end = 1.0
 )toml";
   }
 
-  std::vector<double> end(std::string const& integrator, std::string const& precision) const {
+  std::vector<double> end(std::string const& integrator, std::string const& precision,
+                          std::string const& dt = "1e-4") const {
     auto const outcome =
-        start({"run", write("scene.toml", scene()), "--quiet", "--output", "out.h5", "--overwrite",
-               "--precision", precision, "--set", "output.every=10000", "--set",
-               "integrator={dt=1e-4,end=1.0," + integrator + "}"});
+        start({"run", write("scene.toml", scene()), "--quiet", "--threads", "1", "--output",
+               "out.h5", "--overwrite", "--precision", precision, "--set", "output.every=10000",
+               "--set", "integrator={dt=" + dt + ",end=1.0," + integrator + "}"});
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     return last_spins("out.h5");
   }
 };
 
+constexpr char const* methods[] = {"method='rkmk4'",         "method='rkmk4',generator='tangent'",
+                                   "method='rkmk5'",         "method='rkmk5',generator='tangent'",
+                                   "method='projected_rk4'", "method='projected_rk5'"};
+
 TEST_F(CompensatedRuns, KeepTheDigitsOfDouble) {
   constexpr double epsilon = std::numeric_limits<float>::epsilon();
-  for (std::string const method :
-       {"method='rkmk4'", "method='rkmk4',generator='tangent'", "method='rkmk5'",
-        "method='rkmk5',generator='tangent'", "method='projected_rk4'", "method='projected_rk5'"}) {
+  for (std::string const method : methods) {
     auto const exact = end(method, "double");
     EXPECT_LT(distance(end(method + ",compensated=true", "single"), exact), 10 * epsilon) << method;
     EXPECT_GT(distance(end(method, "single"), exact), 30 * epsilon) << method;
   }
+}
+
+// With steps that tell the methods apart.
+TEST_F(CompensatedRuns, TakeTheStepsOfTheirMethod) {
+  for (std::string const method : methods)
+    EXPECT_LT(
+        distance(end(method + ",compensated=true", "double", "0.1"), end(method, "double", "0.1")),
+        1e-14)
+        << method;
+  EXPECT_GT(distance(end(methods[0], "double", "0.1"), end(methods[2], "double", "0.1")), 1e-6);
 }
 
 // What rounding left over is not in the file.
