@@ -8,29 +8,10 @@ namespace cayspin::program::test {
 namespace {
 
 struct CompensatedRuns : ProgramTest {
-  static std::string scene() {
-    return R"toml([system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [9, 5]
-[field]
-exchange = 1.0
-slab_demag = { normal = [0, 0, 1] }
-applied = [0.4, -0.2, 0.6]
-[initial]
-random = { seed = 3 }
-[integrator]
-method = "rkmk4"
-dt = 1e-4
-end = 1.0
-)toml";
-  }
-
   std::vector<double> end(std::string const& integrator, std::string const& precision,
                           std::string const& dt = "1e-4") const {
     auto const outcome =
-        start({"run", write("scene.toml", scene()), "--quiet", "--threads", "1", "--output",
+        start({"run", write("scene.toml", chain_scene()), "--quiet", "--threads", "1", "--output",
                "out.h5", "--overwrite", "--precision", precision, "--set", "output.every=10000",
                "--set", "integrator={dt=" + dt + ",end=1.0," + integrator + "}"});
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
