@@ -22,7 +22,7 @@
 #include <cayspin/isotropy/energy.hpp>
 #include <cayspin/isotropy/finite_difference.hpp>
 #include <cayspin/isotropy/zero.hpp>
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 #include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
-#include <cayspin/stepper/runge_kutta_memory.hpp>
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/data_flow.hpp>
+#include <cayspin/stage/update.hpp>
 
 #include <algorithm>
 #include <array>

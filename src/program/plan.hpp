@@ -4,7 +4,7 @@
 #include "method.hpp"
 
 #include <cayspin/io/scene.hpp>
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 
 #include <cstdint>
 #include <optional>

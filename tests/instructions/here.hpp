@@ -79,7 +79,7 @@ void Kokkos::Tools::pushRegion(std::string const&) {}
 void Kokkos::Tools::popRegion() {}
 
 #include <cayspin/detail/row_layout.hpp>
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 
 namespace cayspin::instructions {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 #include <cayspin/spin_field.hpp>
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // Displacements keep their digits however short they are; rotations are made of them.
 #include "reference.hpp"
 
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 namespace cayspin::test {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/memory.hpp>
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 #include <cayspin/stencil.hpp>
 
 namespace cayspin {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/sigma.hpp>
+#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/vec3.hpp>
 

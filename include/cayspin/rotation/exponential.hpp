@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/half_angle.hpp>
+#include <cayspin/rotation/half_angle.hpp>
 #include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 

@@ -8,10 +8,10 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stepper/adaptive_stage.hpp>
-#include <cayspin/stepper/runge_kutta_pass.hpp>
+#include <cayspin/stage/pass.hpp>
 #include <cayspin/stepper/step_control.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 #include <algorithm>
 #include <array>

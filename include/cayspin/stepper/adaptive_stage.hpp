@@ -4,7 +4,7 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/site.hpp>
 #include <cayspin/stencil.hpp>
-#include <cayspin/stepper/runge_kutta_stage.hpp>
+#include <cayspin/stage/kernel.hpp>
 
 // What an adaptive Runge-Kutta step does besides its stages. Tableau is a FirstSameAsLast.
 namespace cayspin::detail {

@@ -4,7 +4,7 @@
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/stepper/runge_kutta.hpp>
 #include <cayspin/stepper/tableau.hpp>
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 // The baselines that spin codes use: Runge-Kutta in space, with the same kernels as the geometric
 // methods. Classical*: |m| drifts. Projected*: each step ends by dividing by the length.

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/stepper/runge_kutta.hpp>
-#include <cayspin/stepper/update_compensated.hpp>
+#include <cayspin/stage/update_compensated.hpp>
 
 namespace cayspin {
 

@@ -3,7 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/detail/sigma.hpp>
+#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/observer/scalars.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>

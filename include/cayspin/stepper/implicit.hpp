@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/newton_krylov.hpp>
+#include <cayspin/stepper/newton_krylov.hpp>
 #include <cayspin/isotropy/analytic.hpp>
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/rotation/cayley.hpp>

@@ -3,7 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/stencil.hpp>
-#include <cayspin/stepper/rate_stage.hpp>
+#include <cayspin/stepper/rate.hpp>
 
 namespace cayspin::detail {
 

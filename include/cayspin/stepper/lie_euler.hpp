@@ -5,12 +5,12 @@
 #include <cayspin/isotropy/finite_difference.hpp>
 #include <cayspin/isotropy/zero.hpp>
 #include <cayspin/rotation/cayley.hpp>
-#include <cayspin/stepper/rate_stage.hpp>
+#include <cayspin/stepper/rate.hpp>
 #include <cayspin/stepper/runge_kutta.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 #include <cayspin/stepper/tableau.hpp>
 #include <cayspin/stepper/two_point.hpp>
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 namespace cayspin {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/exact_flow.hpp>
+#include <cayspin/stepper/exact_flow.hpp>
 #include <cayspin/detail/for_each_site_of_colour.hpp>
 #include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/varied_stencil.hpp>

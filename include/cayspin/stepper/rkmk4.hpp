@@ -6,7 +6,7 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stepper/runge_kutta.hpp>
 #include <cayspin/stepper/tableau.hpp>
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 namespace cayspin {
 

@@ -3,9 +3,9 @@
 
 #include <cayspin/detail/batch.hpp>
 #include <cayspin/spin_field.hpp>
-#include <cayspin/stepper/runge_kutta_pass.hpp>
-#include <cayspin/stepper/runge_kutta_stage.hpp>
-#include <cayspin/stepper/runge_kutta_sweep.hpp>
+#include <cayspin/stage/pass.hpp>
+#include <cayspin/stage/kernel.hpp>
+#include <cayspin/stage/sweep.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 

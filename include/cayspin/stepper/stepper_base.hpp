@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
-#include <cayspin/lattice/lattice.hpp>
+#include <cayspin/lattice.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 

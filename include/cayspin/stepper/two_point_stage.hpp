@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/sigma.hpp>
+#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/stencil.hpp>
 

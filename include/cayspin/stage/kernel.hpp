@@ -6,9 +6,9 @@
 #include <cayspin/isotropy/energy.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
-#include <cayspin/stepper/runge_kutta_memory.hpp>
+#include <cayspin/stage/data_flow.hpp>
 #include <cayspin/stepper/tableau.hpp>
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 #include <type_traits>
 

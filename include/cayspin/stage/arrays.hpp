@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/rows.hpp>
-#include <cayspin/stepper/runge_kutta_memory.hpp>
+#include <cayspin/stage/data_flow.hpp>
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/rows.hpp>
-#include <cayspin/stepper/update_compensated.hpp>
+#include <cayspin/stage/update_compensated.hpp>
 
 // What an explicit Runge-Kutta method keeps between its stages: found from the tableau and the
 // geometry when compiled.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/stepper/runge_kutta_planes.hpp>
-#include <cayspin/stepper/runge_kutta_stage.hpp>
+#include <cayspin/stage/arrays.hpp>
+#include <cayspin/stage/kernel.hpp>
 
 #include <cstdint>
 #include <string>

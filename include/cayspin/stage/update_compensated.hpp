@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/stepper/update.hpp>
+#include <cayspin/stage/update.hpp>
 
 namespace cayspin {
 

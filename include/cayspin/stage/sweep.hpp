@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/sweep_plan.hpp>
-#include <cayspin/stepper/runge_kutta_pass.hpp>
+#include <cayspin/stage/pass.hpp>
 
 #include <algorithm>
 #include <cstdint>
