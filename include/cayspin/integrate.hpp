@@ -169,7 +169,8 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     if (steps == 1) stepper.step(exec, generator, spins, now.time, times.dt);
     number += steps;
     summary.steps += steps;
-    summary.evaluations += steps * Stepper::evaluations;
+    if constexpr (requires { Stepper::evaluations; })
+      summary.evaluations += steps * Stepper::evaluations;
   }
   if constexpr (detail::counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;

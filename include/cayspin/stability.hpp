@@ -59,9 +59,6 @@ struct LinearUpdate<update::Lie<Cayley>> {
 };
 
 template <>
-struct LinearUpdate<update::LieAsPrinted<Cayley>> : LinearUpdate<update::Lie<Cayley>> {};
-
-template <>
 struct LinearUpdate<update::Lie<Exponential>> {
   static NearAxis increment(NearAxis const& f, NearAxis const& y, Complex, Complex) {
     double const n = f.parallel, half = 0.5 * n;
@@ -92,22 +89,25 @@ struct LinearUpdate<update::Stereographic> {
   static Complex growth(NearAxis const& f) { return 2.0 * f.transverse; }
 };
 
-template <bool Renormalise>
-struct LinearUpdate<update::Classical<Renormalise>> {
+template <>
+struct LinearUpdate<update::Classical> {
   static NearAxis increment(NearAxis const&, NearAxis const&, Complex z, Complex amplitude) {
     return {z * amplitude, 0};
   }
   static Complex growth(NearAxis const& f) { return f.transverse; }
 };
 
+template <>
+struct LinearUpdate<update::Projected> : LinearUpdate<update::Classical> {};
+
 /// Growth by the rotation of these coordinates, and then the second one where the tableau has it:
 /// row `stages` for the end of the step.
 template <class Tableau, class Linear, class Coordinates>
-Complex growth_to(int row, NearAxis const& first, Coordinates const& kept) {
+Complex growth_to(int row, NearAxis const& first, Coordinates const& increments) {
   Complex const growth = Linear::growth(first);
   NearAxis second;
   for (int j = 0; j < row && j < Tableau::stages; ++j)
-    second = second + second_weight<Tableau>(row, j) * kept[j];
+    second = second + second_weight<Tableau>(row, j) * increments[j];
   // Relative to the spin that the first one has moved.
   second.transverse -= second.parallel * growth;
   return growth + Linear::growth(second);
@@ -118,14 +118,13 @@ template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
   using Linear = LinearUpdate<Update>;
   constexpr int stages = Tableau::stages;
-  std::array<NearAxis, stages> increments, kept;
+  std::array<NearAxis, stages> increments;
   for (int stage = 0; stage < stages; ++stage) {
     NearAxis argument;
-    for (int j = 0; j < stage; ++j) argument = argument + Tableau::a[stage][j] * kept[j];
-    Complex const growth = growth_to<Tableau, Linear>(stage, argument, kept);
+    for (int j = 0; j < stage; ++j) argument = argument + Tableau::a[stage][j] * increments[j];
+    Complex const growth = growth_to<Tableau, Linear>(stage, argument, increments);
     NearAxis const generator{Complex(0, 1) * z * (1.0 + growth) + q * growth, q};
     increments[stage] = Linear::increment(argument, generator, z, 1.0 + growth);
-    kept[stage] = Update::keeps_generators ? generator : increments[stage];
   }
   NearAxis total;
   for (int j = 0; j < stages; ++j) total = total + Tableau::b[j] * increments[j];
@@ -147,13 +146,22 @@ constexpr double largest_row() {
   return largest;
 }
 
+/// The mode's growth in one step of a method; a stepper may define its own.
+template <class Stepper>
+Complex growth_of_step(Complex z, double q) {
+  if constexpr (requires { Stepper::mode_growth(z, q); })
+    return Stepper::mode_growth(z, q);
+  else
+    return mode_growth<typename Stepper::tableau_type, typename Stepper::update_type>(z, q);
+}
+
 /// Clearly: by more than round-off. If not, what cannot be told from no change counts too.
-template <class Tableau, class Update>
+template <class Stepper>
 bool amplifies(Complex rate, double dt, double sigma, bool clearly) {
-  Complex const growth = mode_growth<Tableau, Update>(dt * rate, dt * sigma);
+  Complex const growth = growth_of_step<Stepper>(dt * rate, dt * sigma);
   double const excess = 2 * growth.real() + std::norm(growth);  // |1 + growth|^2 - 1
-  double const size =
-      4 * std::numeric_limits<double>::epsilon() * largest_row<Tableau>() * std::abs(growth);
+  double const size = 4 * std::numeric_limits<double>::epsilon() *
+                      largest_row<typename Stepper::tableau_type>() * std::abs(growth);
   // Round-off is relative to |growth|^2 without sigma, to |growth| with it.
   if (sigma != 0) return !(excess < size);
   return !(excess < (clearly ? size : -size) * std::abs(growth));
@@ -216,8 +224,6 @@ double largest_stable_step(double field_bound, double damping, bool precession =
   if constexpr (requires { Stepper::largest_stable_step(field_bound, damping, precession); }) {
     return Stepper::largest_stable_step(field_bound, damping, precession);
   } else {
-    using Tableau = typename Stepper::tableau_type;
-    using Update = typename Stepper::update_type;
     double limit = std::numeric_limits<double>::infinity();
     detail::Complex const rate(-damping, precession ? 1 : 0);
     if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
@@ -229,7 +235,7 @@ double largest_stable_step(double field_bound, double damping, bool precession =
       auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;
       limit = detail::first_amplifying_step(
           [&](double dt, bool clearly) {
-            return detail::amplifies<Tableau, Update>(of_mode, dt, sigma, clearly);
+            return detail::amplifies<Stepper>(of_mode, dt, sigma, clearly);
           },
           1 / std::abs(of_mode), limit, sigma == 0 ? 0.05 : 1e-3);
     }

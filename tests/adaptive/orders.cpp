@@ -45,7 +45,7 @@ TEST_P(Embedded, Tsitouras5) {
 TEST_P(Embedded, DormandPrince5) {
   order_tolerance = 0.65;  // small terms of order 5 here too
   expect<Rkmk<Spins, tableau::DormandPrince5>>("default", 5, slab.natural());
-  expect<ClassicalRungeKutta<Spins, tableau::DormandPrince5, true>>("projected", 5, slab.natural());
+  expect<ProjectedRungeKutta<Spins, tableau::DormandPrince5>>("projected", 5, slab.natural());
   expect_between<AdaptiveProjected<Spins, tableau::DormandPrince5>>("between", 5, slab.natural());
 }
 

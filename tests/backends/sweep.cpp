@@ -42,7 +42,7 @@ auto numbers_after_steps(Path path, Generator const& generator,
   Exec const exec;
   auto spins = copy_of(start);
   Stepper stepper(spins);
-  stepper.take(path);
+  stepper.use(path);
   for (int n = 0; n < 2; ++n) stepper.step(exec, generator, spins, n * 0.1, 0.1);
   exec.fence();
   EXPECT_EQ(stepper.path(), path);
@@ -120,8 +120,8 @@ TYPED_TEST(Sweep, LeavesOffUnderANonlocalField) {
       0.1);
   auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
   LieHeun<Field> passing(one), sweeping(other);
-  passing.take(Path::pass);
-  sweeping.take(Path::sweep);
+  passing.use(Path::pass);
+  sweeping.use(Path::sweep);
   Threaded const exec;
   passing.step(exec, generator, one, 0, 0.1);
   sweeping.step(exec, generator, other, 0, 0.1);
@@ -157,10 +157,10 @@ TEST(SweepRefusals, OneStageAndFewPeriodicRows) {
   auto const lattice = Lattice::cubic(9, 3, 3, 1, Boundary::periodic);
   Field const like("spins", lattice);
   LieEuler<Field> euler(like);
-  EXPECT_THROW(euler.take(Path::sweep), std::invalid_argument);
+  EXPECT_THROW(euler.use(Path::sweep), std::invalid_argument);
   Rkmk4<Field> rkmk4(like);
-  EXPECT_THROW(rkmk4.take(Path::sweep), std::invalid_argument);
-  LieHeun<Field>(like).take(Path::sweep);
+  EXPECT_THROW(rkmk4.use(Path::sweep), std::invalid_argument);
+  LieHeun<Field>(like).use(Path::sweep);
 }
 
 }  // namespace

@@ -8,10 +8,8 @@
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/observer/record.hpp>
-#include <cayspin/stepper/lie_euler.hpp>
-#include <cayspin/stepper/lie_heun.hpp>
-#include <cayspin/stepper/rkmk.hpp>
-#include <cayspin/stepper/rkmk4.hpp>
+#include <cayspin/stepper/corrected_euler.hpp>
+#include <cayspin/stepper/methods.hpp>
 
 namespace cayspin::instructions {
 namespace {
@@ -26,7 +24,7 @@ template <class Stepper>
 void count_step(char const* name) {
   typename Stepper::spins_type spins("spins", lattice);
   Stepper stepper(spins);
-  stepper.take(Path::pass);
+  stepper.use(Path::pass);
   CALLGRIND_ZERO_STATS;
   stepper.step(Here(), generator, spins, 0, 0.01);
   CALLGRIND_DUMP_STATS_AT(name);

@@ -5,6 +5,7 @@
 #include "../support/oracles.hpp"
 
 #include <cayspin/cayspin.hpp>
+#include <cayspin_paper/rkmk4_as_printed.hpp>
 
 #include <stdexcept>
 #include <string>

@@ -2,6 +2,8 @@
 // Orders of explicit one-step methods on a coupled chain, over step sizes fixed beforehand.
 #include "chain.hpp"
 
+#include <cayspin_paper/rkmk4_as_printed.hpp>
+
 using namespace cayspin;
 using namespace cayspin::test;
 

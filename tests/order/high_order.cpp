@@ -31,7 +31,7 @@ TEST_P(HighOrder, InTheChart) {
 
 TEST_P(HighOrder, InSpace) {
   ladder = {4, 5, 7, 10};
-  expect<ClassicalRungeKutta<Spins, DormandPrince8, true>>("projected", 8, slab.natural());
+  expect<ProjectedRungeKutta<Spins, DormandPrince8>>("projected", 8, slab.natural());
 }
 
 TEST_P(HighOrder, InSinglePrecisionErrorsAreRoundOff) {

@@ -3,6 +3,8 @@
 #include "../support/figures.hpp"
 #include "../support/unit_slab.hpp"
 
+#include <cayspin_paper/rkmk4_as_printed.hpp>
+
 using namespace cayspin;
 using namespace cayspin::test;
 

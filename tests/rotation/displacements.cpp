@@ -50,7 +50,7 @@ TYPED_TEST(Displacements, KeepTheirDigits) {
   expect_digits<Real>("safe", false, by(update::Lie<OverflowSafeCayley>{}), exact_cayley);
   expect_digits<Real>("exponential", false, by(update::Lie<Exponential>{}), exact_exponential);
   expect_digits<Real>("chart", true, by(update::Stereographic{}), exact_chart);
-  expect_digits<Real>("projected", false, by(update::Classical<true>{}), exact_projection);
+  expect_digits<Real>("projected", false, by(update::Projected{}), exact_projection);
 }
 
 }  // namespace

@@ -38,10 +38,10 @@ class Laws : public ::testing::Test {
   static void tangents_are_inverse() {
     sweep(1e6, [](auto const& f, auto const&, auto const& y) {
       long double const bound = 8 * eps * (1 + norm(widen(f)));
-      EXPECT_LE(largest(widen(Rotation::tangent(f, Rotation::inverse_tangent(f, y))) - widen(y)),
+      EXPECT_LE(largest(widen(Rotation::differential(f, Rotation::inverse_differential(f, y))) - widen(y)),
                 bound)
           << norm(widen(f));
-      EXPECT_LE(largest(widen(Rotation::inverse_tangent(f, Rotation::tangent(f, y))) - widen(y)),
+      EXPECT_LE(largest(widen(Rotation::inverse_differential(f, Rotation::differential(f, y))) - widen(y)),
                 bound)
           << norm(widen(f));
     });
@@ -77,10 +77,10 @@ TYPED_TEST(Laws, CayleyTangentIsTheDerivative) {
     Long const moved = cayley(widen(f), widen(x));
     Long const rate = derivative(cayley, widen(f), widen(g), widen(x));
     double const bound = 16 * this->eps + 1e-14;
-    for (auto const& tangent : {Cayley::tangent(f, g), OverflowSafeCayley::tangent(f, g)})
+    for (auto const& tangent : {Cayley::differential(f, g), OverflowSafeCayley::differential(f, g)})
       EXPECT_LE(largest(outer(widen(tangent), moved) - rate), bound) << norm(widen(f));
     if (norm(widen(f)) > 0.1L && norm(widen(f)) < 10) {
-      auto const left = Cayley::tangent(Vec3<Real>{-f.x, -f.y, -f.z}, g);
+      auto const left = Cayley::differential(Vec3<Real>{-f.x, -f.y, -f.z}, g);
       EXPECT_GT(largest(outer(widen(left), moved) - rate), 1e-3L) << norm(widen(f));
     }
   });
@@ -93,7 +93,7 @@ TYPED_TEST(Laws, InverseTangentOfTheExponentialIsTheDerivative) {
     auto const x = narrow<Real>(direction(100 + i)), y = narrow<Real>(direction(200 + i));
     Long const moved = exponential(widen(f), widen(x)), rate = outer(widen(y), moved);
     auto const found = [&](Vec3<Real> const& where) {
-      Long const g = widen(Exponential::inverse_tangent(where, y));
+      Long const g = widen(Exponential::inverse_differential(where, y));
       return largest(derivative(exponential, widen(f), g, widen(x)) - rate);
     };
     // Near 2 pi the coordinates stretch.

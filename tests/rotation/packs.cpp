@@ -54,17 +54,17 @@ TYPED_TEST(Packs, LanesEqualNumbers) {
   this->compare("Cayley::rotate",
                 [](auto const& f, auto const& x) { return Cayley::rotate(f, x); });
   this->compare("Cayley::tangent",
-                [](auto const& f, auto const& x) { return Cayley::tangent(f, x); });
-  this->compare("Cayley::inverse_tangent",
-                [](auto const& f, auto const& x) { return Cayley::inverse_tangent(f, x); });
+                [](auto const& f, auto const& x) { return Cayley::differential(f, x); });
+  this->compare("Cayley::inverse_differential",
+                [](auto const& f, auto const& x) { return Cayley::inverse_differential(f, x); });
   this->compare("OverflowSafeCayley::rotate",
                 [](auto const& f, auto const& x) { return OverflowSafeCayley::rotate(f, x); });
   this->compare("OverflowSafeCayley::tangent",
-                [](auto const& f, auto const& x) { return OverflowSafeCayley::tangent(f, x); });
+                [](auto const& f, auto const& x) { return OverflowSafeCayley::differential(f, x); });
   this->compare("Exponential::rotate",
                 [](auto const& f, auto const& x) { return Exponential::rotate(f, x); });
-  this->compare("Exponential::inverse_tangent",
-                [](auto const& f, auto const& x) { return Exponential::inverse_tangent(f, x); });
+  this->compare("Exponential::inverse_differential",
+                [](auto const& f, auto const& x) { return Exponential::inverse_differential(f, x); });
 }
 
 }  // namespace

@@ -159,4 +159,15 @@ std::array<double, Count> reduce_sites(Exec const& exec, std::string const& labe
   return total;
 }
 
+/// The largest of the numbers at sites.
+template <class Real>
+struct LargestOfSites {
+  SiteArray<Real, 1> numbers;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    values[0] = site.load(numbers);
+  }
+};
+
 }  // namespace cayspin::detail

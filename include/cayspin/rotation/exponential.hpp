@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/rotation/half_angle.hpp>
 #include <cayspin/rotation/displacement.hpp>
+#include <cayspin/rotation/half_angle.hpp>
 #include <cayspin/vec3.hpp>
 
 namespace cayspin {
@@ -30,7 +30,7 @@ struct Exponential {
 
   /// dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi
   template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_tangent(Vec3<Value> const& f,
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
                                                                  Vec3<Value> const& y) {
     Vec3<Value> const c = cross(f, y);
     return multiply_add(detail::inverse_tangent_coefficient(f), cross(f, c),

@@ -1,81 +1,179 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/rows.hpp>
+#include <cayspin/detail/unrolled.hpp>
 #include <cayspin/stage/data_flow.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
-// A Runge-Kutta stage on host spaces: the rows of a plane, a pack of spins at a time.
+// The one list of the arrays of a Runge-Kutta stage. It holds whole fields, planes of them, or
+// rows: a pass goes from fields to rows, a sweep from the planes of its buffers. A new array
+// enters here, and in the kernel that uses it.
 namespace cayspin::detail {
 
-/// The planes that a stage reads and writes, wherever their rows lie.
-template <class Kernel>
-struct StagePlanes {
-  using Real = typename Kernel::value_type;
-  static constexpr int stages = Kernel::stages;
+/// Kind says what an array is: WholeFields, Planes or Rows.
+template <class Kind, int Stages>
+struct StageArrays {
+  static constexpr int most_carried = 1;
 
-  Axis y;
-  PlaneRows<Real> start, level[3], increments[stages > 1 ? stages - 1 : 1];
-  PlaneRows<Real> sum_before, sum, increment, next, residual;
-  bool from_memory = false, level_from_memory = false;  // not from a cache
-  bool sum_streams = false, increment_streams = false, next_streams = false;
+  typename Kind::Input start;                                    // spins at the begin of the step
+  typename Kind::Spins level;                                    // spins of this stage
+  typename Kind::Input increments[Stages > 1 ? Stages - 1 : 1];  // of earlier stages, or spins
+  typename Kind::Input sum_before;                               // of weighted increments
+  typename Kind::Output sum;
+  typename Kind::Output increment;  // of this stage
+  typename Kind::Output next;       // spins of the next stage, or of the end
+  typename Kind::Input carried_before[most_carried];  // what the step before left
+  typename Kind::Output carried[most_carried];        // what this step leaves
+};
 
-  KOKKOS_FORCEINLINE_FUNCTION StageRows<Real, stages> rows(std::int32_t at) const {
-    StageRows<Real, stages> rows;
-    // What comes from memory is asked for one row ahead; of the planes of neighbours, that is the
-    // one behind.
-    std::ptrdiff_t const ahead = from_memory ? start.pitch : 0;
-    if constexpr (Kernel::reads_start) rows.start = start.input(at, ahead);
-    rows.level.data = level[1].row(at);
-    rows.level.stride = level[1].stride;
-    rows.level.neighbor[0][0] = level[1].row(y.previous(at));
-    rows.level.neighbor[0][1] = level[1].row(y.next(at));
-    rows.level.neighbor[1][0] = level[0].row(at);
-    rows.level.neighbor[1][1] = level[2].row(at);
-    rows.level.ahead =
-        level_from_memory ? rows.level.neighbor[1][1] - rows.level.data + level[2].pitch : 0;
-    unrolled<stages - 1>([&](auto i) {
-      if constexpr (Kernel::reads_increment(i()))
-        rows.increments[i()] = increments[i()].input(at, ahead);
-    });
-    if constexpr (Kernel::reads_sum) rows.sum_before = sum_before.input(at, ahead);
-    if constexpr (Kernel::writes_sum) rows.sum = sum.output(at, sum_streams);
-    if constexpr (Kernel::stores_increment)
-      rows.increment = increment.output(at, increment_streams);
-    rows.next = next.output(at, next_streams);
-    if constexpr (Kernel::compensates) {
-      rows.residual_before = residual.input(at, ahead);
-      rows.residual = residual.output(at, false);
+/// Finds the arrays of the stage that Flow describes. `step` knows where each of them lies.
+template <class Flow, class Kind, class Step>
+KOKKOS_FORCEINLINE_FUNCTION void find_arrays(Step const& step,
+                                             StageArrays<Kind, Flow::stages>& arrays) {
+  constexpr int stage = Flow::stage;
+  if constexpr (Flow::reads_start) arrays.start = step.start();
+  arrays.level = step.template level<stage>();
+  unrolled<Flow::stages - 1>([&](auto j) {
+    if constexpr (Flow::reads_increment(j()) && Flow::recovers)
+      arrays.increments[j()] = step.template spins<j() + 1>();
+    else if constexpr (Flow::reads_increment(j()))
+      arrays.increments[j()] = step.template increment<j()>();
+  });
+  if constexpr (Flow::reads_sum) arrays.sum_before = step.template sum_before<stage>();
+  if constexpr (Flow::writes_sum) arrays.sum = step.template sum<stage>();
+  if constexpr (Flow::stores_increment) arrays.increment = step.template new_increment<stage>();
+  arrays.next = step.template next<stage>();
+  if constexpr (Flow::carried > 0) {
+    for (int i = 0; i < Flow::carried; ++i) {
+      arrays.carried_before[i] = step.carried_before(i);
+      arrays.carried[i] = step.carried(i);
     }
-    return rows;
-  }
-};
-
-/// A stage on given rows.
-template <class Kernel>
-struct StageOnRows {
-  Kernel const& kernel;
-  typename Kernel::Rows const& rows;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    kernel(site, rows);
-  }
-};
-
-/// The one compiled body of a stage on host spaces: the bits do not depend on who calls it.
-template <class Kernel>
-CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, StagePlanes<Kernel> const& planes,
-                                       RowLayout const& layout, RowBlock const& block) {
-  Kernel const local = kernel;
-  for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
-    typename Kernel::Rows const rows = planes.rows(y);
-    Row const row(layout, planes.y.wrapped(y), block.z);
-    for_each_pack<Pack<typename Kernel::value_type>>(row, block.pack_begin, block.pack_end,
-                                                     StageOnRows<Kernel>{local, rows});
   }
 }
+
+/// The same arrays as another kind: `to` converts an input, the stage's spins, and an output.
+template <class Flow, class Kind, class From, class Convert>
+KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& from,
+                                         Convert const& to,
+                                         StageArrays<Kind, Flow::stages>& arrays) {
+  if constexpr (Flow::reads_start) arrays.start = to.input(from.start);
+  arrays.level = to.spins(from.level);
+  unrolled<Flow::stages - 1>([&](auto j) {
+    if constexpr (Flow::reads_increment(j()))
+      arrays.increments[j()] = to.input(from.increments[j()]);
+  });
+  if constexpr (Flow::reads_sum) arrays.sum_before = to.input(from.sum_before);
+  if constexpr (Flow::writes_sum) arrays.sum = to.output(from.sum);
+  if constexpr (Flow::stores_increment) arrays.increment = to.output(from.increment);
+  arrays.next = to.output(from.next);
+  for (int i = 0; i < Flow::carried; ++i) {
+    arrays.carried_before[i] = to.input(from.carried_before[i]);
+    arrays.carried[i] = to.output(from.carried[i]);
+  }
+}
+
+template <class Real>
+struct WholeFields {
+  using Input = SiteArray<Real, 3>;
+  using Spins = SiteArray<Real, 3>;
+  using Output = OutputArray<Real, 3>;
+};
+
+/// Plane z of each field, wherever its rows lie.
+template <class Real>
+struct Planes {
+  using Input = PlaneRows<Real>;
+  struct Spins {
+    PlaneRows<Real> previous, here, next;
+  };
+  struct Output {
+    PlaneRows<Real> rows;
+    bool streaming = false;
+  };
+};
+
+/// One row of each field.
+template <class Real>
+struct Rows {
+  using Input = RowInput<Real>;
+  using Spins = RowStencil<Real>;
+  using Output = RowOutput<Real>;
+};
+
+/// Fields to their planes z.
+template <class Real>
+struct ToPlane {
+  RowLayout const& layout;
+  std::int32_t z;
+
+  PlaneRows<Real> input(SiteArray<Real, 3> const& array) const {
+    return plane_rows(array, layout, z);
+  }
+  typename Planes<Real>::Spins spins(SiteArray<Real, 3> const& array) const {
+    Axis const along_z(layout, 2);
+    auto const at = [&](std::int32_t plane) {
+      return plane_rows(array, layout, along_z.wrapped(plane));
+    };
+    return {at(along_z.previous(z)), at(z), at(along_z.next(z))};
+  }
+  typename Planes<Real>::Output output(OutputArray<Real, 3> const& array) const {
+    return {plane_rows<Real>(array, layout, z), array.streaming};
+  }
+};
+
+/// Planes to their rows `row`. Inputs are prefetched `ahead` numbers further; 0: not at all.
+template <class Real>
+struct ToRow {
+  Axis y;
+  std::int32_t row;
+  std::ptrdiff_t ahead;
+  bool level_from_memory;
+
+  KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(PlaneRows<Real> const& plane) const {
+    return plane.input(row, ahead);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION RowStencil<Real> spins(
+      typename Planes<Real>::Spins const& planes) const {
+    RowStencil<Real> rows;
+    rows.data = planes.here.row(row);
+    rows.stride = planes.here.stride;
+    rows.neighbor[0][0] = planes.here.row(y.previous(row));
+    rows.neighbor[0][1] = planes.here.row(y.next(row));
+    rows.neighbor[1][0] = planes.previous.row(row);
+    rows.neighbor[1][1] = planes.next.row(row);
+    // Of the planes of neighbours, the next one comes from memory first.
+    rows.ahead = level_from_memory ? rows.neighbor[1][1] - rows.data + planes.next.pitch : 0;
+    return rows;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION RowOutput<Real> output(
+      typename Planes<Real>::Output const& plane) const {
+    return plane.rows.output(row, plane.streaming);
+  }
+};
+
+/// Fields to the row of one site, on devices.
+template <class Real>
+struct ToSiteRow {
+  Row const& row;
+
+  KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(SiteArray<Real, 3> const& array) const {
+    return {array.data + row.offset, array.stride, 0};
+  }
+  KOKKOS_FORCEINLINE_FUNCTION RowStencil<Real> spins(SiteArray<Real, 3> const& array) const {
+    RowStencil<Real> rows;
+    rows.data = array.data + row.offset;
+    rows.stride = array.stride;
+    for (int axis = 0; axis < 2; ++axis)
+      for (int direction = 0; direction < 2; ++direction)
+        rows.neighbor[axis][direction] = rows.data + row.to_neighbor[axis][direction];
+    return rows;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION RowOutput<Real> output(OutputArray<Real, 3> const& array) const {
+    return {array.data + row.offset, array.stride, array.streaming};
+  }
+};
 
 }  // namespace cayspin::detail

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/rows.hpp>
 #include <cayspin/stage/update_compensated.hpp>
 
-// What an explicit Runge-Kutta method keeps between its stages: found from the tableau and the
-// geometry when compiled.
+// Which arrays the stages of an explicit Runge-Kutta step read and write. The tableau and the
+// update decide, at compile time.
 namespace cayspin::detail {
 
 /// Every stage starts from the increment before it alone, as in the classical Runge-Kutta methods.
@@ -17,13 +16,13 @@ constexpr bool is_chain() {
   return true;
 }
 
-/// The last stage is at the end of the step, for the next step to begin with.
+/// The last stage is at the end of the step, and its generator is the next step's first.
 template <class Tableau>
 inline constexpr bool is_first_same_as_last = requires {
   Tableau::first_same_as_last;
 };
 
-/// Weights of the rotation that follows the first one, where a tableau has such: row `stages` for
+/// Weights of the rotation that follows the first one, where a tableau has such. Row `stages` is
 /// the end of the step.
 template <class Tableau>
 constexpr double second_weight(int row, int column) {
@@ -38,15 +37,14 @@ constexpr bool has_second_rotation(int row) {
   return false;
 }
 
-/// In a chain that needs its increments as arguments, one array holds the last increment and one
-/// the weighted sum, brought up to date at every second stage: the least that can be moved.
+/// A chain that needs its increments as arguments keeps two arrays: the last increment, and the
+/// weighted sum, which every second stage updates. No other choice moves less memory.
 template <class Tableau, class Update>
 inline constexpr bool keeps_sum = Tableau::stages > 2 &&
-                                  is_chain<Tableau>() && Update::increment_needs_argument &&
-                                  !Update::keeps_generators;
+                                  is_chain<Tableau>() && Update::increment_needs_argument;
 
-/// In a chain on a chart, each increment is read back from the spins of the stage after it: stages
-/// store their spins alone.
+/// A chain in the stereographic chart stores spins alone: it computes each increment again from the
+/// spins of the stage after it.
 template <class Tableau, class Update>
 constexpr bool recovers_increments() {
   if constexpr (requires { Update::has_chart; })
@@ -54,14 +52,14 @@ constexpr bool recovers_increments() {
   return false;
 }
 
-/// Does stage `stage` (or the end of the step behind the last one) read the increment of `source`?
+/// Does stage `stage` read the increment of stage `source`? The last stage also ends the step.
 template <class Tableau, class Update>
 constexpr bool reads_increment(int stage, int source) {
   if (source >= stage || recovers_increments<Tableau, Update>()) return false;
   if (keeps_sum<Tableau, Update>) return source == stage - 1;
   bool const last = stage == Tableau::stages - 1;
   if (second_weight<Tableau>(stage + 1, source) != 0) return true;
-  if (last && (Tableau::b[source] != 0 || Update::keeps_generators)) return true;
+  if (last && Tableau::b[source] != 0) return true;
   if (!last && Tableau::a[stage + 1][source] != 0) return true;
   return Update::increment_needs_argument && Tableau::a[stage][source] != 0;
 }
@@ -83,15 +81,17 @@ constexpr bool reads_sum(int stage) {
          (stage % 2 == 1 || stage + 1 == Tableau::stages);
 }
 
-/// Fields of three numbers per site that a method needs beside the spins.
+/// Fields of spins that the stages write.
 template <class Tableau, class Update>
 constexpr int level_fields() {
   if (recovers_increments<Tableau, Update>()) return Tableau::stages - 1;
   return Tableau::stages < 3 ? 1 : 2;
 }
+
+/// Fields of three numbers per site that a method needs beside the spins.
 template <class Tableau, class Update>
 constexpr int work_fields() {
-  int const levels = level_fields<Tableau, Update>() + is_compensated<Update>;
+  int const levels = level_fields<Tableau, Update>() + carried_fields<Update>();
   if (keeps_sum<Tableau, Update>) return levels + 2;
   int increments = 0;
   for (int stage = 0; stage + 1 < Tableau::stages; ++stage)
@@ -99,18 +99,23 @@ constexpr int work_fields() {
   return levels + increments;
 }
 
-/// The rows that a stage reads and writes.
-template <class Real, int Stages>
-struct StageRows {
-  RowInput<Real> start;                                    // spins at the begin of the step
-  RowStencil<Real> level;                                  // spins of this stage
-  RowInput<Real> increments[Stages > 1 ? Stages - 1 : 1];  // of earlier stages, or their spins
-  RowInput<Real> sum_before;                               // of weighted increments
-  RowOutput<Real> sum;
-  RowOutput<Real> increment;       // of this stage
-  RowOutput<Real> next;            // spins of the next stage, or of the end
-  RowInput<Real> residual_before;  // what the rounding of `start` left over
-  RowOutput<Real> residual;        // what the rounding of the end leaves over
+/// What stage `Stage` reads and writes beside its own spins.
+template <class Tableau, class Update, int Stage>
+struct StageDataFlow {
+  static constexpr int stages = Tableau::stages;
+  static constexpr int stage = Stage;
+  static constexpr bool last = Stage + 1 == stages;
+  static constexpr bool recovers = recovers_increments<Tableau, Update>();
+  static constexpr bool reads_start = Stage > 0;
+  static constexpr bool reads_sum = detail::reads_sum<Tableau, Update>(Stage);
+  static constexpr bool writes_sum = detail::writes_sum<Tableau, Update>(Stage);
+  static constexpr bool stores_increment =
+      !last && detail::stores_increment<Tableau, Update>(Stage);
+  static constexpr int carried = last ? carried_fields<Update>() : 0;
+  /// Increment j; a method that recovers increments reads the spins of stage j + 1 instead.
+  static constexpr bool reads_increment(int j) {
+    return recovers ? last && j + 1 < Stage : detail::reads_increment<Tableau, Update>(Stage, j);
+  }
 };
 
 }  // namespace cayspin::detail

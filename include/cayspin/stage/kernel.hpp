@@ -4,10 +4,8 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/isotropy/energy.hpp>
-#include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
-#include <cayspin/stage/data_flow.hpp>
-#include <cayspin/stepper/tableau.hpp>
+#include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/update.hpp>
 
 #include <type_traits>
@@ -18,16 +16,16 @@ namespace cayspin::detail {
 template <class Weights>
 KOKKOS_FUNCTION constexpr bool is_first(int j) {
   for (int i = 0; i < j; ++i)
-    if (Weights::of(i) != 0) return false;
+    if (Weights::at(i) != 0) return false;
   return true;
 }
 
-/// sum of Weights::of(j) * v[j] over those j < Count with a weight.
+/// sum of Weights::at(j) * v[j] over those j < Count with a weight.
 template <class Weights, int Count, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
   unrolled<Count>([&](auto j) {
-    constexpr double weight = Weights::of(j());
+    constexpr double weight = Weights::at(j());
     constexpr bool first = is_first<Weights>(j());
     using Scalar = scalar_t<Value>;
     if constexpr (weight != 0 && first) {
@@ -41,17 +39,17 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> weighted_sum(Vec3<Value> const* v) {
 
 template <class Tableau, int Row>
 struct StageWeights {
-  KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::a[Row][j]; }
+  KOKKOS_FUNCTION static constexpr double at(int j) { return Tableau::a[Row][j]; }
 };
 
 template <class Tableau>
 struct FinalWeights {
-  KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::b[j]; }
+  KOKKOS_FUNCTION static constexpr double at(int j) { return Tableau::b[j]; }
 };
 
 template <class Tableau, int Row>
 struct SecondWeights {
-  KOKKOS_FUNCTION static constexpr double of(int j) { return second_weight<Tableau>(Row, j); }
+  KOKKOS_FUNCTION static constexpr double at(int j) { return second_weight<Tableau>(Row, j); }
 };
 
 /// A chain's increments, b[i] times each, in terms of the coordinates of the spins after them.
@@ -63,19 +61,11 @@ struct ChartWeights {
   }
 };
 
-/// isotropy::Energy's formula for a method.
+/// isotropy::Energy's formula for a method, specialised beside the methods that have one.
 template <class Tableau, class Update>
 struct EnergyCorrection {
   static_assert(std::is_same_v<Tableau, void>,
                 "isotropy::Energy belongs to LieHeun, Rkmk4 and Series4 in Cayley coordinates.");
-};
-template <>
-struct EnergyCorrection<tableau::Heun, update::LieUncorrected<Cayley>> {
-  using type = HeunCorrection;
-};
-template <>
-struct EnergyCorrection<tableau::Classical4, update::Lie<Cayley>> {
-  using type = Rkmk4Correction;
 };
 template <class Tableau, class Update>
 using EnergyCorrectionOf = typename EnergyCorrection<Tableau, Update>::type;
@@ -85,8 +75,11 @@ using EnergyCorrectionOf = typename EnergyCorrection<Tableau, Update>::type;
 /// the end of the step.
 template <class Tableau, class Update, class Isotropy, int StageIndex, class Generator, class Real>
 struct RungeKuttaStage {
+  using Flow = StageDataFlow<Tableau, Update, StageIndex>;
+  using value_type = Real;
+  using RowArrays = StageArrays<Rows<Real>, Tableau::stages>;
   static constexpr int stages = Tableau::stages;
-  static constexpr bool last = StageIndex == stages - 1;
+  static constexpr bool last = Flow::last;
   /// The stage after this one is at the step's end.
   static constexpr bool arrives = is_first_same_as_last<Tableau> && StageIndex == stages - 2;
 
@@ -94,29 +87,14 @@ struct RungeKuttaStage {
   Isotropy isotropy;
   Real dt;
 
-  using value_type = Real;
-  using Rows = StageRows<Real, stages>;
-  static constexpr bool compensates = last && is_compensated<Update>;
-  static constexpr bool recovers = recovers_increments<Tableau, Update>();
-  static constexpr bool reads_start = StageIndex > 0;
-  static constexpr bool reads_sum = detail::reads_sum<Tableau, Update>(StageIndex);
-  static constexpr bool writes_sum = detail::writes_sum<Tableau, Update>(StageIndex);
-  static constexpr bool stores_increment =
-      !last && detail::stores_increment<Tableau, Update>(StageIndex);
-  /// Increment j, or in its place the spins of stage j + 1.
-  static constexpr bool reads_increment(int j) {
-    return recovers ? last && j + 1 < StageIndex
-                    : detail::reads_increment<Tableau, Update>(StageIndex, j);
-  }
-
   template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Rows const& rows) const {
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, RowArrays const& rows) const {
     using Value = typename Site::value_type;
     Stencil<Site, Real, RowStencil<Real>> const stencil(site, rows.level);
     Vec3<Value> const& m = stencil.center();
     Vec3<Value> const m0 = StageIndex == 0 ? m : site.load(rows.start);
     Vec3<Value> const xi = completed_by_isotropy(m, evaluate(generator, stencil));
-    if constexpr (recovers) {
+    if constexpr (Flow::recovers) {
       site.store(on_chart(site, rows, xi, m, m0), rows.next);
       return;
     }
@@ -124,31 +102,28 @@ struct RungeKuttaStage {
 
     Vec3<Value> f[stages];
     unrolled<StageIndex>([&](auto j) {
-      if constexpr (reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
+      if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
     });
     Vec3<Value> argument{Value(0), Value(0), Value(0)};
     if constexpr (Update::increment_needs_argument && StageIndex > 0)
       argument = weighted_sum<StageWeights<Tableau, StageIndex>, StageIndex>(f);
 
     if constexpr (StageIndex == 0 && Update::increment_needs_argument) {
-      f[0] = a;  // the inverse tangent at 0 is the identity
-    } else if constexpr (Update::keeps_generators && !last) {
-      f[StageIndex] = a;
+      f[0] = a;  // the inverse differential at 0 is the identity
     } else {
       f[StageIndex] = Update::increment(argument, a, m, m0);
     }
 
     if constexpr (last) {
-      if constexpr (Update::keeps_generators) increments_from_generators(f, m0);
       // Nested, since g++ copies what has a name through memory.
-      if constexpr (compensates)
+      if constexpr (Flow::carried > 0)
         store_compensated(site, rows, f, completed(site, total(site, rows, f), m0), m0);
       else
         site.store(turned_again(f, Update::finish(completed(site, total(site, rows, f), m0), m0)),
                    rows.next);
     } else {
-      if constexpr (writes_sum) site.store(sum_up_to_here(site, rows, f), rows.sum);
-      if constexpr (stores_increment) site.store(f[StageIndex], rows.increment);
+      if constexpr (Flow::writes_sum) site.store(sum_up_to_here(site, rows, f), rows.sum);
+      if constexpr (Flow::stores_increment) site.store(f[StageIndex], rows.increment);
       auto const on = weighted_sum<StageWeights<Tableau, StageIndex + 1>, StageIndex + 1>(f);
       site.store(turned_again(f, arrives ? Update::finish(on, m0) : Update::move(on, m0)),
                  rows.next);
@@ -170,9 +145,9 @@ struct RungeKuttaStage {
     }
   }
 
-  template <class Value, int Of>
+  template <class Value, int Index>
   KOKKOS_FORCEINLINE_FUNCTION static Value weight() {
-    constexpr double b = Tableau::b[Of];
+    constexpr double b = Tableau::b[Index];
     return Value(static_cast<scalar_t<Value>>(b));
   }
 
@@ -188,7 +163,7 @@ struct RungeKuttaStage {
   }
 
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static void store_compensated(Site const& site, Rows const& rows,
+  KOKKOS_FORCEINLINE_FUNCTION static void store_compensated(Site const& site, RowArrays const& rows,
                                                             Vec3<Value> const* f,
                                                             Vec3<Value> const& on,
                                                             Vec3<Value> const& m0) {
@@ -198,13 +173,13 @@ struct RungeKuttaStage {
       displacement =
           displacement + Update::displacement(again, Vec3<Value>(m0 + displacement)).vector();
     }
-    auto const end = rounded_sum(m0, Vec3<Value>(site.load(rows.residual_before) + displacement));
+    auto const end = rounded_sum(m0, Vec3<Value>(site.load(rows.carried_before[0]) + displacement));
     site.store(end.sum, rows.next);
-    site.store(end.residual, rows.residual);
+    site.store(end.residual, rows.carried[0]);
   }
 
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, Rows const& rows,
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, RowArrays const& rows,
                                                 Vec3<Value> const* f) const {
     if constexpr (keeps_sum<Tableau, Update>) {
       return sum_up_to_here(site, rows, f);
@@ -225,7 +200,7 @@ struct RungeKuttaStage {
 
   // The next stage's spins; at the end the step's, with increment j from the spins after stage j.
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Rows const& rows,
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, RowArrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,
                                                    Vec3<Value> const& m0) const {
     if constexpr (!last) {
@@ -241,24 +216,13 @@ struct RungeKuttaStage {
 
   // The stored sum, the increment before this one where an even stage left it out, and this one.
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Rows const& rows,
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, RowArrays const& rows,
                                                          Vec3<Value> const* f) const {
     Vec3<Value> total = weight<Value, StageIndex>() * f[StageIndex];
     if constexpr (StageIndex % 2 == 1)
       total = multiply_add(weight<Value, StageIndex - 1>(), f[StageIndex - 1], total);
-    if constexpr (reads_sum) total = total + site.load(rows.sum_before);
+    if constexpr (Flow::reads_sum) total = total + site.load(rows.sum_before);
     return total;
-  }
-
-  // Later increments first: each needs the generators before it.
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static void increments_from_generators(Vec3<Value>* f,
-                                                                     Vec3<Value> const& m0) {
-    unrolled<stages - 2>([&](auto j) {
-      constexpr int stage = stages - 2 - j();
-      f[stage] =
-          Update::increment(weighted_sum<StageWeights<Tableau, stage>, stage>(f), f[stage], m0, m0);
-    });
   }
 };
 

@@ -3,126 +3,119 @@
 
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/stage/arrays.hpp>
-#include <cayspin/stage/kernel.hpp>
 
 #include <cstdint>
 #include <string>
 
-// A stage of a Runge-Kutta step over the whole lattice.
+// A Runge-Kutta stage over the whole lattice: on hosts a pack of spins at a time along rows, on
+// devices a site per thread.
 namespace cayspin::detail {
 
-/// The fields that a stage reads and writes.
-template <class Real, int Stages>
-struct StageFields {
-  SiteArray<Real, 3> start, level, increments[Stages > 1 ? Stages - 1 : 1];
-  OutputArray<Real, 3> sum, increment, next;
-  SiteArray<Real, 3> residual;
+template <class Kernel>
+using FieldsOf = StageArrays<WholeFields<typename Kernel::value_type>, Kernel::stages>;
 
-  /// Their plane z.
-  template <class Kernel>
-  StagePlanes<Kernel> planes(RowLayout const& layout, std::int32_t z) const {
-    auto const at = [&](SiteArray<Real, 3> const& array, std::int32_t plane) {
-      return plane_rows(array, layout, plane);
-    };
-    Axis const along_z(layout, 2);
-    StagePlanes<Kernel> planes;
-    planes.y = Axis(layout, 1);
-    planes.start = at(start, z);
-    planes.level[0] = at(level, along_z.wrapped(along_z.previous(z)));
-    planes.level[1] = at(level, z);
-    planes.level[2] = at(level, along_z.wrapped(along_z.next(z)));
-    for (int i = 0; i + 1 < Stages; ++i)
-      if (Kernel::reads_increment(i)) planes.increments[i] = at(increments[i], z);
-    planes.sum_before = at(sum, z);
-    planes.sum = at(sum, z);
-    planes.increment = at(increment, z);
-    planes.next = at(next, z);
-    if constexpr (Kernel::compensates) planes.residual = at(residual, z);
-    planes.from_memory = planes.level_from_memory = true;
-    planes.sum_streams = sum.streaming;
-    planes.increment_streams = increment.streaming;
-    planes.next_streams = next.streaming;
-    return planes;
-  }
+/// The planes that a stage reads and writes.
+template <class Kernel>
+struct StagePlanes {
+  using Real = typename Kernel::value_type;
+  using RowArrays = StageArrays<Rows<Real>, Kernel::stages>;
 
-  /// One of their rows.
-  KOKKOS_FORCEINLINE_FUNCTION StageRows<Real, Stages> rows(Row const& row) const {
-    StageRows<Real, Stages> at;
-    at.start = input(start, row);
-    for (int i = 0; i + 1 < Stages; ++i) at.increments[i] = input(increments[i], row);
-    at.sum_before = input(sum, row);
-    at.sum = output(sum, row);
-    at.increment = output(increment, row);
-    at.next = output(next, row);
-    at.residual_before = input(residual, row);
-    at.residual = output({residual, false}, row);
-    at.level.data = level.data + row.offset;
-    at.level.stride = level.stride;
-    for (int axis = 0; axis < 2; ++axis)
-      for (int direction = 0; direction < 2; ++direction)
-        at.level.neighbor[axis][direction] = at.level.data + row.to_neighbor[axis][direction];
-    return at;
-  }
+  StageArrays<Planes<Real>, Kernel::stages> arrays;
+  Axis y;
+  std::ptrdiff_t ahead = 0;        // rows that come from memory are asked for so much earlier
+  bool level_from_memory = false;  // not from a cache
 
- private:
-  KOKKOS_FORCEINLINE_FUNCTION static RowInput<Real> input(SiteArray<Real, 3> const& array,
-                                                          Row const& row) {
-    return {array.data + row.offset, array.stride, 0};
-  }
-  KOKKOS_FORCEINLINE_FUNCTION static RowOutput<Real> output(OutputArray<Real, 3> const& array,
-                                                            Row const& row) {
-    return {array.data + row.offset, array.stride, array.streaming};
+  KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
+    RowArrays rows;
+    convert<typename Kernel::Flow>(arrays, ToRow<Real>{y, at, ahead, level_from_memory}, rows);
+    return rows;
   }
 };
+
+/// A stage on given rows.
+template <class Kernel>
+struct StageOnRows {
+  Kernel const& kernel;
+  typename Kernel::RowArrays const& rows;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    kernel(site, rows);
+  }
+};
+
+/// The one compiled body of a stage on host spaces: the bits do not depend on who calls it.
+template <class Kernel>
+CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, StagePlanes<Kernel> const& planes,
+                                       RowLayout const& layout, RowBlock const& block) {
+  Kernel const local = kernel;
+  for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
+    typename Kernel::RowArrays const rows = planes.rows(y);
+    Row const row(layout, planes.y.wrapped(y), block.z);
+    for_each_pack<Pack<typename Kernel::value_type>>(row, block.pack_begin, block.pack_end,
+                                                     StageOnRows<Kernel>{local, rows});
+  }
+}
 
 /// The host loop.
 template <class Kernel>
 struct StageRowLoop {
   using Real = typename Kernel::value_type;
   Kernel kernel;
-  StageFields<Real, Kernel::stages> fields;
+  FieldsOf<Kernel> fields;
   RowLayout layout;
   RowBlocks blocks;
 
-  StageRowLoop(Kernel const& stage, StageFields<Real, Kernel::stages> const& of,
-               RowLayout const& rows)
-      : kernel(stage), fields(of), layout(rows), blocks(rows, pack_count<Real>(rows)) {}
+  StageRowLoop(Kernel const& stage, FieldsOf<Kernel> const& arrays, RowLayout const& rows)
+      : kernel(stage), fields(arrays), layout(rows), blocks(rows, pack_count<Real>(rows)) {}
   std::int64_t tasks() const { return blocks.count(); }
 
   /// A task with all its pointers found, to be run again and again.
   struct Task {
-    StageRowLoop const& of;
+    StageRowLoop const& loop;
     RowBlock block;
     StagePlanes<Kernel> planes;
-    void operator()() const { run_stage(of.kernel, planes, of.layout, block); }
+    void operator()() const { run_stage(loop.kernel, planes, loop.layout, block); }
   };
   Task task_at(std::int64_t task) const {
     auto const block = blocks(task);
-    return {*this, block, fields.template planes<Kernel>(layout, block.z)};
+    return {*this, block, planes(block.z)};
   }
 
   void operator()(std::int64_t task) const {
     task_at(task)();
     if (fields.next.streaming) streaming_fence();
   }
+
+ private:
+  StagePlanes<Kernel> planes(std::int32_t z) const {
+    StagePlanes<Kernel> planes;
+    convert<typename Kernel::Flow>(fields, ToPlane<Real>{layout, z}, planes.arrays);
+    planes.y = Axis(layout, 1);
+    planes.ahead = layout.pitch;
+    planes.level_from_memory = true;
+    return planes;
+  }
 };
 
 /// The device's share: one site.
 template <class Kernel>
 struct StageOnSite {
+  using Real = typename Kernel::value_type;
   Kernel kernel;
-  StageFields<typename Kernel::value_type, Kernel::stages> fields;
+  FieldsOf<Kernel> fields;
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    kernel(site, fields.rows(site.row()));
+    typename Kernel::RowArrays rows;
+    convert<typename Kernel::Flow>(fields, ToSiteRow<Real>{site.row()}, rows);
+    kernel(site, rows);
   }
 };
 
 template <class Exec, class Kernel>
 void run_pass(Exec const& exec, std::string const& label, RowLayout const& layout,
-              Kernel const& kernel,
-              StageFields<typename Kernel::value_type, Kernel::stages> const& fields) {
+              Kernel const& kernel, FieldsOf<Kernel> const& fields) {
   if constexpr (is_host_execution<Exec>) {
     StageRowLoop<Kernel> const loop(kernel, fields, layout);
     for_each_task(exec, label, loop.tasks(), layout.sites(), loop);

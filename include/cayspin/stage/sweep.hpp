@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <tuple>
 
-// All stages of a Runge-Kutta step in one journey through the lattice: each stage works one plane
-// and one row behind the stage before it, on numbers that are still in the cache.
+// All stages of a Runge-Kutta step in one journey through the lattice. Each stage follows the stage
+// before it at a distance of one plane and one row, on numbers that are still in the cache.
 namespace cayspin::detail {
 
 /// The buffers between the stages of a method, by number: spins of stage 1, 2, .., increments of
@@ -27,7 +27,7 @@ struct StageBuffers {
 
   static constexpr int producer(int buffer) { return buffer % per_kind; }
 
-  /// The stage behind which the buffer's numbers are no longer needed; the producer, if never.
+  /// The last stage that reads the buffer; the producer where none does.
   static constexpr int last_reader(int buffer) {
     int const from = producer(buffer);
     int last = from;
@@ -61,14 +61,13 @@ struct StageBuffers {
 
 template <class Tableau, class Update, class Real, class... Kernels>
 struct SweepLoop {
-  using Buffers = StageBuffers<Tableau, Update>;
   static constexpr int stages = Tableau::stages;
 
   std::tuple<Kernels...> kernels;
   SweepPlan plan;
   SiteArray<Real, 3> start;
   OutputArray<Real, 3> next;
-  SiteArray<Real, 3> residual;
+  SiteArray<Real, 3> carried[StageArrays<Planes<Real>, stages>::most_carried];
   Real* memory;
 
   void operator()(std::int64_t task) const {
@@ -80,6 +79,61 @@ struct SweepLoop {
   }
 
  private:
+  /// Where the arrays of a stage lie: in the fields, or in the buffers of a part.
+  struct PlaneOfStep {
+    using Buffers = StageBuffers<Tableau, Update>;
+    SweepLoop const& loop;
+    SweepPart<Real> const& part;
+    std::int32_t z, here;
+
+    PlaneRows<Real> start() const { return plane_rows(loop.start, loop.plan.layout, here); }
+    template <int Stage>
+    typename Planes<Real>::Spins level() const {
+      auto const& along_z = part.z.axis;
+      return {at<Stage>(along_z.previous(z)), at<Stage>(z), at<Stage>(along_z.next(z))};
+    }
+    template <int Stage>
+    PlaneRows<Real> spins() const {
+      return part.rows(Buffers::spins(Stage), z);
+    }
+    template <int Stage>
+    PlaneRows<Real> increment() const {
+      return part.rows(Buffers::increment(Stage), z);
+    }
+    template <int Stage>
+    typename Planes<Real>::Output new_increment() const {
+      return {increment<Stage>()};
+    }
+    template <int Stage>
+    PlaneRows<Real> sum_before() const {
+      return part.rows(Buffers::sum(Buffers::sum_before(Stage)), z);
+    }
+    template <int Stage>
+    typename Planes<Real>::Output sum() const {
+      return {part.rows(Buffers::sum(Stage), z)};
+    }
+    template <int Stage>
+    typename Planes<Real>::Output next() const {
+      if constexpr (Stage + 1 < stages)
+        return {spins<Stage + 1>()};
+      else
+        return {plane_rows<Real>(loop.next, loop.plan.layout, here), loop.next.streaming};
+    }
+    PlaneRows<Real> carried_before(int i) const {
+      return plane_rows(loop.carried[i], loop.plan.layout, here);
+    }
+    typename Planes<Real>::Output carried(int i) const { return {carried_before(i)}; }
+
+   private:
+    template <int Stage>
+    PlaneRows<Real> at(std::int32_t plane) const {
+      if constexpr (Stage == 0)
+        return plane_rows(loop.start, loop.plan.layout, part.z.axis.wrapped(plane));
+      else
+        return part.rows(Buffers::spins(Stage), plane);
+    }
+  };
+
   template <int Stage>
   void run(SweepPart<Real> const& part, std::int32_t z) const {
     if (z < part.z.low(Stage) || part.z.high(Stage) <= z) return;
@@ -87,39 +141,11 @@ struct SweepLoop {
     using Kernel = std::remove_cvref_t<decltype(kernel)>;
     std::int32_t const here = part.z.axis.wrapped(z);
     StagePlanes<Kernel> planes;
+    find_arrays<typename Kernel::Flow>(PlaneOfStep{*this, part, z, here}, planes.arrays);
     planes.y = part.y.axis;
-    planes.start = plane_rows(start, plan.layout, here);
-    planes.level[0] = spins<Stage>(part, part.z.axis.previous(z));
-    planes.level[1] = spins<Stage>(part, z);
-    planes.level[2] = spins<Stage>(part, part.z.axis.next(z));
     planes.level_from_memory = Stage == 0;
-    unrolled<stages - 1>([&](auto j) {
-      if constexpr (Kernel::reads_increment(j()))
-        planes.increments[j()] =
-            part.rows(Kernel::recovers ? Buffers::spins(j() + 1) : Buffers::increment(j()), z);
-    });
-    if constexpr (Kernel::reads_sum)
-      planes.sum_before = part.rows(Buffers::sum(Buffers::sum_before(Stage)), z);
-    if constexpr (Kernel::writes_sum) planes.sum = part.rows(Buffers::sum(Stage), z);
-    if constexpr (Kernel::stores_increment)
-      planes.increment = part.rows(Buffers::increment(Stage), z);
-    if constexpr (Kernel::compensates) planes.residual = plane_rows(residual, plan.layout, here);
-    if constexpr (Stage + 1 < stages) {
-      planes.next = part.rows(Buffers::spins(Stage + 1), z);
-    } else {
-      planes.next = plane_rows<Real>(next, plan.layout, here);
-      planes.next_streams = next.streaming;
-    }
     run_stage(kernel, planes, plan.layout,
               {here, part.low(Stage), part.high(Stage), 0, pack_count<Real>(plan.layout)});
-  }
-
-  template <int Stage>
-  PlaneRows<Real> spins(SweepPart<Real> const& part, std::int32_t z) const {
-    if constexpr (Stage == 0)
-      return plane_rows(start, plan.layout, part.z.axis.wrapped(z));
-    else
-      return part.rows(Buffers::spins(Stage), z);
   }
 };
 

@@ -7,23 +7,22 @@
 
 #include <type_traits>
 
-// How an increment moves a spin, and which increment a generator gives at a stage: the part of a
-// Runge-Kutta method that is geometry. Coordinates f are taken at the spin m0 of the step's begin;
-// increment(f, dt A, m, m0) belongs to the stage's spin m, which f moves m0 to. move is for stages,
-// finish for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
+// The geometry of a Runge-Kutta method: how an increment moves a spin, and which increment a
+// generator gives at a stage. Coordinates f are taken at the spin m0 of the step's begin.
+// increment(f, dt A, m, m0) belongs to the stage's spin m, to which f moves m0. `move` is for
+// stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
 namespace cayspin::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
 template <class Rotation>
 struct Lie {
   static constexpr bool increment_needs_argument = true;
-  static constexpr bool keeps_generators = false;
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const& f,
                                                            Vec3<Value> const& step_times_a,
                                                            Vec3<Value> const&, Vec3<Value> const&) {
-    return Rotation::inverse_tangent(f, step_times_a);
+    return Rotation::inverse_differential(f, step_times_a);
   }
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> move(Vec3<Value> const& f, Vec3<Value> const& m0) {
@@ -41,8 +40,8 @@ struct Lie {
   }
 };
 
-/// As Lie, with the generators themselves as increments: the inverse tangent is left out. Keeps the
-/// order of methods up to 2 alone. Lewis and Nigam 2002, Sec. 4.3.
+/// As Lie, with the generators themselves as increments, without the inverse differential. It keeps
+/// the order of methods up to order 2. Lewis and Nigam 2002, Sec. 4.3.
 template <class Rotation>
 struct LieUncorrected : Lie<Rotation> {
   static constexpr bool increment_needs_argument = false;
@@ -55,19 +54,9 @@ struct LieUncorrected : Lie<Rotation> {
   }
 };
 
-/// As printed in Lewis and Nigam 2002, Sec. 4.4: stages 3 and 4 take their argument from the
-/// generators A_2, A_3 where the increments F_2, F_3 are meant. Order 3; kept for reproduction.
-template <class Rotation>
-struct LieAsPrinted : Lie<Rotation> {
-  static constexpr bool keeps_generators = true;
-};
-
-/// Classical Runge-Kutta in space: f is a displacement. Renormalise: divide by the length at the
-/// end of each step, which is what most spin codes do.
-template <bool Renormalise>
+/// Classical Runge-Kutta in space: f is a displacement, and |m| drifts.
 struct Classical {
   static constexpr bool increment_needs_argument = false;
-  static constexpr bool keeps_generators = false;
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -83,24 +72,30 @@ struct Classical {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
+    return m0 + f;
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
+                                                                      Vec3<Value> const&) {
+    return {Value(1), f};
+  }
+};
+
+/// The same with each step divided by its length at the end, as most spin codes do.
+struct Projected : Classical {
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
+                                                        Vec3<Value> const& m0) {
     Vec3<Value> const m = m0 + f;
-    if constexpr (Renormalise) {
-      return Value(Value(1) / detail::square_root<Value>(dot(m, m))) * m;
-    } else {
-      return m;
-    }
+    return Value(Value(1) / detail::square_root<Value>(dot(m, m))) * m;
   }
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m0) {
-    if constexpr (Renormalise) {
-      Value const longer = dot(f, f) + Value(2) * dot(f, m0);  // |m0 + f|^2 - 1
-      Value const length = detail::square_root<Value>(Value(1) + longer);
-      Value const along = longer / (Value(1) + length);  // |m0 + f| - 1
-      return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
-    } else {
-      return {Value(1), f};
-    }
+    Value const longer = dot(f, f) + Value(2) * dot(f, m0);  // |m0 + f|^2 - 1
+    Value const length = detail::square_root<Value>(Value(1) + longer);
+    Value const along = longer / (Value(1) + length);  // |m0 + f| - 1
+    return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
   }
 };
 
@@ -109,7 +104,6 @@ struct Classical {
 /// Breaks down only where a stage's spin reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
-  static constexpr bool keeps_generators = false;
   static constexpr bool has_chart = true;  // f can be had back from the spin it moves m0 to
 
   template <class Value>
@@ -178,12 +172,12 @@ struct Stereographic {
     Value const e4 = e2 * e2, denominator = others * e4;
 
     Vec3<Value> const u = cross(a, spins[own]);
-    Value const twice = Value(static_cast<Scalar>(2 * Weights::last)) * step * others;
-    Value const along = Value(-2) * twice * dot(u, m0);
+    Value const doubled = Value(static_cast<Scalar>(2 * Weights::last)) * step * others;
+    Value const along = Value(-2) * doubled * dot(u, m0);
     Value const of_own = Value(static_cast<Scalar>(Weights::spin(own))) * others * e2;
     Value of_start = detail::multiply_add(of_own, square[own], Value(along + along));
     Vec3<Value> f = multiply_add(detail::multiply_add(Value(2), of_own, along), d[own],
-                                 Vec3<Value>(Value(twice * e2) * u));
+                                 Vec3<Value>(Value(doubled * e2) * u));
     detail::unrolled<own>([&](auto j) {
       constexpr double weight = Weights::spin(j());
       if constexpr (weight != 0) {

@@ -3,27 +3,32 @@
 
 #include <cayspin/stage/update.hpp>
 
+#include <iterator>
+
 namespace cayspin {
 
 namespace update {
 
-/// As Update, with what rounding takes off the spins at the end of a step added to the next one.
+/// As Update. What rounding takes off the spins at the end of a step is added to the next one.
 template <class Update>
 struct Compensated : Update {
-  static constexpr bool is_compensated = true;
-  static constexpr bool has_chart = false;  // increments come back from rounded spins too rough
+  static constexpr char const* carried[] = {"residual"};  // names of what a step leaves
+  static constexpr bool has_chart = false;  // rounded spins give increments that are too rough
 };
 
 }  // namespace update
 
 namespace detail {
 
+/// Fields that the end of a step leaves for the end of the next one.
 template <class Update>
-inline constexpr bool is_compensated = requires {
-  Update::is_compensated;
-};
+constexpr int carried_fields() {
+  if constexpr (requires { Update::carried; })
+    return static_cast<int>(std::size(Update::carried));
+  return 0;
+}
 
-/// What stages before the last one may use in its place.
+/// What stages before the last one may use instead.
 template <class Update>
 struct PlainUpdate {
   using type = Update;
@@ -39,7 +44,7 @@ struct RoundedSum {
   Vec3<Value> sum, residual;
 };
 
-/// a + b, and what its rounding leaves over, whichever is larger (Knuth 1969).
+/// a + b and its rounding error, whichever of the two is larger (Knuth 1969).
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION RoundedSum<Value> rounded_sum(Vec3<Value> const& a,
                                                           Vec3<Value> const& b) {

@@ -4,14 +4,16 @@
 #include <cayspin/detail/batch.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
-#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/detail/text.hpp>
+#include <cayspin/isotropy/policies.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/spin_field.hpp>
-#include <cayspin/stepper/adaptive_stage.hpp>
 #include <cayspin/stage/pass.hpp>
+#include <cayspin/stage/update.hpp>
+#include <cayspin/stepper/adaptive_stage.hpp>
 #include <cayspin/stepper/step_control.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
-#include <cayspin/stage/update.hpp>
+#include <cayspin/stepper/tableau.hpp>
 
 #include <algorithm>
 #include <array>
@@ -38,14 +40,13 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
  public:
   using typename Base::Real;
   static constexpr int order = Embedded::order;
-  static constexpr int evaluations = 0;           // stages - 1 for each of its own steps
   static constexpr int work_fields = stages + 4;  // and a number per site
 
   /// Throws std::invalid_argument for options that cannot be, a tolerance below 32 epsilon of the
   /// precision among them.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
-      : Base(name),
+      : Base(name, like.lattice()),
         isotropy_(isotropy),
         options_(options),
         controller_(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
@@ -64,7 +65,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   }
 
   std::size_t work_bytes() const { return work_fields * begin_.bytes() + square_.bytes(); }
-  /// The same, foretold.
+  /// Predicted bytes of work memory.
   static std::size_t work_bytes(Lattice const& lattice, bool, int) {
     auto const layout = detail::RowLayout::of<Real>(lattice);
     return (work_fields * layout.allocation(3) + layout.allocation(1)) * sizeof(Real);
@@ -85,7 +86,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   /// the lattice given at construction, dt is negative or options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    auto const region = this->begin_step(exec, spins, begin_);
+    auto const region = this->begin_step(exec, spins);
     double const asked = t + dt, slack = 1e-9 * std::abs(dt);
     if (!(dt >= 0) || !(asked <= options_.end + slack))
       throw std::invalid_argument(
@@ -98,7 +99,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
  private:
   using DefaultExec = typename Spins::memory_space::execution_space;
   using Scalars = ScalarField<Real, typename Spins::memory_space>;
-  using Fields = detail::StageFields<Real, stages>;
+  using Whole = detail::WholeFields<Real>;
 
   template <class Exec, class Generator>
   void begin(Exec const& exec, Generator const& generator, Spins const& spins, double t,
@@ -154,8 +155,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
       if (at_once) stages_at_once(exec, generator, t, dt);
     }
     if (!at_once) {
-      detail::for_each_site<Real>(exec, labels_[0], begin_.layout(), first_stage(dt));
-      stages_from<1>(exec, generator, t, dt);
+      stages_from<0>(exec, generator, t, dt);
       detail::for_each_site<Real>(
           exec, end_label_, begin_.layout(),
           end_stage(detail::prepare_term(generator, exec, end_, t + dt), dt));
@@ -166,10 +166,6 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   /// Spins that stage `stage` looks at; the last one looks at end_.
   Spins const& level(int stage) const { return (stages - 1 - stage) % 2 == 0 ? end_ : level_; }
 
-  detail::KnownFirstStage<Tableau, Update, Real> first_stage(double dt) const {
-    return {begin_.array(), first_.array(), increments_[0].output(streaming_),
-            level(1).output(streaming_), static_cast<Real>(dt)};
-  }
   template <class Prepared>
   auto end_stage(Prepared prepared, double dt) const {
     return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
@@ -178,21 +174,44 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
         increments(),          last_.output(streaming_),
         square_.output(false), static_cast<Real>(dt)};
   }
+  /// Stage `Stage`, with a generator that is ready; the first one's is known.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
     return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
         std::move(prepared), isotropy_, static_cast<Real>(dt)};
   }
-  template <int Stage>
-  Fields fields() const {
-    Fields fields;
-    fields.start = begin_.array();
-    fields.level = level(Stage).array();
-    for (int i = 0; i < Stage; ++i) fields.increments[i] = increments_[i].array();
-    fields.increment = increments_[Stage].output(streaming_);
-    fields.next = level(Stage + 1).output(streaming_);
-    return fields;
+  auto first_stage(double dt) const {
+    using Known = detail::KnownGenerator<Real>;
+    return detail::RungeKuttaStage<Tableau, Update, isotropy::Zero, 0, Known, Real>{
+        {first_.array()}, {}, static_cast<Real>(dt)};
   }
+  template <int Stage>
+  detail::StageArrays<Whole, stages> fields() const {
+    detail::StageArrays<Whole, stages> arrays;
+    detail::find_arrays<detail::StageDataFlow<Tableau, Update, Stage>>(FieldsOfStep{*this}, arrays);
+    return arrays;
+  }
+  /// Where the arrays of a stage lie.
+  struct FieldsOfStep {
+    AdaptiveRungeKutta const& stepper;
+    auto start() const { return stepper.begin_.array(); }
+    template <int Stage>
+    auto level() const {
+      return Stage == 0 ? stepper.begin_.array() : stepper.level(Stage).array();
+    }
+    template <int Stage>
+    auto increment() const {
+      return stepper.increments_[Stage].array();
+    }
+    template <int Stage>
+    auto new_increment() const {
+      return stepper.increments_[Stage].output(stepper.streaming_);
+    }
+    template <int Stage>
+    auto next() const {
+      return stepper.level(Stage + 1).output(stepper.streaming_);
+    }
+  };
 
   // Few spins: all stages in one launch.
   template <class Exec, class Generator>
@@ -204,7 +223,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     [&]<int... I>(std::integer_sequence<int, I...>) {
       detail::repeat_on_calling_thread(
           step_label_, 1,
-          std::tuple(detail::repeated_row_loop<Real>(layout, first_stage(dt)),
+          std::tuple(detail::StageRowLoop(first_stage(dt), fields<0>(), layout),
                      detail::StageRowLoop(stage<I + 1>(at(Tableau::c[I + 1]), dt), fields<I + 1>(),
                                           layout)...,
                      detail::repeated_row_loop<Real>(layout, end_stage(at(1), dt))));
@@ -214,13 +233,15 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
 
   template <int Stage, class Exec, class Generator>
   void stages_from(Exec const& exec, Generator const& generator, double t, double dt) {
-    if constexpr (Stage + 1 < stages) {
-      auto prepared =
-          detail::prepare_term(generator, exec, level(Stage), t + Tableau::c[Stage] * dt);
-      detail::run_pass(exec, labels_[Stage], begin_.layout(), stage<Stage>(std::move(prepared), dt),
-                       fields<Stage>());
-      stages_from<Stage + 1>(exec, generator, t, dt);
-    }
+    auto const run = [&](auto const& kernel) {
+      detail::run_pass(exec, labels_[Stage], begin_.layout(), kernel, fields<Stage>());
+    };
+    if constexpr (Stage == 0)
+      run(first_stage(dt));
+    else
+      run(stage<Stage>(
+          detail::prepare_term(generator, exec, level(Stage), t + Tableau::c[Stage] * dt), dt));
+    if constexpr (Stage + 2 < stages) stages_from<Stage + 1>(exec, generator, t, dt);
   }
 
   template <class Exec>
@@ -239,12 +260,12 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   template <class Exec>
   double largest_square(Exec const& exec) const {
     return detail::reduce_sites<detail::Maximum, 1>(
-        exec, error_label_, square_.layout(), detail::LargestNumber<Real>{square_.array()})[0];
+        exec, error_label_, square_.layout(), detail::LargestOfSites<Real>{square_.array()})[0];
   }
 
   detail::StepIncrements<Tableau, Real> increments() const {
     detail::StepIncrements<Tableau, Real> all;
-    for (int i = 0; i + 1 < stages; ++i) all.of[i] = increments_[i].array();
+    for (int i = 0; i + 1 < stages; ++i) all.array[i] = increments_[i].array();
     return all;
   }
 
@@ -258,9 +279,9 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   [[noreturn]] void give_up(double t, double dt) {
     swap(begin_, end_);
     swap(first_, last_);
-    throw StepTooSmall(this->label("::step: from t = ") + std::to_string(t) +
-                       " the tolerance would take a step below " + std::to_string(dt) +
-                       "; the numbers are not finite, or the field jumps without end");
+    throw StepTooSmall(this->label("::step: from t = ") + detail::to_text(t) +
+                       " the tolerance needs a step below " + detail::to_text(dt) +
+                       "; the numbers are not finite, or the field is not smooth");
   }
 
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
@@ -280,7 +301,8 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
 
 /// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau in the Lie algebra, where the last
 /// stage's generator is the next step's first increment, since D_0 = I.
-template <class Spins, class Embedded, class Isotropy = isotropy::Zero, class Rotation = Cayley>
+template <class Spins, class Embedded = tableau::Tsitouras5, class Isotropy = isotropy::Zero,
+          class Rotation = Cayley>
 class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rotation>, Isotropy> {
  public:
   explicit AdaptiveRkmk(Spins const& like, StepOptions const& options = {}, Isotropy isotropy = {},
@@ -289,7 +311,7 @@ class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rota
 };
 
 /// The same in the stereographic chart at each step's first spin.
-template <class Spins, class Embedded>
+template <class Spins, class Embedded = tableau::Tsitouras5>
 class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update::Stereographic> {
  public:
   explicit AdaptiveStereographic(Spins const& like, StepOptions const& options = {})
@@ -297,8 +319,8 @@ class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update:
 };
 
 /// The baseline: the same steps in space, each divided by the length.
-template <class Spins, class Embedded>
-class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Classical<true>> {
+template <class Spins, class Embedded = tableau::DormandPrince5>
+class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Projected> {
  public:
   explicit AdaptiveProjected(Spins const& like, StepOptions const& options = {})
       : AdaptiveProjected::AdaptiveRungeKutta("AdaptiveProjected", like, options) {}

@@ -9,11 +9,6 @@
 // What an adaptive Runge-Kutta step does besides its stages. Tableau is a FirstSameAsLast.
 namespace cayspin::detail {
 
-template <class Value>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> no_coordinates() {
-  return {Value(0), Value(0), Value(0)};
-}
-
 /// The generator at the begin of a run, and the square of the spin's rate |A x m|.
 template <class Isotropy, class Generator, class Real>
 struct FirstGeneratorStage {
@@ -33,40 +28,34 @@ struct FirstGeneratorStage {
   }
 };
 
-/// The first increment, from a generator that is known, and the second stage's spins.
-template <class Tableau, class Update, class Real>
-struct KnownFirstStage {
-  SiteArray<Real, 3> start, first;
-  OutputArray<Real, 3> increment, next;
-  Real dt;
+/// The generator that the step before ended with, as the first stage's.
+template <class Real>
+struct KnownGenerator {
+  SiteArray<Real, 3> generators;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    Vec3<Value> const m0 = site.load(start);
-    Vec3<Value> const f = Update::increment(no_coordinates<Value>(),
-                                            Vec3<Value>(Value(dt) * site.load(first)), m0, m0);
-    site.store(f, increment);
-    site.store(Update::move(Value(static_cast<Real>(Tableau::a[1][0])) * f, m0), next);
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
+      Stencil const& stencil) const {
+    return stencil.site().load(generators);
   }
 };
 
 template <class Tableau>
 struct ErrorWeights {
-  KOKKOS_FUNCTION static constexpr double of(int j) { return Tableau::error[j]; }
+  KOKKOS_FUNCTION static constexpr double at(int j) { return Tableau::error[j]; }
 };
 
 /// All increments of a step that has been taken.
 template <class Tableau, class Real>
 struct StepIncrements {
   static constexpr int stages = Tableau::stages;
-  SiteArray<Real, 3> of[stages - 1];
+  SiteArray<Real, 3> array[stages - 1];
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void load(Site const& site, Vec3<Value>* f) const {
     unrolled<stages - 1>([&](auto j) {
       if constexpr (Tableau::a[stages - 1][j()] != 0 || Tableau::error[j()] != 0)
-        f[j()] = site.load(of[j()]);
+        f[j()] = site.load(array[j()]);
     });
   }
 };
@@ -117,11 +106,12 @@ struct DenseOutput {
   Real weights[stages];
 
   /// At fraction s of a step of dt.
-  DenseOutput(SiteArray<Real, 3> start_of, SiteArray<Real, 3> end_of, SiteArray<Real, 3> last_of,
-              StepIncrements<Tableau, Real> all, OutputArray<Real, 3> to, double step, double s)
-      : start(start_of),
-        end(end_of),
-        last(last_of),
+  DenseOutput(SiteArray<Real, 3> start_spins, SiteArray<Real, 3> end_spins,
+              SiteArray<Real, 3> last_generators, StepIncrements<Tableau, Real> all,
+              OutputArray<Real, 3> to, double step, double s)
+      : start(start_spins),
+        end(end_spins),
+        last(last_generators),
         increments(all),
         spins(to),
         dt(static_cast<Real>(step)) {
@@ -141,21 +131,11 @@ struct DenseOutput {
     f[stages - 1] =
         Update::increment(weighted_sum<StageWeights<Tableau, stages - 1>, stages - 1>(f),
                           Vec3<Value>(Value(dt) * site.load(last)), site.load(end), m0);
-    Vec3<Value> on = no_coordinates<Value>();
+    Vec3<Value> on{Value(0), Value(0), Value(0)};
     unrolled<stages>([&](auto j) {
       if constexpr (Tableau::dense[j()][1] != 0) on = multiply_add(Value(weights[j()]), f[j()], on);
     });
     site.store(Update::finish(on, m0), spins);
-  }
-};
-
-template <class Real>
-struct LargestNumber {
-  SiteArray<Real, 1> of;
-
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    values[0] = site.load(of);
   }
 };
 

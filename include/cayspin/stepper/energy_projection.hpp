@@ -79,7 +79,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   static constexpr int work_fields = Stepper::work_fields + 2;
 
   EnergyProjection(Spins const& like, Stepper stepper, int corrections = 3)
-      : Base("EnergyProjection"),
+      : Base("EnergyProjection", like.lattice()),
         stepper_(std::move(stepper)),
         corrections_(corrections),
         begin_("EnergyProjection::begin", like.lattice()),
@@ -102,7 +102,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   }
 
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
-  /// take arrays of `spins` anew after a step. Waits.
+  /// take arrays of `spins` again after a step. Waits.
   /// Throws std::invalid_argument when the generator is not conservative, or `spins` is not of the
   /// lattice given at construction.
   template <class Exec, class Generator>
@@ -113,7 +113,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
         "member is_conservative().");
     static_assert(!detail::depends_on_time<Generator>,
                   "EnergyProjection refuses fields that depend on t.");
-    auto const region = this->begin_step(exec, spins, begin_);
+    auto const region = this->begin_step(exec, spins);
     if (!generator.is_conservative())
       throw std::invalid_argument(
           "cayspin::EnergyProjection: the generator does not conserve its energy (damping 0 does)");

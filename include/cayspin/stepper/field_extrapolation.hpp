@@ -6,7 +6,7 @@
 #include <cayspin/stepper/field_extrapolation_stability.hpp>
 #include <cayspin/stepper/field_extrapolation_stage.hpp>
 #include <cayspin/stepper/field_history.hpp>
-#include <cayspin/stepper/rkmk4.hpp>
+#include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <algorithm>
@@ -19,22 +19,23 @@
 
 namespace cayspin {
 
-/// When a stepper that estimates its errors starts anew, because the neighbour field is not what
-/// its past foretold. Infinity: never; where both are, no step waits for its estimate.
+/// When a stepper that estimates its errors starts again, because the neighbour field is not what
+/// its past predicted. Infinity: never. If both are infinite, no step waits for its estimate.
 struct FieldExtrapolationOptions {
   double restart_angle = 0.1;   // above an error of so many radians in one step
   double restart_growth = 100;  // above so many times the largest of the last few errors
 };
 
-/// Field extrapolation of order 3 or 4 with one evaluation per step: the field of the other spins
-/// is foretold by the polynomial through its last Order values, and every spin then moves in it
-/// and in its own local field by one step of Rkmk4. What depends on a spin alone (anisotropy) or on
-/// t (applied fields) is not extrapolated. The first Order - 1 steps are steps of Rkmk4. Steps may
-/// change, by a factor of 2 at most when they grow; otherwise the next step starts anew.
-/// Estimates: the error of each step is known one step later, as dt g |dA x m| of a spin, dA the A
-/// in the neighbour field less that in the one foretold; g = 3/8 and, to 0.1 %, 251/720 for equal
-/// steps, as in the methods of Adams and Bashforth. The error of the local solve, of order 4, is
-/// not in it. Takes a field and a number per site more. Not in the paper.
+/// Field extrapolation of order 3 or 4 with one evaluation per step. The polynomial through the last
+/// Order values predicts the field of the other spins. Every spin then moves in it and in its own
+/// local field, by one step of Rkmk4. What depends on a spin alone (anisotropy) or on t (applied
+/// fields) is not extrapolated. The first Order - 1 steps are steps of Rkmk4. Steps may change, but
+/// grow by a factor of 2 at most; otherwise the method starts again.
+/// Estimates: the error of each step is known one step later, as dt g |dA x m| of a spin. dA is the
+/// A in the neighbour field less the A in the predicted one. g is 3/8 for order 3 and, to 0.1 %,
+/// 251/720 for order 4 with equal steps, as in the methods of Adams and Bashforth. The estimate
+/// leaves out the error of the local solve, which is of order 4. It takes a field and a number per
+/// site more.
 template <class Spins, int Order, bool Estimates = false>
 class FieldExtrapolation : public detail::StepperBase<Spins> {
   static_assert(Order == 3 || Order == 4, "Field extrapolation is of order 3 or 4.");
@@ -44,13 +45,13 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
  public:
   using typename Base::Real;
   static constexpr int order = Order;
-  static constexpr int evaluations = 1;  // of the generator, per step behind the first ones
+  static constexpr int evaluations = 1;  // of the generator, per step after the first ones
   static constexpr int past_fields = Estimates ? Order : Order - 1;
   static constexpr int work_fields = past_fields + 1 + Start::work_fields;
 
   explicit FieldExtrapolation(std::string const& name, Spins const& like,
                               FieldExtrapolationOptions const& options = {})
-      : Base(name),
+      : Base(name, like.lattice()),
         options_(options),
         start_(like),
         next_(name + "::next", like.lattice()),
@@ -94,11 +95,11 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   }
 
   /// Advances `spins` from t to t + dt under `generator`; takes `spins` for where the step before
-  /// ended, and exchanges their memory with its own, so take arrays of `spins` anew after a step.
+  /// ended, and exchanges their memory with its own, so take arrays of `spins` again after a step.
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    auto const region = this->begin_step(exec, spins, next_);
+    auto const region = this->begin_step(exec, spins);
     if (dt == 0) return;
     if (past_.known() > 0 && !(0 < dt / past_.last_step() && dt / past_.last_step() <= 2)) reset();
     if (past_.known() >= Order - 1) {
@@ -176,7 +177,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     ++evaluations_done_;
   }
 
-  /// Of the polynomial that the step before was taken with: what it foretold for the step's end,
+  /// Of the polynomial that the step before was taken with: what it predicted for the step's end,
   /// and the mean of its error over the step, by the local solve's weights, over that at the end.
   Error error_of_step_before(double dt) const requires Estimates {
     Error error{{}, 0, angles_.output(false)};

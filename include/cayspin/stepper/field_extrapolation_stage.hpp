@@ -5,6 +5,7 @@
 #include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/rotation/cayley.hpp>
+#include <cayspin/stage/update.hpp>
 #include <cayspin/stencil.hpp>
 
 namespace cayspin::detail {
@@ -24,7 +25,7 @@ struct NeighborFieldStage {
 };
 
 /// What a step says about the one before it: the angle by which it missed, from the neighbour field
-/// that the Order fields before had foretold for its end.
+/// that the Order fields before predicted for its end.
 template <int Order, class Real>
 struct ErrorOfExtrapolation {
   static constexpr bool is_known = true;
@@ -66,6 +67,8 @@ struct FieldExtrapolationStage {
   }
 
  private:
+  using Update = update::Lie<Cayley>;
+
   template <class Value>
   struct Coordinates {
     Vec3<Value> m, at_middle, at_end;  // the spin; neighbour fields
@@ -73,42 +76,43 @@ struct FieldExtrapolationStage {
   };
 
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void begin(Site const& site, Coordinates<Value>& of) const {
+  KOKKOS_FORCEINLINE_FUNCTION void begin(Site const& site, Coordinates<Value>& spin) const {
     Stencil<Site, Real> const stencil(site, spins);
-    of.m = stencil.center();
+    spin.m = stencil.center();
     Vec3<Value> const h = neighbor_field_of(generator, stencil);
     Vec3<Value> before[Error::older];
     unrolled<Error::older>([&](auto j) { before[j()] = site.load(older[j()]); });
-    of.at_middle = value<Value>(middle[0]) * h;
-    of.at_end = value<Value>(end[0]) * h;
+    spin.at_middle = value<Value>(middle[0]) * h;
+    spin.at_end = value<Value>(end[0]) * h;
     unrolled<Order - 1>([&](auto j) {
-      of.at_middle = multiply_add(value<Value>(middle[j() + 1]), before[j()], of.at_middle);
-      of.at_end = multiply_add(value<Value>(end[j() + 1]), before[j()], of.at_end);
+      spin.at_middle = multiply_add(value<Value>(middle[j() + 1]), before[j()], spin.at_middle);
+      spin.at_end = multiply_add(value<Value>(end[j() + 1]), before[j()], spin.at_end);
     });
-    of.sum = of.last = increment(local[0], site, of.m, h);
+    spin.sum = spin.last = increment(local[0], site, spin.m, h);
 
     if constexpr (Error::is_known) {
-      Vec3<Value> foretold = value<Value>(error.weights[0]) * before[0];
+      Vec3<Value> predicted = value<Value>(error.weights[0]) * before[0];
       unrolled<Order - 1>([&](auto j) {
-        foretold = multiply_add(value<Value>(error.weights[j() + 1]), before[j() + 1], foretold);
+        predicted = multiply_add(value<Value>(error.weights[j() + 1]), before[j() + 1], predicted);
       });
-      Vec3<Value> const missed = cross(of.last - increment(local[0], site, of.m, foretold), of.m);
+      Vec3<Value> const missed = cross(spin.last - increment(local[0], site, spin.m, predicted), spin.m);
       site.store(value<Value>(error.scale) * square_root<Value>(dot(missed, missed)), error.angles);
     }
     site.store(h, newest);
   }
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void middle_stage(Site const& site, Coordinates<Value>& of) const {
-    Vec3<Value> const f = value<Value>(0.5) * of.last;
-    of.last = Cayley::inverse_tangent(
-        f, increment(local[1], site, Cayley::rotate(f, of.m), of.at_middle));
-    of.sum = multiply_add(Value(2), of.last, of.sum);
+  KOKKOS_FORCEINLINE_FUNCTION void middle_stage(Site const& site, Coordinates<Value>& spin) const {
+    Vec3<Value> const f = value<Value>(0.5) * spin.last;
+    Vec3<Value> const m = Update::move(f, spin.m);
+    spin.last = Update::increment(f, increment(local[1], site, m, spin.at_middle), m, spin.m);
+    spin.sum = multiply_add(Value(2), spin.last, spin.sum);
   }
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void finish(Site const& site, Coordinates<Value>& of) const {
-    Vec3<Value> const last = Cayley::inverse_tangent(
-        of.last, increment(local[2], site, Cayley::rotate(of.last, of.m), of.at_end));
-    site.store(Cayley::rotate(value<Value>(1. / 6) * (of.sum + last), of.m), next);
+  KOKKOS_FORCEINLINE_FUNCTION void finish(Site const& site, Coordinates<Value>& spin) const {
+    Vec3<Value> const m = Update::move(spin.last, spin.m);
+    Vec3<Value> const last =
+        Update::increment(spin.last, increment(local[2], site, m, spin.at_end), m, spin.m);
+    site.store(Update::finish(value<Value>(1. / 6) * (spin.sum + last), spin.m), next);
   }
 
   template <class Site, class Value>
@@ -120,17 +124,6 @@ struct FieldExtrapolationStage {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value value(double number) {
     return Value(static_cast<scalar_t<Value>>(number));
-  }
-};
-
-/// The largest of the numbers at sites.
-template <class Real>
-struct LargestOfSites {
-  SiteArray<Real, 1> numbers;
-
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    values[0] = site.load(numbers);
   }
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/stepper/newton_krylov.hpp>
-#include <cayspin/isotropy/analytic.hpp>
-#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/detail/text.hpp>
+#include <cayspin/isotropy/policies.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stepper/implicit_stage.hpp>
+#include <cayspin/stepper/newton_krylov.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <limits>
@@ -33,12 +33,11 @@ template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
 class Implicit : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
-  static constexpr int evaluations = 0;  // as many as the iteration takes
   static constexpr bool is_corrected = std::is_same_v<Isotropy, isotropy::Analytic>;
   static constexpr int work_fields = is_corrected ? 4 : 2;
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
-      : StepperBase<Spins>(name),
+      : StepperBase<Spins>(name, like.lattice()),
         isotropy_(isotropy),
         options_(options),
         level_(name + "::level", like.lattice()),
@@ -55,12 +54,12 @@ class Implicit : public StepperBase<Spins> {
   std::int64_t evaluations_done() const { return evaluations_done_; }
 
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
-  /// take arrays of `spins` anew after a step. Waits.
+  /// take arrays of `spins` again after a step. Waits.
   /// Throws NotConverged when no solution was found, std::invalid_argument when `spins` is not of
   /// the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    auto const region = this->begin_step(exec, spins, level_);
+    auto const region = this->begin_step(exec, spins);
     double const when = AtMiddle ? t + 0.5 * dt : t + dt;
     bool corrected = false;
     auto const map = [&](Spins const& from, Spins const& to, bool to_middle) {
@@ -69,8 +68,7 @@ class Implicit : public StepperBase<Spins> {
     if (!solve(
             exec, [&](Spins const& from, Spins const& to) { map(from, to, AtMiddle); }, spins))
       throw NotConverged(this->label("::step: the equation of the step from t = ") +
-                         std::to_string(t) + " is not solved: dt = " + std::to_string(dt) +
-                         " is too large");
+                         to_text(t) + " is not solved: dt = " + to_text(dt) + " is too large");
     if constexpr (is_corrected) {
       compute_sigma(exec, generator, spins, t, dt);
       corrected = true;

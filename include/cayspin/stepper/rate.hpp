@@ -3,8 +3,8 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/isotropy/policies.hpp>
 #include <cayspin/isotropy/sigma.hpp>
-#include <cayspin/isotropy/analytic.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 

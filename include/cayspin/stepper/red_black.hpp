@@ -31,51 +31,49 @@ class RedBlack : public detail::StepperBase<Spins> {
  public:
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
-  /// Per step of a long run, a sweep over one colour being half of one: sweeps at which two steps
-  /// meet are shared where steps are taken together. evaluations_done() counts the sweeps made.
+  /// Per step of a long run; a pass over one colour counts as half of one. Steps that are taken
+  /// together share the passes at which they meet. evaluations_done() counts the passes made.
   static constexpr int evaluations = Order == 2 ? 1 : 5;
   static constexpr int work_fields = 0;
 
   /// Throws std::invalid_argument when a periodic axis has an odd number of sites, more than one.
   explicit RedBlack(Spins const& like)
-      : RedBlack::StepperBase("RedBlack" + std::to_string(Order)),
-        like_(like.lattice()),
-        sweep_label_(this->label("::sweep")),
+      : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice()),
+        pass_label_(this->label("::colour_pass")),
         batch_label_(this->label("::batch")) {
     for (int axis = 0; axis < 3; ++axis)
-      if (like_.boundary[axis] == Boundary::periodic && like_.shape[axis] > 1 &&
-          like_.shape[axis] % 2 != 0)
+      if (this->lattice_.boundary[axis] == Boundary::periodic && this->lattice_.shape[axis] > 1 &&
+          this->lattice_.shape[axis] % 2 != 0)
         throw std::invalid_argument(
             std::string("cayspin::RedBlack: the periodic ") + "xyz"[axis] + " axis has " +
-            std::to_string(like_.shape[axis]) +
+            std::to_string(this->lattice_.shape[axis]) +
             " sites, and no checkerboard closes on itself over an odd number");
   }
 
   std::size_t work_bytes() const { return 0; }
 
   /// Rounded up to whole evaluations, of all steps taken.
-  std::int64_t evaluations_done() const { return (sweeps_done_ + 1) / 2; }
+  std::int64_t evaluations_done() const { return (passes_done_ + 1) / 2; }
 
   /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or what has
   /// a prepare that returns one. Throws std::invalid_argument when `spins` is not of the lattice
   /// given at construction, and when the field needs all spins beforehand.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    auto const region = this->begin_step(exec, spins, like_);
+    auto const region = this->begin_step(exec, spins);
     if (!detail::needs_time_alone(generator, exec, spins))
       throw std::invalid_argument(
-          "cayspin::RedBlack::step: a term of the field needs all spins beforehand, and a spin "
-          "would "
-          "move in a field that is not that of its neighbours as they are");
+          "cayspin::RedBlack::step: a term of the field needs all spins beforehand, but red-black "
+          "steps change the neighbours of a spin while they move it");
     if (detail::is_stationary(generator, exec, spins)) {
       take_steps(exec, generator, spins, t, dt, 1);
     } else {
-      for (detail::RedBlackSweep const& sweep : detail::red_black_sweeps<Order>()) {
+      for (detail::ColourPass const& pass : detail::colour_passes<Order>()) {
         auto const at = [&](int flow) {
-          return detail::prepare_term(generator, exec, spins, t + sweep.middle[flow] * dt);
+          return detail::prepare_term(generator, exec, spins, t + pass.middle[flow] * dt);
         };
-        auto stage = stage_of(at(0), at(sweep.flows - 1), spins, true);
-        launch(exec, stage, spins, sweep, dt);
+        auto stage = stage_of(at(0), at(pass.flows - 1), spins, true);
+        launch(exec, stage, spins, pass, dt);
       }
     }
   }
@@ -86,11 +84,14 @@ class RedBlack : public detail::StepperBase<Spins> {
     return detail::is_stationary(generator, exec, spins);
   }
 
-  /// `count` steps that share the sweeps at which they meet, to the same bits as one by one.
+  /// `count` steps that share the passes at which they meet, to the same bits as one by one.
   template <class Exec, class Generator>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
-    auto const region = this->begin_step(exec, spins, like_);
+    auto const region = this->begin_step(exec, spins, "::batch");
+    if (!takes_batches(exec, generator, spins))
+      throw std::invalid_argument(
+          this->label("::batch: these steps have to be taken one by one (takes_batches)"));
     take_steps(exec, generator, spins, t, dt, count);
   }
 
@@ -116,27 +117,26 @@ class RedBlack : public detail::StepperBase<Spins> {
         detail::RedBlackSteps<Order, decltype(stage), Real> const steps{
             detail::colour_row_loop<Real>(stage, spins.layout()), dt, count};
         detail::for_each_task(exec, batch_label_, 1, spins.sites(), steps);
-        sweeps_done_ += count * (sweeps - 1) + 1;
+        passes_done_ += count * (passes - 1) + 1;
         return;
       }
     }
-    detail::for_each_sweep<Order>(
-        count, [&](detail::RedBlackSweep const& sweep) { launch(exec, stage, spins, sweep, dt); });
+    detail::for_each_colour_pass<Order>(
+        count, [&](detail::ColourPass const& pass) { launch(exec, stage, spins, pass, dt); });
   }
 
   template <class Exec, class Stage>
   void launch(Exec const& exec, Stage& stage, Spins const& spins,
-              detail::RedBlackSweep const& sweep, double dt) {
-    stage.take(sweep, dt);
-    detail::for_each_site_of_colour<Real>(exec, sweep_label_, spins.layout(), stage);
-    ++sweeps_done_;
+              detail::ColourPass const& pass, double dt) {
+    stage.set(pass, dt);
+    detail::for_each_site_of_colour<Real>(exec, pass_label_, spins.layout(), stage);
+    ++passes_done_;
   }
 
-  static constexpr int sweeps = static_cast<int>(detail::red_black_sweeps<Order>().size());
+  static constexpr int passes = static_cast<int>(detail::colour_passes<Order>().size());
 
-  Lattice like_;
-  std::string sweep_label_, batch_label_;
-  std::int64_t sweeps_done_ = 0;
+  std::string pass_label_, batch_label_;
+  std::int64_t passes_done_ = 0;
 };
 
 template <class Spins>

@@ -19,48 +19,48 @@ namespace cayspin::detail {
 
 /// One pass over a colour, over parts of a step's length: one flow of every spin, or one after the
 /// other of two steps that meet there. `middle`: of each flow, in steps from the step's begin.
-struct RedBlackSweep {
+struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
   double length[2] = {0, 0}, middle[2] = {0, 0};
 };
 
 /// Half of colour 0, colour 1, half of colour 0; for order 4 five times, over a, a, 1 - 4 a, a, a
-/// of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Halves that meet share a sweep and stay two
+/// of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Halves that meet share a pass and stay two
 /// flows where the field changes with the spin itself: then a flow is of order 2, and its errors
 /// cancel within a step of its own.
 template <int Order>
-constexpr auto red_black_sweeps() {
+constexpr auto colour_passes() {
   constexpr int steps = Order == 2 ? 1 : 5;
   constexpr double a = 0.41449077179437573714;
-  std::array<RedBlackSweep, 2 * steps + 1> sweeps{};
+  std::array<ColourPass, 2 * steps + 1> passes{};
   double begin = 0;
   for (int k = 0; k < steps; ++k) {
     double const length = Order == 2 ? 1 : k == 2 ? 1 - 4 * a : a;
-    RedBlackSweep& first = sweeps[2 * k];
+    ColourPass& first = passes[2 * k];
     int const flow = k == 0 ? 0 : 1;
     first.flows = flow + 1;
     first.length[flow] = length / 2;
     first.middle[flow] = begin + length / 4;
-    sweeps[2 * k + 1] = {1, 1, true, {length, 0}, {begin + length / 2, 0}};
-    sweeps[2 * k + 2].length[0] = length / 2;
-    sweeps[2 * k + 2].middle[0] = begin + 3 * length / 4;
+    passes[2 * k + 1] = {1, 1, true, {length, 0}, {begin + length / 2, 0}};
+    passes[2 * k + 2].length[0] = length / 2;
+    passes[2 * k + 2].middle[0] = begin + 3 * length / 4;
     begin += length;
   }
-  return sweeps;
+  return passes;
 }
 
-/// Calls visit(sweep) for the sweeps of `count` steps. Where two steps meet, the last flow of one
-/// and the first of the next share a sweep, to the same bits.
+/// Calls visit(pass) for the passes of `count` steps. Where two steps meet, the last flow of one
+/// and the first of the next share a pass, to the same bits.
 template <int Order, class Visit>
-void for_each_sweep(std::int64_t count, Visit const& visit) {
-  constexpr auto sweeps = red_black_sweeps<Order>();
-  constexpr RedBlackSweep meeting{
-      0, 2, false, {sweeps.back().length[0], sweeps.front().length[0]}, {}};
-  visit(sweeps.front());
+void for_each_colour_pass(std::int64_t count, Visit const& visit) {
+  constexpr auto passes = colour_passes<Order>();
+  constexpr ColourPass meeting{
+      0, 2, false, {passes.back().length[0], passes.front().length[0]}, {}};
+  visit(passes.front());
   for (std::int64_t step = 0; step < count; ++step) {
-    for (std::size_t k = 1; k + 1 < sweeps.size(); ++k) visit(sweeps[k]);
-    visit(step + 1 < count ? meeting : sweeps.back());
+    for (std::size_t k = 1; k + 1 < passes.size(); ++k) visit(passes[k]);
+    visit(step + 1 < count ? meeting : passes.back());
   }
 }
 
@@ -85,11 +85,11 @@ struct RedBlackStage {
   std::int32_t flows, colour;
   bool joined;  // flows in one field are one flow
 
-  void take(RedBlackSweep const& sweep, double step) {
-    for (int flow = 0; flow < 2; ++flow) dt[flow] = static_cast<Real>(sweep.length[flow] * step);
-    flows = sweep.flows;
-    colour = sweep.colour;
-    joined = sweep.of_one_step && !changes;
+  void set(ColourPass const& pass, double step) {
+    for (int flow = 0; flow < 2; ++flow) dt[flow] = static_cast<Real>(pass.length[flow] * step);
+    flows = pass.flows;
+    colour = pass.colour;
+    joined = pass.of_one_step && !changes;
   }
 
   static constexpr bool takes_pairs = true;
@@ -225,8 +225,8 @@ struct RedBlackSteps {
   void operator()(std::int64_t) const {
     auto local = loop;
     std::int64_t const tasks = loop.blocks.count();
-    for_each_sweep<Order>(count, [&](RedBlackSweep const& sweep) {
-      local.functor.take(sweep, dt);
+    for_each_colour_pass<Order>(count, [&](ColourPass const& pass) {
+      local.functor.set(pass, dt);
       for (std::int64_t task = 0; task < tasks; ++task) local(task);
     });
   }

@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/local_part.hpp>
-#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/isotropy/policies.hpp>
 #include <cayspin/stepper/series4_stage.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
@@ -29,19 +29,19 @@ class Series4 : public detail::StepperBase<Spins> {
   static constexpr int work_fields = 7;  // 1 for rigid bodies: the others are made when first used
 
   explicit Series4(Spins const& like, Isotropy = {})
-      : Series4::StepperBase("Series4"), next_("Series4::next", like.lattice()) {}
+      : Series4::StepperBase("Series4", like.lattice()), next_("Series4::next", like.lattice()) {}
 
   std::size_t work_bytes() const {
     return next_.bytes() * (derivatives_[0].sites() == 0 ? 1 : work_fields);
   }
 
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
-  /// take arrays of `spins` anew after a step.
+  /// take arrays of `spins` again after a step.
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
-    auto const region = this->begin_step(exec, spins, next_);
+    auto const region = this->begin_step(exec, spins);
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
     if constexpr (detail::is_local<std::remove_const_t<decltype(prepared)>>) {
       using Kernel =

@@ -5,7 +5,7 @@
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/isotropy/energy.hpp>
-#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/isotropy/policies.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 

@@ -12,7 +12,7 @@
 
 namespace cayspin::detail {
 
-/// What every stepper begins a step with: static checks, the profiling region, run-time checks.
+/// Every stepper begins a call with this: static checks, the profiling region, run-time checks.
 template <class Spins>
 class StepperBase {
  public:
@@ -20,24 +20,22 @@ class StepperBase {
   using Real = typename Spins::value_type;
 
  protected:
-  explicit StepperBase(std::string const& name) : region_("cayspin::" + name) {}
+  StepperBase(std::string const& name, Lattice const& lattice)
+      : lattice_(lattice), region_("cayspin::" + name) {}
 
   std::string label(char const* stage) const { return region_ + stage; }
 
-  /// The region lasts as long as what is returned. `like`: a field of the stepper's lattice.
-  template <class Exec>
-  [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const& exec, Spins const& spins,
-                                                           Spins const& like) const {
-    return begin_step(exec, spins, like.lattice());
-  }
+  /// The region lasts as long as what is returned. `call`: the member that begins.
   template <class Exec>
   [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
-                                                           Lattice const& lattice) const {
+                                                      char const* call = "::step") const {
     check_access<Exec, typename Spins::memory_space>();
-    if (!(spins.lattice() == lattice))
-      throw std::invalid_argument(region_ + "::step: the spins are not of the stepper's lattice");
+    if (!(spins.lattice() == lattice_))
+      throw std::invalid_argument(region_ + call + ": the spins are not of the stepper's lattice");
     return Kokkos::Profiling::ScopedRegion(region_);
   }
+
+  Lattice lattice_;
 
  private:
   std::string region_;

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/isotropy/zero.hpp>
+#include <cayspin/isotropy/policies.hpp>
+#include <cayspin/rotation/cayley.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 #include <cayspin/stepper/two_point_stage.hpp>
@@ -11,8 +12,8 @@
 
 namespace cayspin {
 
-/// A step that keeps A between its two evaluations, or from one step to the next: Method says what
-/// it does with them (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
+/// A step that keeps A between its two evaluations, or from one step to the next. Method says what
+/// it does with both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -25,7 +26,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
 
   explicit TwoPoint(std::string const& name, Spins const& like, Method method,
                     Isotropy isotropy = {})
-      : Base(name),
+      : Base(name, like.lattice()),
         method_(method),
         isotropy_(isotropy),
         next_(name + "::next", like.lattice()),
@@ -36,11 +37,11 @@ class TwoPoint : public detail::StepperBase<Spins> {
 
   /// Advances `spins` from t to t + dt under `generator`. A method that remembers the step before
   /// takes `spins` for where that step ended; it exchanges the memory of `spins` with its own, so
-  /// take arrays of `spins` anew after a step.
+  /// take arrays of `spins` again after a step.
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    auto const region = this->begin_step(exec, spins, next_);
+    auto const region = this->begin_step(exec, spins);
     if constexpr (Method::remembers) {
       if (last_dt_ != 0) {
         stage(exec, generator, step_label_, method_.next(dt / last_dt_), spins, spins, next_, t,
@@ -55,14 +56,14 @@ class TwoPoint : public detail::StepperBase<Spins> {
     stage(exec, generator, correct_label_, method_.correct(), spins, next_, spins, t + dt, dt);
   }
 
-  /// Forgets the step before: the next one starts anew. cayspin::integrate does it for each run.
+  /// Forgets the step before; the next one is a first step. cayspin::integrate does it for each run.
   void reset() { last_dt_ = 0; }
 
   /// Takes `spins` as the state at t, one step of dt before the next one.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                 double dt) requires(Method::remembers) {
-    auto const region = this->begin_step(exec, spins, next_);
+    auto const region = this->begin_step(exec, spins);
     stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
     last_dt_ = dt;
   }
@@ -120,4 +121,16 @@ struct AdamsBashforthMethod {
 };
 
 }  // namespace detail
+
+/// The two-step method of Adams and Bashforth, order 2 with one evaluation:
+/// m <- cay(dt (3 xi_n - xi_(n-1)) / 2) m, xi = A + sigma m. When the step changes,
+/// dt (xi_n + (dt / dt before) (xi_n - xi_(n-1)) / 2). The first step is one of LieHeun.
+template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
+class LieAdamsBashforth2
+    : public TwoPoint<Spins, detail::AdamsBashforthMethod, Isotropy, Rotation> {
+ public:
+  explicit LieAdamsBashforth2(Spins const& like, Isotropy isotropy = {}, Rotation = {})
+      : LieAdamsBashforth2::TwoPoint("LieAdamsBashforth2", like, {}, isotropy) {}
+};
+
 }  // namespace cayspin

@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/isotropy/analytic.hpp>
-#include <cayspin/isotropy/finite_difference.hpp>
-#include <cayspin/isotropy/zero.hpp>
-#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/isotropy/policies.hpp>
+#include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/rate.hpp>
-#include <cayspin/stepper/runge_kutta.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
-#include <cayspin/stepper/tableau.hpp>
 #include <cayspin/stepper/two_point.hpp>
-#include <cayspin/stage/update.hpp>
 
+// Geometric Euler with a sigma that makes its energy error one order smaller.
 namespace cayspin {
-
-/// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
-/// Lewis and Nigam 2002, Sec. 4.2.
-template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
-class LieEuler : public RungeKutta<Spins, tableau::Euler, update::Lie<Rotation>, Isotropy> {
- public:
-  explicit LieEuler(Spins const& like, Isotropy isotropy = {}, Rotation = {})
-      : LieEuler::RungeKutta("LieEuler", like, isotropy) {}
-};
 
 /// With sigma from a forward difference; energy error of order 2, two evaluations.
 template <class Spins, class Rotation>
@@ -55,7 +42,7 @@ requires(std::same_as<Isotropy, isotropy::Analytic> ||
   static constexpr int work_fields = 2;  // 4 numbers per site: rates, and one number
 
   explicit LieEuler(Spins const& like, Isotropy isotropy = {}, Rotation = {})
-      : LieEuler::StepperBase("LieEuler"),
+      : LieEuler::StepperBase("LieEuler", like.lattice()),
         isotropy_(isotropy),
         rates_("LieEuler", like.lattice()) {}
 
@@ -66,7 +53,7 @@ requires(std::same_as<Isotropy, isotropy::Analytic> ||
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
-    auto const region = this->begin_step(exec, spins, rates_.field());
+    auto const region = this->begin_step(exec, spins);
     rates_.compute(exec, rates_label_, generator, spins, t);
     auto prepared = detail::bare(detail::prepare_rate(generator, exec, rates_.field(), t, dt));
     using Kernel = detail::CorrectedEulerStage<Isotropy, Rotation, decltype(prepared), Real>;

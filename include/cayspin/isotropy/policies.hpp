@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/vec3.hpp>
+
+#include <limits>
+
+// An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. Every sigma moves m
+// alike in the exact flow; methods of finite order differ.
+namespace cayspin::isotropy {
+
+/// sigma = 0: the generator as it is.
+struct Zero {
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const&,
+                                                     Vec3<Value> const& a) const {
+    return a;
+  }
+};
+
+/// The same sigma for every spin, stage and step.
+struct Constant {
+  double sigma = 0;
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& m,
+                                                     Vec3<Value> const& a) const {
+    return multiply_add(Value(static_cast<detail::scalar_t<Value>>(sigma)), m, a);
+  }
+};
+
+/// sigma from A' along the flow: xi = A_o + sigma m with sigma = (m.A) - <A', X> / |X|^2,
+/// X = A x m. The derivative of the field is its linear part at X. For LieEuler, and with the
+/// opposite sign for ImplicitLieEuler. Lewis and Nigam 2002, Sec. 4.1 and 4.2, with the sign and
+/// the norm corrected. Zero where X is.
+struct Analytic {};
+
+/// The same number as the geodesic curvature of the orbit times its speed,
+/// sigma = k_g |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form.
+/// Lewis and Nigam 2002, Sec. 3.2.
+struct Connection {};
+
+/// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with
+/// sigma = -<w', w x m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. For
+/// LieEuler, whose energy error it makes one order smaller. Lewis and Nigam 2002, Sec. 4.1, with
+/// the sign and the norm corrected. Zero where A_o is.
+struct FiniteDifference {
+  double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
+};
+
+/// The same with w' = (w_n - w_(n-1)) / dt: one evaluation a step, and a field that keeps w. The
+/// first step takes the forward difference.
+struct FiniteDifferenceBackward {
+  double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
+};
+
+}  // namespace cayspin::isotropy

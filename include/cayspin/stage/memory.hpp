@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stage/arrays.hpp>
+#include <cayspin/stage/sweep.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace cayspin::detail {
+
+/// The work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what
+/// one step leaves for the next.
+template <class Spins, class Tableau, class Update>
+class StageMemory {
+ public:
+  using Real = typename Spins::value_type;
+  static constexpr int stages = Tableau::stages;
+
+  void allocate_fields(std::string const& name, Lattice const& lattice) {
+    *this = {};
+    for (int i = 0; i < level_count; ++i)
+      levels_[i] = Spins(name + "::level_" + std::to_string(i + 1), lattice);
+    if constexpr (keeps_sum<Tableau, Update>) {
+      sum_ = Spins(name + "::sum", lattice);
+      Spins const last_increment(name + "::increment", lattice);
+      for (int i = 0; i + 1 < stages; ++i) increments_[i] = last_increment;
+    } else {
+      for (int i = 0; i + 1 < stages; ++i)
+        if (detail::stores_increment<Tableau, Update>(i))
+          increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), lattice);
+    }
+    allocate_carried(name, lattice);
+    if constexpr (on_host) streaming_ = levels_[0].bytes() + bytes() > last_level_cache_bytes();
+  }
+
+  void allocate_buffers(std::string const& name, Lattice const& lattice, SweepPlan const& plan) {
+    *this = {};
+    levels_[0] = Spins(name + "::next", lattice);
+    buffers_ = Buffers(
+        Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::buffers"),
+        plan.size());
+    advise_huge_pages(buffers_.data(), buffers_.size() * sizeof(Real));
+    for_each_task(DefaultExec(), "cayspin::" + name + "::fill_buffers", plan.parts(),
+                  lattice.sites(), FillSweepBuffers<Real>{buffers_.data(), plan});
+    allocate_carried(name, lattice);
+    // A sweep comes back to what it has written a whole step later. By then not much of a shared
+    // cache is left.
+    streaming_ =
+        levels_[0].bytes() + bytes() > std::min(last_level_cache_bytes(), usual_cache_bytes);
+  }
+
+  std::size_t bytes() const {
+    std::size_t sum = sum_.bytes() + buffers_.size() * sizeof(Real);
+    for (auto const& field : carried_) sum += field.bytes();
+    for (auto const& level : levels_) sum += level.bytes();
+    constexpr int distinct = keeps_sum<Tableau, Update> ? 1 : stages;
+    for (int i = 0; i < distinct; ++i) sum += increments_[i].bytes();
+    return sum;
+  }
+
+  /// Fills what the step before left with zeros.
+  void forget(std::string const& label) {
+    DefaultExec const exec;
+    for (auto const& field : carried_) Kokkos::deep_copy(exec, field.allocation(), Real(0));
+    exec.fence(label);
+  }
+
+  /// Spins that a step ends in, where it does not end in place.
+  Spins& end() { return levels_[0]; }
+
+  /// The spins that stage `Stage` looks at.
+  template <int Stage>
+  Spins const& level(Spins const& spins) const {
+    return Stage == 0 ? spins : levels_[(Stage + level_count - 1) % level_count];
+  }
+
+  /// The fields of one stage of a step from `spins`.
+  template <class Flow>
+  StageArrays<WholeFields<Real>, stages> arrays(Spins const& spins) const {
+    StageArrays<WholeFields<Real>, stages> arrays;
+    find_arrays<Flow>(FieldsOfStep{*this, spins}, arrays);
+    return arrays;
+  }
+
+  template <class Loop>
+  void set(Loop& loop) const {
+    loop.next = levels_[0].output(streaming_);
+    for (std::size_t i = 0; i < carried_.size(); ++i) loop.carried[i] = carried_[i].array();
+    loop.memory = buffers_.data();
+  }
+
+ private:
+  static constexpr int level_count = level_fields<Tableau, Update>();
+  using DefaultExec = typename Spins::memory_space::execution_space;
+  using Buffers = Kokkos::View<Real*, typename Spins::memory_space>;
+  using Carried = SiteField<Real, 3, typename Spins::memory_space>;
+  static constexpr bool on_host = is_host_execution<DefaultExec>;
+
+  /// Where the arrays of a stage lie. Stores go around the caches where the fields exceed those.
+  struct FieldsOfStep {
+    StageMemory const& memory;
+    Spins const& first;
+
+    auto start() const { return first.array(); }
+    template <int Stage>
+    auto level() const {
+      return memory.level<Stage>(first).array();
+    }
+    template <int Stage>
+    auto spins() const {
+      return memory.levels_[Stage - 1].array();
+    }
+    template <int Stage>
+    auto increment() const {
+      return memory.increments_[Stage].array();
+    }
+    template <int Stage>
+    auto new_increment() const {
+      bool const read_again = keeps_sum<Tableau, Update> && Stage > 0;
+      return memory.increments_[Stage].output(memory.streaming_ && !read_again);
+    }
+    template <int>
+    auto sum_before() const {
+      return memory.sum_.array();
+    }
+    template <int>
+    auto sum() const {
+      return memory.sum_.output(memory.streaming_);
+    }
+    template <int Stage>
+    auto next() const {
+      constexpr bool in_place = Stage + 1 == stages && stages > 1;
+      Spins const& field = in_place ? first : memory.levels_[Stage % level_count];
+      return field.output(memory.streaming_ && !in_place);
+    }
+    auto carried_before(int i) const { return memory.carried_[i].array(); }
+    auto carried(int i) const { return memory.carried_[i].output(false); }
+  };
+
+  void allocate_carried(std::string const& name, Lattice const& lattice) {
+    if constexpr (carried_fields<Update>() > 0)
+      for (std::size_t i = 0; i < carried_.size(); ++i)
+        carried_[i] = Carried(name + "::" + Update::carried[i], lattice);
+  }
+
+  std::array<Spins, level_count> levels_;  // the first one only, in a sweep
+  std::array<Spins, stages> increments_;   // one field in all places where keeps_sum
+  Spins sum_;
+  std::array<Carried, carried_fields<Update>()> carried_;
+  Buffers buffers_;
+  bool streaming_ = false;
+};
+
+}  // namespace cayspin::detail
