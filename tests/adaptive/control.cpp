@@ -135,7 +135,12 @@ TEST(AdaptiveFailure, FieldsTooStrongForTimeAreRefused) {
     auto const start = copy_to_host(spins);
     LandauLifshitz const generator(EffectiveField(Zeeman{{field, 0, 1}}), 0.1);
     Tsit5 stepper(spins, {.tolerance = 1e-6});
-    EXPECT_THROW(stepper.step(Space(), generator, spins, 1, 1), StepTooSmall) << field;
+    try {
+      stepper.step(Space(), generator, spins, 1, 1);
+      ADD_FAILURE() << field;
+    } catch (StepTooSmall const& error) {
+      EXPECT_NE(std::string(error.what()).find("below 1e-"), std::string::npos) << error.what();
+    }
     EXPECT_EQ(copy_to_host(spins), start);
   }
 }

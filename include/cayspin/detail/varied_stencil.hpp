@@ -47,8 +47,7 @@ class NeighborsOfSite {
   vector_type found_[3][2];
 };
 
-/// The stencil of a site with another spin at its centre than the one in memory. Past an open end
-/// that spin stands for the neighbour, as ever.
+/// The stencil of a site with another spin at its centre than the one in memory.
 template <class Neighbors>
 class VariedStencil {
  public:
@@ -66,6 +65,14 @@ class VariedStencil {
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
     return neighbors_.template get<Axis, 1>(center_);
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type previous(vector_type const& missing) const {
+    return neighbors_.template get<Axis, 0>(missing);
+  }
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type next(vector_type const& missing) const {
+    return neighbors_.template get<Axis, 1>(missing);
   }
   KOKKOS_FORCEINLINE_FUNCTION auto const& site() const { return neighbors_.site(); }
 
