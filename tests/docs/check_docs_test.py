@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Each check of check_docs.py passes a good page and fails a broken one."""
+import os
+import tempfile
+import unittest
+
+import check_docs
+
+GOOD = """# A page
+
+One claim a sentence, with a [link](other.md#second-part) and `docs/guide/other.md`.
+
+```sh
+bash cmake/bootstrap.sh build --preset serial
+```
+
+| a table may be as wide as it likes | """ + "wide " * 30 + """|
+|---|---|
+"""
+FILES = {
+    "README.md": "# Name\n\n![a picture](docs/picture.png)\n",
+    "docs/picture.png": "",
+    "docs/guide/other.md": "# Other\n\n## Second part\n\nText.\n",
+    "cmake/bootstrap.sh": "Usage: bash cmake/bootstrap.sh deps|build [--preset NAME]\n",
+    "CMakePresets.json": '{"configurePresets": [{"name": "serial"}]}',
+}
+
+
+class CheckDocs(unittest.TestCase):
+    def faults(self, page, more=()):
+        """What is found in a project with this page, docs/guide/page.md."""
+        with tempfile.TemporaryDirectory() as root:
+            for path, text in {**FILES, "docs/guide/page.md": page, **dict(more)}.items():
+                full = os.path.join(root, path)
+                os.makedirs(os.path.dirname(full), exist_ok=True)
+                with open(full, "w", encoding="utf-8") as file:
+                    file.write(text)
+            pages = check_docs.check_pages(root, show=lambda _: None)
+            return pages + check_docs.check_sources(root)
+
+    def expect(self, page, sentence, line=None, more=()):
+        found = self.faults(page, more)
+        self.assertEqual([fault for fault in found if sentence not in fault[2]], [])
+        self.assertEqual(len(found), 1, found)
+        if line is not None:
+            self.assertEqual(found[0][1], line)
+
+    def test_a_good_page_has_no_faults(self):
+        self.assertEqual(self.faults(GOOD), [])
+
+    def test_links(self):
+        self.expect(GOOD + "\nA [link](nowhere.md).\n", "link to nowhere.md: not there", 12)
+        self.expect(GOOD + "\nA [link](other.md#third).\n", "has no such heading", 12)
+        self.expect(GOOD + "\nA [link](#no-part).\n", "has no such heading", 12)
+        self.expect(GOOD + "\n![picture](nothing.png)\n", "image to nothing.png", 12)
+
+    def test_lines(self):
+        self.expect(GOOD + "\n" + "word " * 12 + "\n" + "long" * 26 + "\n", "line of 104 columns", 13)
+
+    def test_sentences(self):
+        self.expect(GOOD + "\nWith " + "a\n" * 30 + "word.\n", "sentence of 32 words", 12)
+        few = "\nShort one.\n" * 40  # one long sentence of forty is within the share
+        self.assertEqual(self.faults(GOOD + few + "\nWith " + "a\n" * 30 + "word.\n"), [])
+
+    def test_words(self):
+        for word in ("foretold", "anew", "behind the step", "dear", "numbers end", "be had"):
+            self.expect(GOOD + f"\nThis is {word} again.\n", f'"{word}": write', 12)
+        self.assertEqual(self.faults(GOOD + "\nA scene is refused behind the house.\n"), [])
+
+    def test_named_files(self):
+        self.expect(GOOD + "\nSee `docs/guide/gone.md`.\n", "is not in the repository", 12)
+        self.expect(GOOD + "\nSee `cayspin/gone.hpp`.\n", "is not in the repository", 12)
+        self.assertEqual(self.faults(GOOD + "\nSee `build/release` and `docs/guide/*.md`.\n"), [])
+
+    def test_commands(self):
+        self.expect(GOOD + "\n```sh\nbash cmake/bootstrap.sh fly\n```\n", "no verb fly", 13)
+        self.expect(GOOD + "\nType `bash cmake/bootstrap.sh build --preset moon`.\n",
+                    "no preset moon", 12)
+
+    def test_number_of_words(self):
+        self.expect(GOOD + "\n```\n" + "word " * 18000 + "\n```\n", "words in README and docs")
+
+    def test_sources(self):
+        comment = {"include/a.hpp": "int behind;\n// is read anew\n"}
+        self.expect(GOOD, '"anew"', 2, comment)
+        text = {"src/a.cpp": 'int anew;\nprint("is foretold");\n'}
+        self.expect(GOOD, '"foretold"', 2, text)
+        script = {"python/a.py": "anew = 1\n# drawn anew\n"}
+        self.expect(GOOD, '"anew"', 2, script)
+        code = {"src/b.cpp": "auto const anew = foretold;\n", "cmake/b.cmake": "set(anew 1)\n"}
+        self.assertEqual(self.faults(GOOD, code), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
