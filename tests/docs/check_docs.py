@@ -20,7 +20,7 @@ LINE_LIMIT = 100
 SENTENCE_LIMIT, LONG_SHARE = 30, 0.03
 WORD_LIMIT = 18000  # of README and docs/ together
 SOURCE_FOLDERS = ["include", "src", "bench", "examples", "python", "cmake", "paper", "demo"]
-NAMED_PATH = re.compile(r"(?:\.\./)*[\w.*{},+-]+(?:/[\w.*{},+-]+)+/?|[\w.-]+\.(?:md|cff|json|py|sh)")
+NAMED_PATH = re.compile(r"(?:\.\./)*[\w.*+-]+(?:/[\w.*+-]+)+/?|[\w.-]+\.(?:md|cff|json|py|sh)")
 BOOTSTRAP = re.compile(r"bash cmake/bootstrap\.sh (\S+)(?:.*?--preset (\w+))?")
 
 
