@@ -53,9 +53,9 @@ class Page:
                 if kind in kinds]
 
     def words(self, *kinds):
-        """Runs of two or more letters, in lines of these kinds (all, where none is given)."""
-        lines = [line for _, line in self.of_kind(*kinds)] if kinds else self.lines
-        return sum(len(re.findall(r"[A-Za-z]{2,}", line)) for line in lines)
+        """What stands between blanks and holds a letter, in lines of these kinds."""
+        return sum(1 for _, line in self.of_kind(*kinds)
+                   for word in line.split() if re.search(r"[A-Za-z]", word))
 
     def links(self):
         """(line number, is an image, target) of every link outside of code."""
