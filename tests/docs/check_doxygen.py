@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 UNDOCUMENTED = re.compile(r"is not documented\.$")
-REQUIRED = re.compile(r"Compound cayspin\S*.* is not documented|\(function\) of namespace cayspin")
+REQUIRED = re.compile(r"Compound cayspin[^ <]* is not documented|\(function\) of namespace cayspin")
 
 
 def warnings(doxygen, root, settings):
