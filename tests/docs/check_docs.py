@@ -12,7 +12,7 @@ import os
 import re
 import sys
 
-from page import Page, length
+from page import INLINE_CODE, Page, length
 from retired_words import retired_words
 from source_texts import source_texts
 
@@ -72,7 +72,7 @@ def long_sentences(pages):
 def page_words(pages):
     for page in pages:
         for number, line in page.of_kind("prose", "table", "heading"):
-            for word, instead in retired_words(line):
+            for word, instead in retired_words(INLINE_CODE.sub("", line)):
                 yield page.path, number, f'"{word}": write "{instead}"'
 
 

@@ -66,7 +66,7 @@ class CheckDocs(unittest.TestCase):
     def test_words(self):
         for word in ("foretold", "anew", "behind the step", "dear", "numbers end", "be had"):
             self.expect(GOOD + f"\nThis is {word} again.\n", f'"{word}": write', 12)
-        self.assertEqual(self.faults(GOOD + "\nA scene is refused behind the house.\n"), [])
+        self.assertEqual(self.faults(GOOD + "\nA scene is refused behind the house: `dear`.\n"), [])
 
     def test_named_files(self):
         self.expect(GOOD + "\nSee `docs/guide/gone.md`.\n", "is not in the repository", 12)
