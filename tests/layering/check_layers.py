@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Holds the include graph to the data flow: check_layers.py ROOT, or check_layers.py --self-test."""
+
+import pathlib
+import re
+import sys
+import tempfile
+
+# Lowest room first. A header may include headers of its own room and of the rooms above it in this
+# list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
+LIBRARY = [
+    ("numbers", ["detail/pack.hpp", "detail/unrolled.hpp", "vec3.hpp"]),
+    ("lattice", ["lattice.hpp", "lattice/"]),
+    ("loops over sites", ["detail/"]),
+    ("spins", ["spin_field.hpp", "stencil.hpp"]),
+    ("contracts", ["concepts.hpp"]),
+    ("field terms", ["field/"]),
+    ("generators", ["generator/"]),
+    ("rotations", ["rotation/"]),
+    ("isotropies", ["isotropy/", "isotropy.hpp"]),
+    ("stages", ["stage/"]),
+    ("stability", ["stability.hpp"]),
+    ("steppers", ["stepper/"]),
+    ("time", ["integrate.hpp"]),
+    ("observers", ["observer/"]),
+    ("everything", ["cayspin.hpp"]),
+    ("scenes and files", ["io/"]),
+]
+
+# The same for what is built on the library, relative to the repository.
+PROGRAMS = [
+    ("reader and writer", ["src/io/", "src/hdf5/", "src/scene/", "src/trajectory/"]),
+    ("simulation", ["src/simulation/"]),
+    ("program", ["src/program/"]),
+    ("paper and extremes", ["paper/", "tests/extremes/"]),
+]
+
+# No header in detail/ is named after physics.
+PHYSICS = ("anisotropy damping demag energy exchange field flow generator isotropy newton observer "
+           "rotation sigma spin stability stepper tableau zeeman").split()
+
+# Where "a quoted include" may lie besides its own folder, and what the build writes.
+INCLUDE_FOLDERS = ["src", "src/io", "src/simulation", "paper", "tests"]
+GENERATED = {"cayspin_git_commit.hpp", "cayspin/version.hpp"}
+PUBLIC_FOLDERS = {"cayspin/": "include", "cayspin_paper/": "paper/include"}
+
+SOURCE_FOLDERS = ["include", "src", "paper", "tests", "bench", "examples", "demo"]
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(cayspin[a-z_]*/[^>]+)>|"([^"]+)")', re.MULTILINE)
+
+
+def room_of(rooms, name):
+    """Index and name of the room, or None."""
+    for index, (room, patterns) in enumerate(rooms):
+        if any(name == p or (p.endswith("/") and name.startswith(p)) for p in patterns):
+            return index, room
+    return None
+
+
+class Tree:
+    """The sources below a folder and what each of them includes."""
+
+    def __init__(self, root):
+        self.root = root
+        self.problems = []
+        self.includes = {}
+        files = [path for folder in SOURCE_FOLDERS for path in (root / folder).rglob("*")
+                 if path.suffix in (".hpp", ".cpp")]
+        for path in sorted(files):
+            found = INCLUDE.findall(path.read_text(encoding="utf-8"))
+            self.includes[self.name(path)] = [self.resolve(path, *pair) for pair in found]
+
+    def name(self, path):
+        return path.relative_to(self.root).as_posix()
+
+    def resolve(self, path, public, quoted):
+        """The included file's name, or None for one that the build writes."""
+        if (public or quoted) in GENERATED:
+            return None
+        if public:
+            folder = PUBLIC_FOLDERS.get(public.split("/")[0] + "/", "include")
+            candidates = [self.root / folder / public]
+        else:
+            candidates = [path.parent / quoted]
+            candidates += [self.root / folder / quoted for folder in INCLUDE_FOLDERS]
+        for candidate in candidates:
+            if candidate.is_file():
+                return self.name(candidate.resolve())
+        self.problems.append(f"{self.name(path)}: there is no {public or quoted}")
+        return None
+
+    def check_rooms(self, rooms, prefix=""):
+        """Nothing includes a higher room; every file below `prefix` has a room."""
+        for name, included in self.includes.items():
+            if not name.startswith(prefix):
+                continue
+            here = room_of(rooms, name.removeprefix(prefix))
+            if here is None:
+                if prefix:
+                    self.problems.append(f"{name}: in no room of the table")
+                continue
+            for other in filter(None, included):
+                there = room_of(rooms, other.removeprefix(prefix))
+                if other.startswith(prefix) and there and there[0] > here[0]:
+                    self.problems.append(f"{name} ({here[1]}) includes {other} ({there[1]})")
+
+    def check_library_stands_alone(self):
+        for name, included in self.includes.items():
+            for other in filter(None, included):
+                if name.startswith("include/") and not other.startswith("include/"):
+                    self.problems.append(f"{name} includes {other}, which is not of the library")
+
+    def check_cycles(self):
+        state = {}
+
+        def visit(name, path):
+            state[name] = "open"
+            for other in filter(None, self.includes[name]):
+                if state.get(other) == "open":
+                    cycle = [*path[path.index(other):], other]
+                    self.problems.append("cycle: " + " -> ".join(cycle))
+                elif other in self.includes and other not in state:
+                    visit(other, [*path, other])
+            state[name] = "done"
+
+        for name in self.includes:
+            if name not in state:
+                visit(name, [name])
+
+    def check_names_in_detail(self):
+        for path in sorted((self.root / "include/cayspin/detail").glob("*.hpp")):
+            for word in PHYSICS:
+                if word in path.stem.split("_"):
+                    self.problems.append(f"{self.name(path)}: {word} is physics, not of detail/")
+
+
+def problems_of(root):
+    tree = Tree(root.resolve())
+    if not tree.includes:
+        tree.problems.append(f"{root}: no sources")
+    tree.check_rooms(LIBRARY, "include/cayspin/")
+    tree.check_rooms(PROGRAMS)
+    tree.check_library_stands_alone()
+    tree.check_cycles()
+    tree.check_names_in_detail()
+    return tree.problems
+
+
+# File, its text, and the problem that it brings to a tree without any.
+MISTAKES = [
+    ("include/cayspin/vec3.hpp", "#include <cayspin/field/a.hpp>", "(numbers) includes"),
+    ("include/cayspin/vec3.hpp", "#include <cayspin/no.hpp>", "there is no cayspin/no.hpp"),
+    ("include/cayspin/stepper/a.hpp", "#include <cayspin/stepper/euler.hpp>", "cycle: "),
+    ("include/cayspin/stepper/b.hpp", '#include "../../../src/simulation/s.hpp"', "not of the lib"),
+    ("include/cayspin/other/a.hpp", "", "in no room"),
+    ("include/cayspin/detail/damping_loop.hpp", "", "damping is physics"),
+    ("src/io/a.cpp", '#include "simulation/s.hpp"', "(reader and writer) includes"),
+    ("src/io/a.cpp", '#include "../program/p.hpp"', "(reader and writer) includes"),
+    ("src/program/p.cpp", '#include "../../paper/table.hpp"', "(program) includes"),
+    ("src/simulation/s.cpp", '#include "extremes/e.hpp"', "(simulation) includes"),
+    ("examples/a.cpp", "#include <cayspin/old.hpp>", "there is no cayspin/old.hpp"),
+]
+SOUND = {
+    "include/cayspin/field/a.hpp": "#include <cayspin/concepts.hpp>",
+    "include/cayspin/concepts.hpp": "",
+    "include/cayspin/vec3.hpp": "#include <cayspin/detail/pack.hpp>\n#include <cmath>",
+    "include/cayspin/detail/pack.hpp": "// #include <cayspin/cayspin.hpp>",
+    "include/cayspin/stepper/euler.hpp": "#include <cayspin/stepper/a.hpp>\n",
+    "include/cayspin/stepper/a.hpp": "#include <cayspin/vec3.hpp>\n#include <cayspin/version.hpp>",
+    "src/simulation/s.hpp": "#include <cayspin/stepper/euler.hpp>",
+    "src/program/p.hpp": '#include "simulation/s.hpp"\n#include "cayspin_git_commit.hpp"',
+    "paper/table.hpp": '#include "simulation/s.hpp"',
+    "tests/extremes/e.hpp": '#include "simulation/s.hpp"',
+}
+
+
+def problems_with(files):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            path = pathlib.Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        return problems_of(pathlib.Path(folder))
+
+
+def self_test():
+    failures = [f"sound tree: {problem}" for problem in problems_with(SOUND)]
+    for name, text, expected in MISTAKES:
+        found = problems_with({**SOUND, name: text})
+        if len(found) != 1 or expected not in found[0]:
+            failures.append(f"{name} with {text!r}: expected one '{expected}', found {found}")
+    print("\n".join(failures) or f"{len(MISTAKES)} mistakes found, none in a sound tree")
+    return not failures
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        sys.exit(0 if self_test() else 1)
+    if len(sys.argv) != 2:
+        sys.exit("usage: check_layers.py ROOT | --self-test")
+    problems = problems_of(pathlib.Path(sys.argv[1]))
+    print("\n".join(problems) or "every include is of its own room or of a lower one")
+    sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()
