@@ -34,4 +34,5 @@ configure_package_config_file(cmake/cayspinConfig.cmake.in cayspinConfig.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(cayspinConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
-              ${PROJECT_BINARY_DIR}/cayspinConfigVersion.cmake DESTINATION ${package_dir})
+              ${PROJECT_BINARY_DIR}/cayspinConfigVersion.cmake cmake/cayspinOptimisation.cmake
+        DESTINATION ${package_dir})

@@ -6,12 +6,13 @@ set -euo pipefail
 usage() {
   cat <<'TXT'
 Usage: bash cmake/bootstrap.sh deps|build|compile|test|demo|bench [--preset NAME]
-  deps     install what is missing: Debian packages, and Kokkos into .deps/
-  build    deps, then the program into build/NAME/bin
+  deps     install everything that any of the others needs, and print the option for CMake
+  build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
-  test     build everything and run the tests
+  test     build everything but the benchmarks and run the tests
   demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
+Each verb first installs the Debian packages that it needs and builds Kokkos into .deps/.
 NAME is a preset of CMakePresets.json; the default is release.
 TXT
 }
@@ -37,13 +38,22 @@ logged() {
 . "$root/cmake/bootstrap_packages.sh"
 . "$root/cmake/bootstrap_kokkos.sh"
 
+# The parts that the verb needs are switched on. The others are off in a new build folder, and stay
+# as they are in an old one.
+choose_parts() {
+  local part
+  for part in APP PROGRAM TESTS EXAMPLES BENCH; do
+    case " ${parts[*]} " in
+      *" $part "*) options+=("-DCAYSPIN_BUILD_$part=ON") ;;
+      *) [ -f "$build_dir/CMakeCache.txt" ] || options+=("-DCAYSPIN_BUILD_$part=OFF") ;;
+    esac
+  done
+}
+
 configure() {
   local options=()
-  if [ "$preset" = release ]; then
-    [ -z "$kokkos_prefix" ] || options+=("-DKokkos_ROOT=$kokkos_prefix")
-  else
-    options+=("-DCAYSPIN_KOKKOS_SOURCE=$kokkos_source")
-  fi
+  choose_parts
+  options+=("${kokkos_option[@]}")
   if [ "$preset" = cuda ]; then
     provide_nvcc
     options+=("-DCMAKE_CXX_COMPILER=$kokkos_source/bin/nvcc_wrapper")
@@ -60,9 +70,17 @@ build() {
   logged build cmake --build --preset "$preset" --target "$@"
 }
 
-# The scripts that draw read PYTHON: an interpreter put in front of Debian's may lack its packages.
-choose_python() {
+# python3-matplotlib takes half a minute to install, in which the other processors compile.
+start_installing_drawing() {
+  install_packages drawing "${drawing[@]}" &
+  installing_drawing=$!
+  trap wait EXIT
+}
+
+# The scripts that draw read PYTHON: an interpreter before Debian's on PATH may lack its packages.
+finish_installing_drawing() {
   local candidate
+  wait "$installing_drawing" || exit 1
   for candidate in python3 /usr/bin/python3; do
     if "$candidate" -c 'import h5py, matplotlib' 2>/dev/null; then
       export PYTHON=$candidate
@@ -70,6 +88,15 @@ choose_python() {
     fi
   done
   fail "no python3 with h5py and matplotlib"
+}
+
+print_cmake_option() {
+  say "everything is installed"
+  if [ ${#kokkos_option[@]} -gt 0 ]; then
+    say "your own build: cmake -B build ${kokkos_option[*]}"
+  else
+    say "your own build: cmake -B build (CMake finds Kokkos by itself)"
+  fi
 }
 
 [ $# -ge 1 ] || { usage >&2; exit 2; }
@@ -82,26 +109,33 @@ while [ $# -gt 0 ]; do
     *) usage >&2; exit 2 ;;
   esac
 done
+build_dir=$root/build/$preset
+
 case $verb in
-  deps | build | compile | test | demo | bench) ;;
+  deps) packages=("${everything[@]}") parts=() ;;
+  demo) packages=("${core[@]}" "${io[@]}") parts=(APP) ;;
+  build) packages=("${core[@]}" "${io[@]}" "${program[@]}") parts=(APP PROGRAM) ;;
+  test) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES) ;;
+  compile) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH) ;;
+  bench) packages=("${core[@]}" "${bench[@]}") parts=(BENCH) ;;
   -h | --help) usage; exit 0 ;;
   *) usage >&2; exit 2 ;;
 esac
-build_dir=$root/build/$preset
 
-install_packages
+install_packages install "${packages[@]}"
+[ "$verb" = build ] || start_installing_drawing
 provide_kokkos
 case $verb in
-  deps) say "everything needed is there" ;;
+  deps) finish_installing_drawing; print_cmake_option ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
-  compile) build all; say "compiled for the preset $preset: $build_dir" ;;
-  test) build all; ctest --preset "$preset" -j "$(nproc)" ;;
+  compile) finish_installing_drawing; build all; say "compiled for the preset $preset: $build_dir" ;;
+  test) finish_installing_drawing; build all; ctest --preset "$preset" -j "$(nproc)" ;;
   demo)
-    choose_python
     build cayspin_demo
+    finish_installing_drawing
     bash demo/run.sh "$build_dir"
     say "the program, which runs scenes: bash cmake/bootstrap.sh build, then"
     say "  build/$preset/bin/cayspin run scenes/slab_switching.toml; your own code: examples/"
     ;;
-  bench) choose_python; build bench; bash bench/run.sh "$build_dir" ;;
+  bench) finish_installing_drawing; build bench; bash bench/run.sh "$build_dir" ;;
 esac

@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# shellcheck shell=bash disable=SC2154
-# Sourced by bootstrap.sh. install_packages: the Debian packages that are missing.
+# shellcheck shell=bash disable=SC2034,SC2154
+# Sourced by bootstrap.sh. The Debian packages by what needs them, and install_packages.
 
-packages=(
-  g++ cmake ninja-build git ca-certificates pkg-config python3 python3-pip
-  libeigen3-dev libhdf5-dev libtomlplusplus-dev libcli11-dev libfmt-dev libmuparser-dev
-  libgtest-dev libbenchmark-dev nlohmann-json3-dev python3-h5py python3-matplotlib valgrind
-)
+core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
+io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
+program=(libcli11-dev nlohmann-json3-dev)
+drawing=(python3-h5py python3-matplotlib)
+tests=(libgtest-dev nlohmann-json3-dev valgrind clang)
+bench=(libbenchmark-dev)
+everything=("${core[@]}" "${io[@]}" "${program[@]}" "${tests[@]}" "${bench[@]}") # but drawing
 
 is_installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
+# install_packages LOG PACKAGE...: those that are missing.
 install_packages() {
-  local missing=() package become_root=()
+  local log=$1 missing=() package become_root=()
+  shift
   if ! command -v dpkg-query >/dev/null; then
-    say "not a Debian system: taking for granted what these packages hold: ${packages[*]}"
+    say "not a Debian system: taking for granted what these packages hold: $*"
     return
   fi
-  for package in "${packages[@]}"; do
+  for package in "$@"; do
     is_installed "$package" || missing+=("$package")
   done
   [ ${#missing[@]} -gt 0 ] || return 0
@@ -29,7 +33,10 @@ install_packages() {
     become_root=(sudo)
   fi
   say "install ${missing[*]}"
-  logged apt-update "${become_root[@]}" apt-get update
-  logged apt-install "${become_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+  if [ -z "${packages_are_listed:-}" ]; then
+    logged apt-update "${become_root[@]}" apt-get update
+    packages_are_listed=yes
+  fi
+  logged "apt-$log" "${become_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y --no-install-recommends "${missing[@]}"
 }

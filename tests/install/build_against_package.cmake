@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Installs into a clean prefix, builds the examples and a user of component io against it, runs both.
+# Installs into a clean prefix, builds the examples and a user of component io against it, runs both,
+# and configures the first again without a build type.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${CAYSPIN_BUILD} --prefix ${WORK}/prefix)
@@ -8,3 +9,5 @@ foreach(source IN LISTS SOURCES)
   configure_and_build(${source} ${WORK}/${name} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
   run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK}/${name} --output-on-failure --no-tests=error)
 endforeach()
+list(GET SOURCES 0 source)
+warns_without_optimisation(${source} ${WORK}/no_build_type -DCMAKE_PREFIX_PATH=${WORK}/prefix)

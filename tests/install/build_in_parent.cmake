@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# A parent project brings its own Kokkos::kokkos and adds cayspin as a folder.
+# A parent project brings its own Kokkos::kokkos and adds cayspin as a folder; without a build type
+# it is warned.
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
-configure_and_build(${PARENT} ${WORK} -DKokkos_DIR=${Kokkos_DIR} -DCAYSPIN_SOURCE=${CAYSPIN_SOURCE})
+set(options -DKokkos_DIR=${Kokkos_DIR} -DCAYSPIN_SOURCE=${CAYSPIN_SOURCE})
+configure_and_build(${PARENT} ${WORK} ${options})
 run(${WORK}/parent)
+warns_without_optimisation(${PARENT} ${WORK}/no_build_type ${options})
