@@ -126,10 +126,10 @@ install_packages install "${packages[@]}"
 [ "$verb" = build ] || start_installing_drawing
 provide_kokkos
 case $verb in
-  deps) finish_installing_drawing; print_cmake_option ;;
+  deps) provide_style_tools; finish_installing_drawing; print_cmake_option ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
   compile) finish_installing_drawing; build all; say "compiled for the preset $preset: $build_dir" ;;
-  test) finish_installing_drawing; build all; ctest --preset "$preset" -j "$(nproc)" ;;
+  test) provide_style_tools; finish_installing_drawing; build all; ctest --preset "$preset" -j "$(nproc)" ;;
   demo)
     build cayspin_demo
     finish_installing_drawing

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2034,SC2154
-# Sourced by bootstrap.sh. The Debian packages by what needs them, and install_packages.
+# Sourced by bootstrap.sh. The Debian packages by what needs them, install_packages for them, and
+# provide_style_tools for what the test `style` runs.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
@@ -39,4 +40,19 @@ install_packages() {
   fi
   logged "apt-$log" "${become_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y --no-install-recommends "${missing[@]}"
+}
+
+# The versions that tests/style/requirements.txt pins, from the Python package index.
+provide_style_tools() {
+  local tools=$deps/style pins=$root/tests/style/requirements.txt
+  ! cmp -s "$pins" "$tools/installed" || return 0
+  say "fetch clang-format, cmake-format and typos"
+  rm -rf "$tools"
+  mkdir -p "$logs"
+  if python3 -m pip install --no-compile --target "$tools" -r "$pins" >"$logs/style.log" 2>&1; then
+    cp "$pins" "$tools/installed"
+  else
+    rm -rf "$tools"
+    say "the Python package index is out of reach: there is no test style ($logs/style.log)"
+  fi
 }
