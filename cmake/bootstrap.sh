@@ -129,7 +129,12 @@ case $verb in
   deps) provide_style_tools; finish_installing_drawing; print_cmake_option ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
   compile) finish_installing_drawing; build all; say "compiled for the preset $preset: $build_dir" ;;
-  test) provide_style_tools; finish_installing_drawing; build all; ctest --preset "$preset" -j "$(nproc)" ;;
+  test)
+    provide_style_tools
+    finish_installing_drawing
+    build all
+    ctest --preset "$preset" -j "$(nproc)"
+    ;;
   demo)
     build cayspin_demo
     finish_installing_drawing
