@@ -128,7 +128,11 @@ provide_kokkos
 case $verb in
   deps) provide_style_tools; finish_installing_drawing; print_cmake_option ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
-  compile) finish_installing_drawing; build all; say "compiled for the preset $preset: $build_dir" ;;
+  compile)
+    finish_installing_drawing
+    build all
+    say "compiled for the preset $preset: $build_dir"
+    ;;
   test)
     provide_style_tools
     finish_installing_drawing
