@@ -35,12 +35,10 @@ endfunction()
 
 macro(cayspin_register_test entry program threads)
   add_test(NAME ${entry} COMMAND ${program})
-  set_tests_properties(
-    ${entry}
-    PROPERTIES ENVIRONMENT
-               "OMP_NUM_THREADS=${threads};KOKKOS_NUM_THREADS=${threads};OMP_PROC_BIND=false;\
-OMP_WAIT_POLICY=passive" # threads that spin starve tests that run beside them
-               LABELS "${arg_LABELS}"
-               TIMEOUT ${arg_TIMEOUT}
-               PROCESSORS ${threads})
+  # Threads that spin starve tests that run beside them.
+  set(environment OMP_NUM_THREADS=${threads} KOKKOS_NUM_THREADS=${threads} OMP_PROC_BIND=false
+                  OMP_WAIT_POLICY=passive)
+  set_tests_properties(${entry} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} PROCESSORS
+                                           ${threads})
+  set_tests_properties(${entry} PROPERTIES ENVIRONMENT "${environment}")
 endmacro()

@@ -9,9 +9,8 @@ if(CMAKE_SCRIPT_MODE_FILE)
   if(GIT_EXECUTABLE)
     execute_process(
       COMMAND ${GIT_EXECUTABLE} describe --always --dirty --abbrev=40 --exclude=*
-      WORKING_DIRECTORY ${SOURCE_DIR}
-      OUTPUT_VARIABLE commit
-      OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+      WORKING_DIRECTORY ${SOURCE_DIR} OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE
+                                                             ERROR_QUIET)
   endif()
   if(NOT commit)
     set(commit unknown)

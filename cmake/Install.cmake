@@ -9,8 +9,7 @@ else()
   set(headers_left_out PATTERN io EXCLUDE)
 endif()
 install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.hpp" ${headers_left_out})
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp" ${headers_left_out})
 
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

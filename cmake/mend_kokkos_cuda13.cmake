@@ -34,19 +34,21 @@ if(NOT version VERSION_EQUAL 4.7.0)
 endif()
 
 set(instance "${KOKKOS_SOURCE}/core/src/Cuda/Kokkos_Cuda_Instance.hpp")
-replace_once("${instance}"
-"    return cudaGraphAddDependencies(graph, from, to, numDependencies);
+replace_once(
+  "${instance}"
+  "    return cudaGraphAddDependencies(graph, from, to, numDependencies);
 "
-"#if CUDART_VERSION >= 13000
+  "#if CUDART_VERSION >= 13000
     return cudaGraphAddDependencies(graph, from, to, nullptr, numDependencies);
 #else
     return cudaGraphAddDependencies(graph, from, to, numDependencies);
 #endif
 ")
-replace_once("${instance}"
-"    return cudaMemPrefetchAsync(devPtr, count, dstDevice, m_stream);
+replace_once(
+  "${instance}"
+  "    return cudaMemPrefetchAsync(devPtr, count, dstDevice, m_stream);
 "
-"#if CUDART_VERSION >= 13000
+  "#if CUDART_VERSION >= 13000
     cudaMemLocation const location = {cudaMemLocationTypeDevice, dstDevice};
     return cudaMemPrefetchAsync(devPtr, count, location, 0, m_stream);
 #else

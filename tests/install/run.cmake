@@ -16,8 +16,7 @@ endfunction()
 function(configure_warns expected source build)
   execute_process(
     COMMAND ${CMAKE_COMMAND} --fresh -G ${GENERATOR} -S ${source} -B ${build}
-            -DCMAKE_CXX_COMPILER=${COMPILER} ${ARGN}
-    OUTPUT_VARIABLE output
+            -DCMAKE_CXX_COMPILER=${COMPILER} ${ARGN} OUTPUT_VARIABLE output
     ERROR_VARIABLE output COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX REPLACE "[ \n]+" " " output "${output}")
   if(output MATCHES "cayspin is compiled without optimisation.*-DCMAKE_BUILD_TYPE=Release")
