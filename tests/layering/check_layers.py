@@ -13,7 +13,7 @@ LIBRARY = [
     ("lattice", ["lattice.hpp", "lattice/"]),
     ("loops over sites", ["detail/"]),
     ("spins", ["spin_field.hpp", "stencil.hpp"]),
-    ("contracts", ["concepts.hpp"]),
+    ("contracts", ["concepts.hpp", "optional_members.hpp", "step.hpp", "field/local_part.hpp"]),
     ("field terms", ["field/"]),
     ("generators", ["generator/"]),
     ("rotations", ["rotation/"]),
@@ -29,6 +29,7 @@ LIBRARY = [
 
 # The same for what is built on the library, relative to the repository.
 PROGRAMS = [
+    ("list of methods", ["src/simulation/method_list.hpp"]),  # data that all others read
     ("reader and writer", ["src/io/", "src/hdf5/", "src/scene/", "src/trajectory/"]),
     ("simulation", ["src/simulation/"]),
     ("program", ["src/program/"]),
