@@ -240,7 +240,8 @@ def main():
             rows["all"][outcome] += 1
             if outcome in bad:
                 failures.append(f"{outcome}: {case}: {remark}")
-    print("\n".join(failures))
+    for failure in failures:
+        print(failure)
     print_table(rows)
     print(f"{len(cases)} combinations run, {len(failures)} not as they were")
     sys.exit(1 if failures or not rows["all"]["equal"] else 0)
