@@ -66,8 +66,8 @@ void use_steppers(cayspin::Lattice const& lattice) {
 template <class Real>
 void use_observers(cayspin::Lattice const& lattice) {
   Field<Real> spins("spins", lattice);
-  cayspin::LandauLifshitz const generator(
-      cayspin::EffectiveField(cayspin::Exchange(lattice, 1.0)), 0.0);
+  cayspin::LandauLifshitz const generator(cayspin::EffectiveField(cayspin::Exchange(lattice, 1.0)),
+                                          0.0);
   std::vector<cayspin::Sample> samples;
   cayspin::Rkmk4 stepper(spins);
   cayspin::integrate(Exec(), stepper, generator, spins, {.begin = 0, .dt = 0.01, .steps = 4},
