@@ -3,10 +3,10 @@
 
 #include "applied_field.hpp"
 
-#include <cayspin/detail/local_part.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/generator/rigid_body.hpp>

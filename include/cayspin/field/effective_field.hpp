@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/local_part.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <utility>
@@ -31,7 +31,7 @@ namespace cayspin {
 /// Methods that extrapolate the field of other spins are more accurate for a term that says
 ///   static constexpr bool is_local = true           its H depends on the spin itself and on t
 ///   alone
-/// before it is prepared and after, or has a neighbor_field(stencil) (detail/local_part.hpp).
+/// before it is prepared and after, or has a neighbor_field(stencil) (field/local_part.hpp).
 template <class... Terms>
 class EffectiveField;
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/coefficient.hpp>
-#include <cayspin/detail/local_part.hpp>
+#include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <stdexcept>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/coefficient.hpp>
-#include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/unrolled.hpp>
+#include <cayspin/field/coefficient.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cmath>

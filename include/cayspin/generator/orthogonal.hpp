@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/unrolled.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <utility>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/coefficient.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/field/coefficient.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 

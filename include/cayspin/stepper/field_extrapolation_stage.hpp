@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/unrolled.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stage/update.hpp>
 #include <cayspin/stencil.hpp>

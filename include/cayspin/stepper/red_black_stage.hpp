@@ -3,8 +3,8 @@
 
 #include <cayspin/stepper/exact_flow.hpp>
 #include <cayspin/detail/for_each_site_of_colour.hpp>
-#include <cayspin/detail/local_part.hpp>
 #include <cayspin/detail/varied_stencil.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/stencil.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/detail/local_part.hpp>
+#include <cayspin/field/local_part.hpp>
 #include <cayspin/isotropy/policies.hpp>
 #include <cayspin/stepper/series4_stage.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
