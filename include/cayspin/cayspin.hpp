@@ -2,6 +2,7 @@
 #pragma once
 
 // scene -> lattice + field -> generator -> stepper (rotation, isotropy) -> observer -> files
+#include <cayspin/concepts.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>
@@ -21,6 +22,7 @@
 #include <cayspin/isotropy/policies.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/observer/energy_control.hpp>
+#include <cayspin/observer/evaluate.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>
 #include <cayspin/observer/scalars.hpp>

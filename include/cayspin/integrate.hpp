@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/concepts.hpp>
 #include <cayspin/detail/execution.hpp>
 
 #include <Kokkos_Timer.hpp>
@@ -16,7 +17,7 @@
 namespace cayspin {
 
 /// Steps of length dt up to number `steps`; the time of step n is begin + n dt. A run that goes on
-/// begins behind step `first`, at that step's time.
+/// begins after step `first`, at that step's time.
 struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
@@ -24,16 +25,6 @@ struct Times {
 
   double at(std::int64_t step) const { return begin + static_cast<double>(step) * dt; }
 };
-
-/// Where an integration stands when an observer is called.
-struct Step {
-  std::int64_t number = 0;  // steps taken
-  double time = 0, dt = 0;
-  bool last = false;
-};
-
-/// What an observer may return to end an integration early. Observers that return nothing proceed.
-enum class Next { proceed, stop };
 
 /// What an integration did.
 struct Summary {
@@ -49,6 +40,8 @@ struct Summary {
 template <class Observer>
 class Every {
  public:
+  static constexpr bool changes_spins = detail::changes_spins<Observer>;
+
   Every(std::int64_t period, Observer observer) : period_(period), observer_(std::move(observer)) {
     if (period < 1) throw std::invalid_argument("cayspin::Every: the period must be at least 1");
   }
@@ -66,22 +59,6 @@ class Every {
 };
 
 namespace detail {
-
-/// A stepper whose number of evaluations depends on the numbers counts them itself.
-template <class Stepper>
-concept counts_evaluations = requires(Stepper const& stepper) {
-  stepper.evaluations_done();
-};
-
-template <class Observer>
-bool is_due(Observer const& observer, Step const& step) {
-  if constexpr (requires {
-                  { observer.due(step) } -> std::convertible_to<bool>;
-                })
-    return observer.due(step);
-  else
-    return true;
-}
 
 /// A stepper that can take several steps of few spins in one launch.
 template <class Stepper, class Exec, class Generator, class Spins>
@@ -121,15 +98,26 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
 
 }  // namespace detail
 
-/// Advances `spins` over `times`; a stepper that remembers steps forgets those of runs before.
+/// Advances `spins` over `times`. A stepper that remembers steps forgets those of runs before.
 /// Observers see the state before the first step and after each one.
 /// Returns what was done; `spins` holds the state at the end, and the work has finished.
-/// Throws std::invalid_argument when dt is not finite or the number of steps is negative.
+/// Lengths of spins are not checked: require_unit_spins does that for spins of one's own.
+/// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
+/// stepper or a term of the field was made for another lattice than that of the spins.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {
   static_assert(std::is_same_v<Spins, typename Stepper::spins_type>,
                 "The stepper was made for another type of spin field.");
+  static_assert(
+      cayspin::Stepper<Stepper>,
+      "A stepper needs step(exec, generator, spins, t, dt), and either a static constexpr "
+      "int evaluations (of the generator, per step) or evaluations_done().");
+  static_assert(
+      !(AdaptiveStepper<Stepper> && (detail::changes_spins<std::remove_cvref_t<Observers>> || ...)),
+      "An observer that changes spins (EnergyControl, Normalize) does not go with an "
+      "adaptive stepper, which goes on from a state of its own.");
+  detail::check_access<Exec, typename Spins::memory_space>();
   if (!std::isfinite(times.dt) || !std::isfinite(times.begin))
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
   if (times.first < 0 || times.steps < times.first)
@@ -142,7 +130,7 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   if constexpr (detail::counts_evaluations<Stepper>)
     evaluations_before = stepper.evaluations_done();
   std::pair<std::int64_t, std::int64_t> own_before;
-  if constexpr (requires { stepper.rejected_steps(); })
+  if constexpr (AdaptiveStepper<Stepper>)
     own_before = {stepper.accepted_steps(), stepper.rejected_steps()};
   bool batches = false;
   if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>)
@@ -169,12 +157,11 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     if (steps == 1) stepper.step(exec, generator, spins, now.time, times.dt);
     number += steps;
     summary.steps += steps;
-    if constexpr (requires { Stepper::evaluations; })
-      summary.evaluations += steps * Stepper::evaluations;
+    summary.evaluations += steps * evaluations_per_step<Stepper>().value_or(0);
   }
   if constexpr (detail::counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;
-  if constexpr (requires { stepper.rejected_steps(); }) {
+  if constexpr (AdaptiveStepper<Stepper>) {
     summary.own_steps = stepper.accepted_steps() - own_before.first;
     summary.rejected = stepper.rejected_steps() - own_before.second;
   }

@@ -144,6 +144,23 @@ class SiteField {
   Kokkos::View<Real*, MemorySpace> data_;
 };
 
+/// Throws std::invalid_argument when `who`, which was made for `lattice`, is given spins on another
+/// one. What a term or generator calls in its check_spins.
+inline void require_lattice(char const* who, Lattice const& lattice, Lattice const& spins) {
+  if (lattice == spins) return;
+  auto const sites = [](Lattice const& lattice_of_sites) {
+    auto const& shape = lattice_of_sites.shape;
+    return std::to_string(shape[0]) + " x " + std::to_string(shape[1]) + " x " +
+           std::to_string(shape[2]);
+  };
+  throw std::invalid_argument(
+      std::string(who) +
+      (lattice.shape == spins.shape
+           ? ": made for a lattice of other spacings or boundaries than that of the spins"
+           : ": made for a lattice of " + sites(lattice) + " sites, and the spins are on " +
+                 sites(spins)));
+}
+
 /// One number per site, for example a coefficient.
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 using ScalarField = SiteField<Real, 1, MemorySpace>;
@@ -191,7 +208,8 @@ void copy_from_host(std::vector<Number> const& from,
                     SiteField<Real, Components, MemorySpace> const& to) {
   detail::require_size("cayspin::copy_from_host", from.size(), to.sites() * Components);
   using Exec = typename MemorySpace::execution_space;
-  Kokkos::View<Number const* [Components], Kokkos::LayoutRight, Kokkos::HostSpace,
+  constexpr std::size_t components = Components;
+  Kokkos::View<Number const* [components], Kokkos::LayoutRight, Kokkos::HostSpace,
                Kokkos::MemoryUnmanaged> const host(from.data(), to.sites());
   auto const there = Kokkos::create_mirror_view_and_copy(MemorySpace(), host);
   Exec const exec;
@@ -203,8 +221,9 @@ void copy_from_host(std::vector<Number> const& from,
 template <class Real, int Components, class MemorySpace>
 std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& from) {
   using Exec = typename MemorySpace::execution_space;
-  std::vector<Real> numbers(static_cast<std::size_t>(from.sites()) * Components);
-  Kokkos::View<Real* [Components], Kokkos::LayoutRight, Kokkos::HostSpace,
+  std::vector<Real> numbers(static_cast<std::size_t>(from.sites() * Components));
+  constexpr std::size_t components = Components;
+  Kokkos::View<Real* [components], Kokkos::LayoutRight, Kokkos::HostSpace,
                Kokkos::MemoryUnmanaged> const host(numbers.data(), from.sites());
   auto const there = Kokkos::create_mirror_view(MemorySpace(), host);
   Exec const exec;

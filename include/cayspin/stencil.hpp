@@ -5,8 +5,10 @@
 
 namespace cayspin {
 
-/// What a field term or generator sees: the spin of a site (of several sites at once on the host)
-/// and its neighbours along the axes of the lattice.
+/// What a field term or generator sees: the spin of a site and its neighbours along the axes of
+/// the lattice. On the host a value is a pack: one number for each of several sites.
+/// Functions cayspin::next<0>(stencil) and cayspin::previous<0>(stencil) are the same as the
+/// members, and need no word `template` in generic code.
 template <class Site, class Real, class Spins = detail::SiteArray<Real, 3>>
 class Stencil {
  public:
@@ -56,4 +58,48 @@ class Stencil {
   vector_type center_;
 };
 
+/// The neighbour at index + 1 along an axis (0, 1, 2 for x, y, z); the spin itself, or `missing`,
+/// where there is none.
+template <int Axis, class AnyStencil>
+KOKKOS_FORCEINLINE_FUNCTION auto next(AnyStencil const& stencil) {
+  return stencil.template next<Axis>();
+}
+template <int Axis, class AnyStencil>
+KOKKOS_FORCEINLINE_FUNCTION auto next(AnyStencil const& stencil,
+                                      typename AnyStencil::vector_type const& missing) {
+  return stencil.template next<Axis>(missing);
+}
+
+/// The neighbour at index - 1 along an axis; the spin itself, or `missing`, where there is none.
+template <int Axis, class AnyStencil>
+KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil) {
+  return stencil.template previous<Axis>();
+}
+template <int Axis, class AnyStencil>
+KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil,
+                                          typename AnyStencil::vector_type const& missing) {
+  return stencil.template previous<Axis>(missing);
+}
+
+namespace detail {
+
+/// A stencil without neighbours: a spin that is in no field, and a site for coefficients.
+template <class Site>
+class SpinAlone {
+ public:
+  using value_type = typename Site::value_type;
+  using vector_type = Vec3<value_type>;
+
+  KOKKOS_FORCEINLINE_FUNCTION SpinAlone(Site const& site, vector_type const& spin)
+      : site_(site), spin_(spin) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return spin_; }
+  KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
+
+ private:
+  Site const& site_;
+  vector_type spin_;
+};
+
+}  // namespace detail
 }  // namespace cayspin

@@ -3,9 +3,15 @@
 
 #include <cayspin/detail/pack.hpp>
 
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
 namespace cayspin {
 
-/// Three components; Value is float, double, or a pack of either (several sites at once).
+/// Three components. Value is float, double, or a pack of either: on the host one value holds
+/// several sites. Numbers of another type (2.0 * v, v * 2) become the scalar of Value first.
 template <class Value>
 struct Vec3 {
   using value_type = Value;
@@ -17,9 +23,25 @@ struct Vec3 {
   friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator-(Vec3 const& a, Vec3 const& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
+  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator-(Vec3 const& a) { return {-a.x, -a.y, -a.z}; }
+
   friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Value const& s, Vec3 const& a) {
     return {s * a.x, s * a.y, s * a.z};
   }
+  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Vec3 const& a, Value const& s) { return s * a; }
+  template <class Number>
+  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Number s, Vec3 const& a) requires(
+      std::is_arithmetic_v<Number> && !std::is_same_v<Number, Value>) {
+    return Value(static_cast<detail::scalar_t<Value>>(s)) * a;
+  }
+  template <class Number>
+  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Vec3 const& a, Number s) requires(
+      std::is_arithmetic_v<Number> && !std::is_same_v<Number, Value>) {
+    return Value(static_cast<detail::scalar_t<Value>>(s)) * a;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION Vec3& operator+=(Vec3 const& a) { return *this = *this + a; }
+  KOKKOS_FORCEINLINE_FUNCTION Vec3& operator-=(Vec3 const& a) { return *this = *this - a; }
 };
 
 /// s a + b
@@ -42,6 +64,32 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> cross(Vec3<Value> const& a, Vec3<Value> 
           detail::multiply_subtract(a.x, b.y, Value(a.y * b.x))};
 }
 
+/// The zero vector.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> zero() {
+  return {Value(0), Value(0), Value(0)};
+}
+
+/// A number as value of a kernel.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value as_value(double number) {
+  return Value(static_cast<detail::scalar_t<Value>>(number));
+}
+
+/// The components of v as values of a kernel.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> as_value(Vec3<double> const& v) {
+  return {as_value<Value>(v.x), as_value<Value>(v.y), as_value<Value>(v.z)};
+}
+
+/// `axis` divided by its length; throws std::invalid_argument when it has none.
+inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
+  double const length = std::hypot(axis.x, axis.y, axis.z);
+  if (!(length > 0) || !std::isfinite(length))
+    throw std::invalid_argument(std::string(what) + " must be finite and not zero");
+  return {axis.x / length, axis.y / length, axis.z / length};
+}
+
 namespace detail {
 
 template <class Value>
@@ -52,4 +100,11 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask
 }
 
 }  // namespace detail
+
+/// select<Value>(condition, yes, no): `yes` at the sites where the condition holds, `no` elsewhere;
+/// numbers or vectors. Kernels use it in place of `if`, since a pack of sites may need both.
+/// Write conditions with < and == alone: select<Value>(Value(0) < m.z, a, b). Kokkos 4.7 compares
+/// packs of 512 bits the wrong way round with > and >=.
+using detail::select;
+
 }  // namespace cayspin

@@ -106,7 +106,7 @@ struct SceneFieldNow {
   }
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
-    auto h = cayspin::detail::zero_vector<typename Spin::value_type>();
+    auto h = zero<typename Spin::value_type>();
     if (quadratic.present()) h = quadratic.field(spin.center());
     if (has_applied) h = h + zeeman.field(spin);
     return h;

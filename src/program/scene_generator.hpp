@@ -36,7 +36,7 @@ struct SceneGeneratorNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    return is_llg ? llg.neighbor_field(stencil) : cayspin::detail::zero_vector<Value>();
+    return is_llg ? llg.neighbor_field(stencil) : zero<Value>();
   }
 
   template <class Value, class Stencil>

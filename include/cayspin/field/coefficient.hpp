@@ -14,6 +14,7 @@ namespace cayspin::detail {
 
 /// What kernels hold of a coefficient.
 inline double array_of(double number) { return number; }
+inline Vec3<double> array_of(Vec3<double> const& vector) { return vector; }
 template <class Real, int Components, class MemorySpace>
 SiteArray<Real, Components> array_of(SiteField<Real, Components, MemorySpace> const& field) {
   return field.array();
@@ -22,7 +23,16 @@ SiteArray<Real, Components> array_of(SiteField<Real, Components, MemorySpace> co
 /// A coefficient at a site, as value of a kernel.
 template <class Value, class Site>
 KOKKOS_FORCEINLINE_FUNCTION Value coefficient(double number, Site const&) {
-  return Value(static_cast<scalar_t<Value>>(number));
+  return as_value<Value>(number);
+}
+template <class Value, class Site>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coefficient(Vec3<double> const& vector, Site const&) {
+  return as_value<Value>(vector);
+}
+template <class Value, class Site, class Real>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coefficient(SiteArray<Real, 3> const& vectors,
+                                                    Site const& site) {
+  return site.load(vectors);
 }
 template <class Value, class Site, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value coefficient(SiteArray<Real, 1> const& numbers, Site const& site) {
@@ -37,16 +47,14 @@ constexpr void require_type_of(SiteField<Real, Components, MemorySpace> const&) 
                 "A field of coefficients has the precision and the memory space of the spins.");
 }
 
-template <class Spins>
-void require_lattice_of(Spins const&, double, char const*) {}
+template <class Spins, class Number>
+void require_lattice_of(Spins const&, Number const&, char const*) {}
 /// Throws std::invalid_argument when a coefficient is for another lattice.
 template <class Spins, class Real, int Components, class MemorySpace>
 void require_lattice_of(Spins const& spins, SiteField<Real, Components, MemorySpace> const& field,
                         char const* who) {
   require_type_of<Spins>(field);
-  if (!(spins.lattice() == field.lattice()))
-    throw std::invalid_argument(std::string(who) +
-                                ": the coefficients and the spins are on different lattices");
+  require_lattice(who, field.lattice(), spins.lattice());
 }
 
 /// Counts sites whose number is not finite, below zero, above zero, and one.

@@ -1,63 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/concepts.hpp>
+#include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <type_traits>
 #include <utility>
 
 namespace cayspin {
 
-/// The sum of field terms, composed by type: what is not listed is not computed.
-///
-/// A term is a plain struct with two device-callable templates,
+/// The sum of field terms, composed by type: what is not listed is not computed. A term is a plain
+/// struct with two device-callable templates,
 ///   Vec3<Value> field(Stencil const&) const          H at the stencil's centre
 ///   Value       energy_density(Stencil const&) const its share of E, with H = -dE/dm
-/// where Value = Stencil::value_type. A term that needs more than neighbours, or depends on time,
-/// has instead
-///   auto prepare(exec, spins, t) const
-/// which is called on the host before each stage and returns such a struct; a term whose numbers
-/// then change with t, and not with the spins, says static constexpr bool depends_on_time = true.
-///
-/// For isotropy::Analytic and Series4 a term also says how its H depends on the spins:
-///   static constexpr int degree                     2 where H is linear in the spins, 1 where it
-///                                                   does not depend on them
-///   Vec3<Value> linear_field(Stencil const&) const  where H is affine: its linear part
-///   Vec3<Value> field_rate(Vec3<Value> const& m, Stencil const& rates) const
-///                                                   otherwise, for Analytic: dH/dt along the rates
-/// and, where H depends on t, prepare_rate(exec, rates, t, dt), which returns such a struct.
-///
-/// Methods that extrapolate the field of other spins are more accurate for a term that says
-///   static constexpr bool is_local = true           its H depends on the spin itself and on t
-///   alone
-/// before it is prepared and after, or has a neighbor_field(stencil) (field/local_part.hpp).
+/// where Value = Stencil::value_type. What else a term may say: FieldTerm in concepts.hpp.
 template <class... Terms>
 class EffectiveField;
 
 template <>
-class EffectiveField<> {
+class EffectiveField<> : public Forwarding<EffectiveField<>> {
  public:
-  static constexpr bool is_local = true;
+  static constexpr int energy_terms = 0;
 
-  template <class Exec, class Spins>
-  EffectiveField prepare(Exec const&, Spins const&, double) const {
+  template <class Make>
+  EffectiveField with_parts(Make const&) const {
     return {};
   }
-  template <class Exec, class Spins>
-  EffectiveField prepare_local(Exec const&, Spins const&, double) const {
-    return {};
-  }
-  template <class Exec, class Spins>
-  EffectiveField prepare_rate(Exec const&, Spins const&, double, double) const {
-    return {};
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
-  }
-  template <class Exec, class Spins>
-  bool needs_time_alone(Exec const&, Spins const&) const {
+  template <class Test>
+  bool all_parts(Test const&) const {
     return true;
   }
   template <class Stencil>
@@ -86,56 +58,33 @@ class EffectiveField<> {
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Stencil const&) const {
     return typename Stencil::value_type(0);
   }
-
- private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> zero() {
-    return {Value(0), Value(0), Value(0)};
-  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const&, Value*) const {}
 };
 
 template <class First, class... Rest>
-class EffectiveField<First, Rest...> {
+class EffectiveField<First, Rest...>
+    : public Forwarding<EffectiveField<First, Rest...>, First, Rest...> {
  public:
-  static constexpr bool depends_on_time =
-      detail::depends_on_time<First> || (detail::depends_on_time<Rest> || ...);
-  static constexpr bool is_local = detail::is_local<First> && (detail::is_local<Rest> && ...);
+  static constexpr int energy_terms = 1 + static_cast<int>(sizeof...(Rest));
 
   explicit EffectiveField(First first, Rest... rest)
       : first_(std::move(first)), rest_(std::move(rest)...) {}
 
-  /// Every term made ready for one evaluation at time t.
-  template <class Exec, class Spins>
-  auto prepare(Exec const& exec, Spins const& spins, double t) const {
-    return join(detail::prepare_term(first_, exec, spins, t), rest_.prepare(exec, spins, t));
+  /// Terms without a local part are left out of what prepare_local returns.
+  template <class Make>
+  auto with_parts(Make const& make) const {
+    return join(make(first_), rest_.with_parts(make));
   }
-  /// The local terms, and local parts of others.
-  template <class Exec, class Spins>
-  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
-    if constexpr (detail::has_local_part<First, Exec, Spins>)
-      return join(detail::prepare_local(first_, exec, spins, t),
-                  rest_.prepare_local(exec, spins, t));
-    else
-      return rest_.prepare_local(exec, spins, t);
-  }
-  template <class Exec, class Spins>
-  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
-    return join(detail::prepare_rate(first_, exec, rates, t, dt),
-                rest_.prepare_rate(exec, rates, t, dt));
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const& exec, Spins const& spins) const {
-    return detail::is_stationary(first_, exec, spins) && rest_.is_stationary(exec, spins);
-  }
-  template <class Exec, class Spins>
-  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
-    return detail::needs_time_alone(first_, exec, spins) && rest_.needs_time_alone(exec, spins);
+  template <class Test>
+  bool all_parts(Test const& test) const {
+    return test(first_) && rest_.all_parts(test);
   }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
-    check<Stencil>();
+    detail::check_field<First, Stencil>();
     if constexpr (sizeof...(Rest) == 0) {
       return first_.field(stencil);
     } else {
@@ -188,7 +137,7 @@ class EffectiveField<First, Rest...> {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
-    check<Stencil>();
+    detail::check_energy_density<First, Stencil>();
     return first_.energy_density(stencil) + rest_.energy_density(stencil);
   }
 
@@ -199,6 +148,14 @@ class EffectiveField<First, Rest...> {
     return Kokkos::abs(first_.energy_density(stencil)) + rest_.energy_magnitude(stencil);
   }
 
+  /// The energy density of each term, in their order.
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const& stencil, Value* energies) const {
+    detail::check_energy_density<First, Stencil>();
+    energies[0] = first_.energy_density(stencil);
+    rest_.energy_densities(stencil, energies + 1);
+  }
+
  private:
   template <class...>
   friend class EffectiveField;
@@ -207,23 +164,15 @@ class EffectiveField<First, Rest...> {
       : first_(std::move(first)), rest_(std::move(rest)) {}
 
   template <class Prepared, class... Others>
-  static EffectiveField<Prepared, Others...> join(Prepared first, EffectiveField<Others...> rest) {
-    return EffectiveField<Prepared, Others...>::from(std::move(first), std::move(rest));
+  static auto join(Prepared first, EffectiveField<Others...> rest) {
+    if constexpr (std::is_same_v<Prepared, detail::NoField>)
+      return rest;
+    else
+      return EffectiveField<Prepared, Others...>::from(std::move(first), std::move(rest));
   }
   static EffectiveField from(First first, EffectiveField<Rest...> rest) {
     EffectiveField joined(std::move(first), std::move(rest));
     return joined;
-  }
-
-  template <class Stencil>
-  static constexpr void check() {
-    static_assert(detail::has_field<First, Stencil>,
-                  "A field term needs a const, device-callable template field(stencil) that "
-                  "returns Vec3<typename Stencil::value_type>, or a prepare(exec, spins, t) that "
-                  "returns such a term.");
-    static_assert(detail::has_energy_density<First, Stencil>,
-                  "A field term needs a const, device-callable template energy_density(stencil) "
-                  "that returns typename Stencil::value_type, with field = -d energy / d spin.");
   }
 
   First first_;

@@ -2,20 +2,23 @@
 #pragma once
 
 #include <cayspin/lattice.hpp>
+#include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
+
+#include <cstddef>
 
 namespace cayspin {
 
-/// Exchange with the nearest neighbours along each axis: H = A Lap(m), the second difference over
-/// existing neighbours, each divided by the axis' spacing squared.
-/// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
-class Exchange {
+namespace detail {
+
+/// What kernels hold of Exchange: A / spacing^2 of each axis, or 0.
+class UniformExchange {
  public:
   static constexpr int degree = 2;  // H is linear in the spins
 
-  Exchange(Lattice const& lattice, double constant) {
-    for (int axis = 0; axis < 3; ++axis)
-      coefficient_[axis] = lattice.has_neighbors(axis)
+  UniformExchange(Lattice const& lattice, double constant) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      coefficient_[axis] = lattice.shape[axis] > 1
                                ? constant / (lattice.spacing[axis] * lattice.spacing[axis])
                                : 0.0;
   }
@@ -24,7 +27,7 @@ class Exchange {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    auto h = zero<Value>();
     if (coefficient_[0] != 0) h = second_difference<0>(stencil, h);
     if (coefficient_[1] != 0) h = second_difference<1>(stencil, h);
     if (coefficient_[2] != 0) h = second_difference<2>(stencil, h);
@@ -36,7 +39,7 @@ class Exchange {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    auto h = zero<Value>();
     if (coefficient_[0] != 0) h = neighbor_sum<0>(stencil, h);
     if (coefficient_[1] != 0) h = neighbor_sum<1>(stencil, h);
     if (coefficient_[2] != 0) h = neighbor_sum<2>(stencil, h);
@@ -59,7 +62,7 @@ class Exchange {
  private:
   template <int Axis, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value scaled(double factor) const {
-    return Value(static_cast<detail::scalar_t<Value>>(factor * coefficient_[Axis]));
+    return as_value<Value>(factor * coefficient_[Axis]);
   }
 
   // previous + next - 2 center, in a form that is exactly zero where the three are equal.
@@ -75,7 +78,7 @@ class Exchange {
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector neighbor_sum(Stencil const& stencil, Vector const& sum) const {
     using Value = typename Stencil::value_type;
-    Vector const none{Value(0), Value(0), Value(0)};
+    auto const none = zero<Value>();
     return multiply_add(scaled<Axis, Value>(1),
                         stencil.template previous<Axis>(none) + stencil.template next<Axis>(none),
                         sum);
@@ -91,6 +94,34 @@ class Exchange {
   }
 
   double coefficient_[3];
+};
+
+}  // namespace detail
+
+/// Exchange with the nearest neighbours along each axis: H = A Lap(m), the second difference over
+/// existing neighbours, each divided by the axis' spacing squared.
+/// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
+class Exchange : public detail::UniformExchange {
+ public:
+  Exchange(Lattice const& lattice, double constant)
+      : detail::UniformExchange(lattice, constant), lattice_(lattice) {}
+
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    require_lattice("cayspin::Exchange", lattice_, spins.lattice());
+  }
+
+  template <class Exec, class Spins>
+  detail::UniformExchange prepare(Exec const&, Spins const&, double) const {
+    return *this;
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
+ private:
+  Lattice lattice_;
 };
 
 }  // namespace cayspin

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/concepts.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/effective_field.hpp>
+#include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
@@ -73,6 +73,7 @@ class FieldAmongVacancies {
 
  public:
   static constexpr bool is_local = detail::is_local<Field>;
+  static constexpr int energy_terms = detail::energy_terms<Field>;
 
   FieldAmongVacancies(Field field, SiteArray<Real, 1> const& occupation)
       : field_(std::move(field)), occupation_(occupation) {}
@@ -117,12 +118,13 @@ class FieldAmongVacancies {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
       Stencil const& stencil) const {
-    Inner<Stencil> const inner(stencil, occupation_);
-    if constexpr (requires { field_.energy_magnitude(inner); }) {
-      return unless_vacant(stencil, field_.energy_magnitude(inner));
-    } else {
-      return Kokkos::abs(energy_density(stencil));
-    }
+    return unless_vacant(stencil,
+                         detail::energy_magnitude(field_, Inner<Stencil>(stencil, occupation_)));
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const& stencil, Value* energies) const {
+    detail::energy_densities(field_, Inner<Stencil>(stencil, occupation_), energies);
+    for (int i = 0; i < energy_terms; ++i) energies[i] = unless_vacant(stencil, energies[i]);
   }
 
  private:
@@ -153,13 +155,12 @@ inline constexpr bool comes_in_parts<FieldAmongVacancies<Field, Real>, Stencil> 
 /// need no change. Every term has to stand inside: one beside it still turns the vacant spins.
 /// A HostField's solver is given the vacant spins too, and has to leave them out.
 template <class Field, class Real, class MemorySpace>
-class FieldWithVacancies {
+class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
   static_assert(!detail::averages_layers<Field>,
                 "LayerAveragedSlabDemag counts the spins of vacant sites in its averages.");
 
  public:
-  static constexpr bool depends_on_time = detail::depends_on_time<Field>;
-  static constexpr bool is_local = detail::is_local<Field>;
+  static constexpr int energy_terms = detail::energy_terms<Field>;
 
   /// Throws std::invalid_argument when an occupation is neither 0 nor 1.
   FieldWithVacancies(Field field, ScalarField<Real, MemorySpace> occupation)
@@ -169,34 +170,21 @@ class FieldWithVacancies {
           "cayspin::FieldWithVacancies: the occupation must be 0 or 1 on every site");
   }
 
-  template <class Exec, class Spins>
-  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, occupation_, "cayspin::FieldWithVacancies");
-    return among(detail::prepare_term(field_, exec, spins, t));
   }
-  template <class Exec, class Spins>
-  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
-    return among(detail::prepare_local(field_, exec, spins, t));
+  template <class Make>
+  auto with_parts(Make const& make) const {
+    using Prepared = decltype(make(field_));
+    return detail::FieldAmongVacancies<Prepared, Real>(make(field_), occupation_.array());
   }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const& exec, Spins const& spins) const {
-    return detail::is_stationary(field_, exec, spins);
-  }
-  template <class Exec, class Spins>
-  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
-    return detail::needs_time_alone(field_, exec, spins);
-  }
-  template <class Exec, class Rates>
-  auto prepare_rate(Exec const& exec, Rates const& rates, double t, double dt) const {
-    return among(detail::prepare_rate(field_, exec, rates, t, dt));
+  template <class Test>
+  bool all_parts(Test const& test) const {
+    return test(field_);
   }
 
  private:
-  template <class Prepared>
-  auto among(Prepared prepared) const {
-    return detail::FieldAmongVacancies<Prepared, Real>(std::move(prepared), occupation_.array());
-  }
-
   Field field_;
   ScalarField<Real, MemorySpace> occupation_;
 };

@@ -4,7 +4,7 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
-#include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace cayspin {
@@ -26,14 +26,13 @@ struct StoredField {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     if (energy_factor == -0.5) return field(stencil);
-    return {Value(0), Value(0), Value(0)};
+    return zero<Value>();
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    return Value(static_cast<scalar_t<Value>>(energy_factor)) *
-           dot(stencil.center(), stencil.site().load(array));
+    return as_value<Value>(energy_factor) * dot(stencil.center(), stencil.site().load(array));
   }
 };
 
@@ -67,12 +66,22 @@ class HostField {
       host_field_ = HostSpins("HostField::host_field", lattice);
     }
   }
+  /// For spins like these: their lattice, precision and memory space.
+  HostField(Spins const& like, Solver solver) : HostField(like.lattice(), std::move(solver)) {}
 
-  template <class Exec>
-  detail::StoredField<Real> prepare(Exec const& exec, Spins const& spins, double t) const {
-    if (!(spins.lattice() == field_.lattice()))
-      throw std::invalid_argument("cayspin::HostField: made for another lattice");
-    if constexpr (on_host) {
+  template <class Others>
+  void check_spins(Others const& spins) const {
+    static_assert(std::is_same_v<Others, Spins>,
+                  "HostField was made for spins of another precision or memory space: "
+                  "HostField(spins, solver) takes both from the spins.");
+    require_lattice("cayspin::HostField", field_.lattice(), spins.lattice());
+  }
+
+  template <class Exec, class Others>
+  detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
+    if constexpr (!std::is_same_v<Others, Spins>) {
+      // check_spins has said so
+    } else if constexpr (on_host) {
       exec.fence("cayspin::HostField: spins ready");
       solver_(spins, field_, t);
     } else {
@@ -89,5 +98,9 @@ class HostField {
   Spins field_;
   HostSpins host_spins_, host_field_;
 };
+
+/// Without spins to go by: double precision in the default memory space.
+template <class Solver>
+HostField(Lattice, Solver) -> HostField<SpinField<double>, Solver>;
 
 }  // namespace cayspin

@@ -5,8 +5,10 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <type_traits>
 
 namespace cayspin {
 
@@ -87,18 +89,23 @@ class LayerAveragedSlabDemag {
   LayerAveragedSlabDemag(Lattice const& lattice, int axis, double strength = 1)
       : axis_(checked(axis)),
         strength_(strength),
-        shape_(lattice.shape),
+        lattice_(lattice),
         averages_("cayspin::LayerAveragedSlabDemag::averages",
-                  static_cast<std::size_t>(lattice.shape[axis]) + detail::cache_line_bytes) {}
+                  static_cast<std::size_t>(layers() + detail::cache_line_bytes)) {}
 
-  template <class Exec, class Real>
-  detail::LayerField prepare(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
-                             double) const {
-    if (spins.lattice().shape != shape_)
-      throw std::invalid_argument("cayspin::LayerAveragedSlabDemag: made for another lattice");
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    static_assert(std::is_same_v<typename Spins::memory_space, MemorySpace>,
+                  "LayerAveragedSlabDemag was made for spins in another memory space.");
+    require_lattice("cayspin::LayerAveragedSlabDemag", lattice_, spins.lattice());
+  }
+
+  template <class Exec, class Spins>
+  detail::LayerField prepare(Exec const& exec, Spins const& spins, double) const {
+    using Real = typename Spins::value_type;
     using Value = std::conditional_t<detail::is_host_execution<Exec>, detail::Pack<double>, double>;
     constexpr std::int64_t lanes = detail::lanes_of<Value>;
-    std::int64_t const tasks = axis_ == 0 ? (shape_[0] + lanes - 1) / lanes : shape_[axis_];
+    std::int64_t const tasks = axis_ == 0 ? (spins.layout().nx + lanes - 1) / lanes : layers();
     auto const array = spins.array();
     detail::for_each_task(
         exec, "cayspin::LayerAveragedSlabDemag", tasks, spins.sites(),
@@ -108,6 +115,7 @@ class LayerAveragedSlabDemag {
   }
 
  private:
+  std::int64_t layers() const { return lattice_.shape[static_cast<std::size_t>(axis_)]; }
   static int checked(int axis) {
     if (axis < 0 || axis > 2)
       throw std::invalid_argument("cayspin::LayerAveragedSlabDemag: the axis is 0, 1 or 2");
@@ -116,7 +124,7 @@ class LayerAveragedSlabDemag {
 
   int axis_;
   double strength_;
-  std::array<std::int64_t, 3> shape_;
+  Lattice lattice_;
   Kokkos::View<double*, MemorySpace> averages_;
 };
 

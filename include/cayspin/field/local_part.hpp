@@ -1,73 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/concepts.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <concepts>
+#include <type_traits>
 
 // A field in two parts: the local part at a site depends on the spin there and on t alone, the rest
-// is the neighbour field. For methods that move each spin in the field of the others.
-//
-// A term says what it is by
-//   static constexpr bool is_local = true           no neighbour field; unprepared terms too
-// or, where it has both parts or none, in its prepared form by
-//   Vec3<Value> neighbor_field(Stencil const&) const
-//   Vec3<Value> local_field(SpinAlone const&) const
-// and unprepared by prepare_local(exec, spins, t), which looks at no spin. A term that says nothing
-// is neighbour field altogether. Multiples of the spin itself may be left out of the sum of the
-// parts: they do not move it.
+// is the neighbour field. For methods that move each spin in the field of the others. A term that
+// says nothing is neighbour field altogether; the members are listed in concepts.hpp.
 namespace cayspin::detail {
 
-/// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A.
-template <class Term>
-inline constexpr bool is_local = [] {
-  if constexpr (requires { Term::is_local; }) return Term::is_local;
-  return false;
-}();
-
-/// The stencil of a local part: a spin, and the site for its coefficients.
-template <class Site>
-class SpinAlone {
- public:
-  using value_type = typename Site::value_type;
-  using vector_type = Vec3<value_type>;
-
-  KOKKOS_FORCEINLINE_FUNCTION SpinAlone(Site const& site, vector_type const& spin)
-      : site_(site), spin_(spin) {}
-
-  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return spin_; }
-  KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
-
- private:
-  Site const& site_;
-  vector_type spin_;
-};
-
-template <class Value>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> zero_vector() {
-  return {Value(0), Value(0), Value(0)};
-}
-
-/// The local part of a term that has none.
+/// The local part of what has none.
 struct NoField {
   static constexpr bool is_local = true;
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
-    return zero_vector<typename Stencil::value_type>();
+    return zero<typename Stencil::value_type>();
   }
 };
 
-template <class Term, class Exec, class Spins>
-concept has_local_part = is_local<Term> ||
-    requires(Term const& term, Exec const& exec, Spins const& spins) {
-  term.prepare_local(exec, spins, 0.0);
-};
-
-/// The device-callable form of a term's local part at time t.
+/// The device-callable form of a term's or generator's local part at time t.
 template <class Term, class Exec, class Spins>
 auto prepare_local(Term const& term, Exec const& exec, Spins const& spins, double t) {
   if constexpr (requires { term.prepare_local(exec, spins, t); }) {
+    check_spins(term, spins);
     return term.prepare_local(exec, spins, t);
   } else if constexpr (is_local<Term>) {
     return prepare_term(term, exec, spins, t);
@@ -81,7 +39,7 @@ template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
     Term const& term, Stencil const& stencil) {
   if constexpr (is_local<Term>)
-    return zero_vector<typename Stencil::value_type>();
+    return zero<typename Stencil::value_type>();
   else if constexpr (requires { term.neighbor_field(stencil); })
     return term.neighbor_field(stencil);
   else
@@ -97,7 +55,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Term con
   else if constexpr (is_local<Term>)
     return term.field(spin);
   else
-    return zero_vector<typename Spin::value_type>();
+    return zero<typename Spin::value_type>();
 }
 
 /// Of a prepared term: does it say what its parts are, each term of a sum for itself?
@@ -107,8 +65,7 @@ inline constexpr bool comes_in_parts = is_local<Term> ||
   term.neighbor_field(stencil);
 };
 
-/// Of a prepared term that comes in parts: does its local field change with the spin? Terms may say
-/// no by a member of that name.
+/// Of a prepared term that comes in parts: does its local field change with the spin?
 template <class Term>
 KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies(Term const& term) {
   if constexpr (requires { term.local_field_varies(); })
@@ -123,7 +80,7 @@ KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies(Term const& term) {
 template <class Generator, class Spin, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Generator const& generator, Spin const& spin,
                                                      Vec3<Value> const& neighbor_field) {
-  if constexpr (is_local<Generator>) {
+  if constexpr (is_local<Generator> && !std::is_same_v<Generator, NoField>) {
     return evaluate(generator, spin);
   } else {
     static_assert(
@@ -144,16 +101,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field_of
   if constexpr (requires { generator.neighbor_field(stencil); })
     return generator.neighbor_field(stencil);
   else
-    return zero_vector<typename Stencil::value_type>();  // generator_at says what is amiss
-}
-
-template <class Generator, class Exec, class Spins>
-auto prepare_local_generator(Generator const& generator, Exec const& exec, Spins const& spins,
-                             double t) {
-  if constexpr (requires { generator.prepare_local(exec, spins, t); })
-    return generator.prepare_local(exec, spins, t);
-  else
-    return prepare_term(generator, exec, spins, t);
+    return zero<typename Stencil::value_type>();  // generator_at says what is amiss
 }
 
 }  // namespace cayspin::detail

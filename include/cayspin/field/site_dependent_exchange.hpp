@@ -4,6 +4,7 @@
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
@@ -23,7 +24,7 @@ struct ExchangeOfSites {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
-    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    auto h = zero<Value>();
     if (inverse_square[0] != 0) h = differences<0>(stencil, own, h);
     if (inverse_square[1] != 0) h = differences<1>(stencil, own, h);
     if (inverse_square[2] != 0) h = differences<2>(stencil, own, h);
@@ -36,7 +37,7 @@ struct ExchangeOfSites {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
-    Vec3<Value> h{Value(0), Value(0), Value(0)};
+    auto h = zero<Value>();
     if (inverse_square[0] != 0) h = neighbor_sum<0>(stencil, own, h);
     if (inverse_square[1] != 0) h = neighbor_sum<1>(stencil, own, h);
     if (inverse_square[2] != 0) h = neighbor_sum<2>(stencil, own, h);
@@ -81,7 +82,7 @@ struct ExchangeOfSites {
   template <int Axis, class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor_sum(Stencil const& stencil, Value const& own,
                                                        Vec3<Value> const& sum) const {
-    Vec3<Value> const none{Value(0), Value(0), Value(0)};
+    auto const none = zero<Value>();
     return multiply_add(bond<Axis, 1>(stencil.site(), own), stencil.template next<Axis>(none),
                         multiply_add(bond<Axis, 0>(stencil.site(), own),
                                      stencil.template previous<Axis>(none), sum));
@@ -123,13 +124,17 @@ class SiteDependentExchange {
           "of a positive and a negative one is no bond");
   }
 
-  template <class Exec, class Spins>
-  Prepared prepare(Exec const&, Spins const& spins, double) const {
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, constants_, "cayspin::SiteDependentExchange");
+  }
+
+  template <class Exec, class Spins>
+  Prepared prepare(Exec const&, Spins const&, double) const {
     auto const& lattice = constants_.lattice();
     Prepared prepared{constants_.array(), {0, 0, 0}};
-    for (int axis = 0; axis < 3; ++axis)
-      if (lattice.has_neighbors(axis))
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (lattice.shape[axis] > 1)
         prepared.inverse_square[axis] = 1 / (lattice.spacing[axis] * lattice.spacing[axis]);
     return prepared;
   }

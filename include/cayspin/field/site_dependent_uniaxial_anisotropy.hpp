@@ -14,21 +14,6 @@ namespace cayspin {
 
 namespace detail {
 
-inline Vec3<double> array_of(Vec3<double> const& axis) { return axis; }
-
-template <class Value, class Site>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coefficient(Vec3<double> const& axis, Site const&) {
-  return as_value<Value>(axis);
-}
-template <class Value, class Site, class Real>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> coefficient(SiteArray<Real, 3> const& axes,
-                                                    Site const& site) {
-  return site.load(axes);
-}
-
-template <class Spins>
-void require_lattice_of(Spins const&, Vec3<double> const&, char const*) {}
-
 /// Counts sites whose vector is not of length 1, to rounding.
 template <class Real>
 struct NotUnitOfSites {
@@ -99,10 +84,14 @@ class SiteDependentUniaxialAnisotropy {
     }
   }
 
-  template <class Exec, class Spins>
-  auto prepare(Exec const&, Spins const& spins, double) const {
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, constant_, name);
     detail::require_lattice_of(spins, axis_, name);
+  }
+
+  template <class Exec, class Spins>
+  auto prepare(Exec const&, Spins const&, double) const {
     auto const constant = detail::array_of(constant_);
     auto const axis = detail::array_of(axis_);
     return detail::UniaxialAnisotropyOfSites<std::remove_const_t<decltype(constant)>,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/field/uniaxial_anisotropy.hpp>
 #include <cayspin/stencil.hpp>
 
 namespace cayspin {
@@ -21,7 +20,7 @@ class SlabDemag {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto const n = as_value<Value>(normal_);
-    return Value(strength<Value>(-1) * dot(stencil.center(), n)) * n;
+    return Value(as_value<Value>(-strength_) * dot(stencil.center(), n)) * n;
   }
 
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return strength_ != 0; }
@@ -31,15 +30,10 @@ class SlabDemag {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const along = dot(stencil.center(), as_value<Value>(normal_));
-    return strength<Value>(0.5) * along * along;
+    return as_value<Value>(0.5 * strength_) * along * along;
   }
 
  private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Value strength(double factor) const {
-    return Value(static_cast<detail::scalar_t<Value>>(factor * strength_));
-  }
-
   double strength_;
   Vec3<double> normal_;
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/field/host_field.hpp>
-#include <cayspin/field/uniaxial_anisotropy.hpp>
+#include <cayspin/vec3.hpp>
 
 #include <cmath>
 #include <stdexcept>
@@ -31,8 +31,7 @@ class SlabDemagOnHost {
   template <class HostSpins>
   void operator()(HostSpins const& spins, HostSpins const& field, double) const {
     using Real = typename HostSpins::value_type;
-    Vec3<Real> const n{static_cast<Real>(normal_.x), static_cast<Real>(normal_.y),
-                       static_cast<Real>(normal_.z)};
+    auto const n = as_value<Real>(normal_);
     Real const strength = static_cast<Real>(-strength_);
     auto const averages = layer_axis_ < 0 ? std::vector<double>{} : layer_averages(spins);
     for (std::int64_t site = 0; site < spins.sites(); ++site) {
@@ -53,7 +52,7 @@ class SlabDemagOnHost {
 
   template <class HostSpins>
   std::vector<double> layer_averages(HostSpins const& spins) const {
-    std::int64_t const layers = spins.lattice().shape[layer_axis_];
+    std::int64_t const layers = spins.lattice().shape[static_cast<std::size_t>(layer_axis_)];
     std::vector<double> sum(static_cast<std::size_t>(layers), 0.0);
     for (std::int64_t site = 0; site < spins.sites(); ++site) {
       auto const m = spins.get(site);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/field/uniaxial_anisotropy.hpp>
+#include <cayspin/stencil.hpp>
 
 #include <concepts>
 #include <utility>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/concepts.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/coefficient.hpp>
+#include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -20,9 +20,10 @@ namespace cayspin {
 /// Lifshitz: Gilbert's has A / (1 + damping^2), which a unit of time takes up where the damping is
 /// one for all sites, but not where it differs.
 template <class Field, class Damping = double>
-class LandauLifshitz {
+class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
+                       public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
  public:
-  static constexpr bool depends_on_time = detail::depends_on_time<Field>;
+  static constexpr bool is_local = false;  // it has a generator_at
 
   /// Throws std::invalid_argument when damping is negative or not finite.
   LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
@@ -46,29 +47,22 @@ class LandauLifshitz {
     return detail::coefficient<Value>(damping_, site);
   }
 
-  template <class Exec, class Spins>
-  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, damping_, "cayspin::LandauLifshitz");
-    return of(detail::prepare_term(field_, exec, spins, t));
   }
-
-  template <class Exec, class Spins>
-  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
-    return of(detail::prepare_local(field_, exec, spins, t));
+  template <class Make>
+  auto with_parts(Make const& make) const {
+    auto prepared = make(field_);
+    auto damping = detail::array_of(damping_);
+    return LandauLifshitz<decltype(prepared), decltype(damping)>(std::move(prepared), damping,
+                                                                 precession_ != 0);
   }
-
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const& exec, Spins const& spins) const {
-    return detail::is_stationary(field_, exec, spins);
+  template <class Test>
+  bool all_parts(Test const& test) const {
+    return test(field_);
   }
-  template <class Exec, class Spins>
-  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
-    return detail::needs_time_alone(field_, exec, spins);
-  }
-  template <class Exec, class Spins>
-  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
-    return of(detail::prepare_rate(field_, exec, rates, t, dt));
-  }
+  KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
@@ -112,9 +106,9 @@ class LandauLifshitz {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
                                                      Vec3<Value> const* h) const {
     static_assert(uniform, "Series4 needs a damping that is one number for all sites.");
-    Vec3<Value> a = value<Value>(precession_) * h[K];
+    Vec3<Value> a = as_value<Value>(precession_) * h[K];
     detail::leibniz<K>([&](auto weight, auto j, auto rest) {
-      a = multiply_add(value<Value>(damping_ * weight), cross(m[j], h[rest]), a);
+      a = multiply_add(as_value<Value>(damping_ * weight), cross(m[j], h[rest]), a);
     });
     return a;
   }
@@ -126,17 +120,6 @@ class LandauLifshitz {
       return damping_ == 0 && precession_ != 0;
     else
       return false;
-  }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
-    return field_.energy_density(stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
-    return field_.energy_magnitude(stencil);
   }
 
  private:
@@ -154,22 +137,11 @@ class LandauLifshitz {
   template <class Real>
   static void check(detail::SiteArray<Real, 1> const&) {}  // of a field that was checked
 
-  template <class Prepared>
-  auto of(Prepared prepared) const {
-    auto damping = detail::array_of(damping_);
-    return LandauLifshitz<Prepared, decltype(damping)>(std::move(prepared), damping,
-                                                       precession_ != 0);
-  }
-
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Value value(double number) {
-    return Value(static_cast<detail::scalar_t<Value>>(number));
-  }
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,
                                                     Vec3<Value> const& h) const {
     return multiply_add(detail::coefficient<Value>(damping_, site), cross(m, h),
-                        value<Value>(precession_) * h);
+                        as_value<Value>(precession_) * h);
   }
 
   Field field_;

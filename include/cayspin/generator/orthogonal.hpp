@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/concepts.hpp>
 #include <cayspin/detail/unrolled.hpp>
+#include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <cstddef>
 #include <utility>
 
 namespace cayspin {
@@ -24,8 +25,9 @@ template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& generator,
                                                               Vec3<Value> const* m,
                                                               Vec3<Value> const* source) {
-  Vec3<Value> a[K + 1];
-  Value along[K + 1];
+  constexpr std::size_t count = K + 1;
+  Vec3<Value> a[count];
+  Value along[count];
   unrolled<K + 1>([&](auto order) {
     a[order] = generator.template derivative<order()>(m, source);
     along[order] = Value(0);
@@ -44,35 +46,21 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& g
 
 /// A generator without its part along the spin: A_o = A - (m.A) m.
 template <class Generator>
-class Orthogonal {
+class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
+                   public detail::ForwardingEnergy<Orthogonal<Generator>, Generator> {
  public:
-  static constexpr bool depends_on_time = detail::depends_on_time<Generator>;
-
   explicit Orthogonal(Generator generator) : generator_(std::move(generator)) {}
 
-  template <class Exec, class Spins>
-  auto prepare(Exec const& exec, Spins const& spins, double t) const {
-    auto prepared = detail::prepare_term(generator_, exec, spins, t);
+  template <class Make>
+  auto with_parts(Make const& make) const {
+    auto prepared = make(generator_);
     return Orthogonal<decltype(prepared)>(std::move(prepared));
   }
-  template <class Exec, class Spins>
-  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
-    auto prepared = detail::prepare_local_generator(generator_, exec, spins, t);
-    return Orthogonal<decltype(prepared)>(std::move(prepared));
+  template <class Test>
+  bool all_parts(Test const& test) const {
+    return test(generator_);
   }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const& exec, Spins const& spins) const {
-    return detail::is_stationary(generator_, exec, spins);
-  }
-  template <class Exec, class Spins>
-  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
-    return detail::needs_time_alone(generator_, exec, spins);
-  }
-  template <class Exec, class Spins>
-  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
-    auto prepared = detail::prepare_rate(generator_, exec, rates, t, dt);
-    return Orthogonal<decltype(prepared)>(std::move(prepared));
-  }
+  KOKKOS_FORCEINLINE_FUNCTION Generator const& part() const { return generator_; }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
@@ -80,7 +68,7 @@ class Orthogonal {
     return detail::orthogonal_part(detail::evaluate(generator_, stencil), stencil.center());
   }
 
-  /// Of generators made of a field.
+  // Of generators made of a field.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
       Stencil const& stencil) const {
@@ -113,25 +101,16 @@ class Orthogonal {
     return detail::orthogonal_derivative<K>(generator_, m, source);
   }
 
-  static constexpr bool is_local = detail::is_local<Generator>;
-  bool is_conservative() const { return generator_.is_conservative(); }
+  bool is_conservative() const
+      requires(requires(Generator const& generator) { generator.is_conservative(); }) {
+    return generator_.is_conservative();
+  }
   KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }
 
-  /// Of rigid bodies.
+  // Of rigid bodies.
   template <class Value, class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto inverse_inertia(Site const& site) const {
     return generator_.template inverse_inertia<Value>(site);
-  }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
-    return generator_.energy_density(stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
-    return generator_.energy_magnitude(stencil);
   }
 
  private:

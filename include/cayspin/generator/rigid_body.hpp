@@ -106,9 +106,8 @@ class RigidBody : public detail::BodyGenerator<RigidBody> {
 
   template <class Value, class Site>
   KOKKOS_FORCEINLINE_FUNCTION detail::SymmetricMatrix<Value> inverse_inertia(Site const&) const {
-    using Scalar = detail::scalar_t<Value>;
-    auto const value = [](double entry) { return Value(static_cast<Scalar>(entry)); };
-    return {value(xx_), value(yy_), value(zz_), value(xy_), value(xz_), value(yz_)};
+    return {as_value<Value>(xx_), as_value<Value>(yy_), as_value<Value>(zz_),
+            as_value<Value>(xy_), as_value<Value>(xz_), as_value<Value>(yz_)};
   }
 
  private:
@@ -146,12 +145,13 @@ class RigidBodyEnsemble {
 
   explicit RigidBodyEnsemble(Tensors inverse_inertia) : tensors_(std::move(inverse_inertia)) {}
 
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    detail::require_lattice_of(spins, tensors_, "cayspin::RigidBodyEnsemble");
+  }
+
   template <class Exec, class Spins>
-  Prepared prepare(Exec const&, Spins const& spins, double) const {
-    detail::require_type_of<Spins>(tensors_);
-    if (spins.lattice().shape != tensors_.lattice().shape)
-      throw std::invalid_argument(
-          "cayspin::RigidBodyEnsemble: one inertia tensor per body is needed, on the same lattice");
+  Prepared prepare(Exec const&, Spins const&, double) const {
     return Prepared{{}, tensors_.array()};
   }
 

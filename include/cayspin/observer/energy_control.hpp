@@ -5,10 +5,10 @@
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/narrowing_store.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
-#include <cayspin/integrate.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
+#include <cayspin/step.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +73,7 @@ struct EnergyControlOptions {
 ///   EnergyControl control(generator, spins);
 ///   integrate(exec, stepper, generator, spins, times, control);
 /// Other observers see the spins as they are before or after it, in the order of the arguments.
-/// Does nothing for steppers that keep the state to themselves (AdaptiveRungeKutta).
+/// Refused when compiled with an AdaptiveStepper, which goes on from a state of its own.
 template <class Spins, class Generator>
 class EnergyControl {
   static_assert(
@@ -85,6 +85,7 @@ class EnergyControl {
 
  public:
   using Real = typename Spins::value_type;
+  static constexpr bool changes_spins = true;
 
   /// Throws std::invalid_argument when the generator does not conserve its energy, and for options
   /// that cannot be.
@@ -122,8 +123,7 @@ class EnergyControl {
   template <class Exec>
   void operator()(Exec const& exec, Step const& step, Spins const& spins) {
     detail::check_access<Exec, typename Spins::memory_space>();
-    if (!(spins.lattice() == axes_.lattice()))
-      throw std::invalid_argument("cayspin::EnergyControl: the spins are not of its lattice");
+    require_lattice("cayspin::EnergyControl", axes_.lattice(), spins.lattice());
     auto const prepared = detail::prepare_term(generator_, exec, spins, step.time);
     using Look = detail::EnergyAndSlope<std::remove_const_t<decltype(prepared)>, Real>;
     auto const [energy, slope] =

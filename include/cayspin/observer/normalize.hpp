@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/integrate.hpp>
+#include <cayspin/observer/scalars.hpp>
 #include <cayspin/spin_field.hpp>
+#include <cayspin/step.hpp>
+
+#include <sstream>
+#include <stdexcept>
 
 namespace cayspin {
 
@@ -36,9 +40,27 @@ void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
                               detail::NewtonNormalize<Real>{spins.array(), spins.output(false)});
 }
 
-/// The same as an observer, for runs of so many steps that round-off in |m| adds up:
-/// integrate(..., Every(1000, Normalize{})).
+/// Throws std::invalid_argument when a spin's length differs from 1 by more than `tolerance`, or is
+/// not a number; waits. The default takes spins that were rounded to single precision. For spins of
+/// one's own, before a run: steppers keep the lengths that they are given.
+template <class Exec, class Real, class MemorySpace>
+void require_unit_spins(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
+                        double tolerance = 1e-6) {
+  double const defect = norm_defect(exec, spins);
+  if (defect <= tolerance) return;
+  std::ostringstream message;
+  message
+      << "cayspin::require_unit_spins: the spins must be of length 1, and the largest | |m| - 1 "
+         "| is "
+      << defect << "; cayspin::normalize mends small defects";
+  throw std::invalid_argument(message.str());
+}
+
+/// normalize as an observer, for runs of so many steps that round-off in |m| adds up:
+/// integrate(..., Every(1000, Normalize{})). Refused when compiled with an AdaptiveStepper.
 struct Normalize {
+  static constexpr bool changes_spins = true;
+
   template <class Exec, class Spins>
   void operator()(Exec const& exec, Step const&, Spins const& spins) const {
     normalize(exec, spins);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/integrate.hpp>
 #include <cayspin/observer/scalars.hpp>
+#include <cayspin/step.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -52,7 +52,8 @@ struct SampleOfSites {
 
 /// A Sample of `spins`, in one pass. `source`: what the energy is taken from (an EffectiveField, a
 /// field term or a generator); `generator`: what the largest rate is taken from, where it is asked
-/// for.
+/// for. Each of the two costs one evaluation of its field beside those of the steps: an expensive
+/// one (HostField) is worth an Every of a longer period.
 template <class Exec, class Source, class Real, class MemorySpace,
           class Generator = detail::NoGenerator>
 Sample sample(Exec const& exec, Source const& source, Step const& step,

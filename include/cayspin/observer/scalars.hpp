@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/concepts.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/field/coefficient.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 namespace cayspin {
 
@@ -19,6 +22,10 @@ namespace detail {
 template <class Source, class Stencil, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void energy_at(Source const& source, Stencil const& stencil,
                                            Value* values) {
+  static_assert(
+      has_energy_density<Source, Stencil>,
+      "An energy is that of an EffectiveField, a field term, or a generator that has one: "
+      "a const, device-callable template energy_density(stencil).");
   values[0] = source.energy_density(stencil);
   if constexpr (requires { source.energy_magnitude(stencil); })
     values[1] = source.energy_magnitude(stencil);
@@ -34,6 +41,20 @@ struct EnergyOfSites {
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
     energy_at(source, Stencil<Site, Real>(site, spins), values);
+  }
+};
+
+/// The energy density of each term and its absolute value.
+template <class Source, class Real>
+struct TermEnergiesOfSites {
+  Source source;
+  SiteArray<Real, 3> spins;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    constexpr int terms = energy_terms<Source>;
+    energy_densities(source, Stencil<Site, Real>(site, spins), values);
+    for (int term = 0; term < terms; ++term) values[terms + term] = Kokkos::abs(values[term]);
   }
 };
 
@@ -89,7 +110,7 @@ struct WeightedSpinOfSites {
 template <class Generator, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION auto squared_torque(Generator const& generator,
                                                 Stencil const& stencil) {
-  auto const torque = cross(generator(stencil), stencil.center());
+  auto const torque = cross(evaluate(generator, stencil), stencil.center());
   return dot(torque, torque);
 }
 
@@ -123,6 +144,27 @@ Energy energy(Exec const& exec, Source const& source, SpinField<Real, MemorySpac
       exec, "cayspin::energy", spins.layout(),
       detail::EnergyOfSites<decltype(prepared), Real>{std::move(prepared), spins.array()});
   return {total[0], total[1]};
+}
+
+/// The energy of each term of an EffectiveField, in the order of its terms, from one pass over the
+/// spins at time t. The terms may stand in a FieldWithVacancies or a generator; a single field term
+/// is a sum of one.
+template <class Exec, class Source, class Real, class MemorySpace>
+std::array<Energy, static_cast<std::size_t>(detail::energy_terms<Source>)> term_energies(
+    Exec const& exec, Source const& source, SpinField<Real, MemorySpace> const& spins,
+    double t = 0) {
+  detail::check_access<Exec, MemorySpace>();
+  constexpr auto terms = static_cast<std::size_t>(detail::energy_terms<Source>);
+  std::array<Energy, terms> energies{};
+  auto prepared = detail::prepare_term(source, exec, spins, t);
+  if constexpr (terms > 0) {
+    auto const total = detail::reduce_sites<detail::Sum, static_cast<int>(2 * terms)>(
+        exec, "cayspin::term_energies", spins.layout(),
+        detail::TermEnergiesOfSites<decltype(prepared), Real>{std::move(prepared), spins.array()});
+    for (std::size_t term = 0; term < terms; ++term)
+      energies[term] = {total[term], total[terms + term]};
+  }
+  return energies;
 }
 
 /// max | |m| - 1 |; NaN when any spin is NaN.

@@ -151,7 +151,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
                    double dt) {
     auto prepared = detail::prepare_term(generator, exec, spins, t);
     auto const local = [&](double when) {
-      return detail::prepare_local_generator(generator, exec, spins, when);
+      return detail::prepare_local(generator, exec, spins, when);
     };
     using Kernel =
         detail::FieldExtrapolationStage<Order, Error, decltype(prepared), decltype(local(t)), Real>;

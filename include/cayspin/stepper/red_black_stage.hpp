@@ -152,7 +152,7 @@ struct RedBlackStage {
       flow_ = {generator.template damping<Value>(site_), step, generator.has_precession(),
                generator.is_damped()};
       if constexpr (!in_parts)
-        of_neighbors_ = field_->field(VariedStencil(neighbors_, zero_vector<Value>()));
+        of_neighbors_ = field_->field(VariedStencil(neighbors_, zero<Value>()));
       else if (which == 0 || stage.changes)
         of_neighbors_ = neighbor_field(*field_, Stencil<Site, Real>(site_, stage.spins));
       d_ = own(q_);

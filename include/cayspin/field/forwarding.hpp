@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
+
+namespace cayspin {
+
+/// The host members of a term or generator that is made of others (CRTP): those that are called
+/// before a kernel are forwarded to its parts from here. Derived has two members:
+///   auto with_parts(make) const    the same, for kernels, around make(part) of each part
+///   bool all_parts(test) const     test(part) holds for every part
+/// Members that Derived has itself come first.
+template <class Derived, class... Parts>
+class Forwarding {
+ public:
+  static constexpr bool depends_on_time = (detail::depends_on_time<Parts> || ...);
+  static constexpr bool is_local = (detail::is_local<Parts> && ...);
+
+  template <class Exec, class Spins>
+  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+    return derived().with_parts(
+        [&](auto const& part) { return detail::prepare_term(part, exec, spins, t); });
+  }
+  template <class Exec, class Spins>
+  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
+    return derived().with_parts(
+        [&](auto const& part) { return detail::prepare_rate(part, exec, rates, t, dt); });
+  }
+  template <class Exec, class Spins>
+  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
+    return derived().with_parts(
+        [&](auto const& part) { return detail::prepare_local(part, exec, spins, t); });
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return derived().all_parts(
+        [&](auto const& part) { return detail::is_stationary(part, exec, spins); });
+  }
+  template <class Exec, class Spins>
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return derived().all_parts(
+        [&](auto const& part) { return detail::needs_time_alone(part, exec, spins); });
+  }
+
+ private:
+  Derived const& derived() const { return static_cast<Derived const&>(*this); }
+};
+
+namespace detail {
+
+/// The device members about the energy of a generator that is made of one part with an energy,
+/// which Derived::part() gives.
+template <class Derived, class Part>
+class ForwardingEnergy {
+ public:
+  static constexpr int energy_terms = detail::energy_terms<Part>;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const requires has_energy_density<Part, Stencil> {
+    return part().energy_density(stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const requires has_energy_density<Part, Stencil> {
+    return detail::energy_magnitude(part(), stencil);
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void energy_densities(
+      Stencil const& stencil, Value* energies) const requires has_energy_density<Part, Stencil> {
+    detail::energy_densities(part(), stencil, energies);
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION Part const& part() const {
+    return static_cast<Derived const&>(*this).part();
+  }
+};
+
+}  // namespace detail
+}  // namespace cayspin

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/optional_members.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <stdexcept>
+#include <utility>
+
+namespace cayspin {
+
+namespace detail {
+
+template <class Term, class Real>
+struct FieldOfSites {
+  Term term;
+  SiteArray<Real, 3> spins;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using AtSite = Stencil<Site, Real>;
+    check_field<Term, AtSite>();
+    site.store(term.field(AtSite(site, spins)), output);
+  }
+};
+
+template <class Generator, class Real>
+struct GeneratorOfSites {
+  Generator generator;
+  SiteArray<Real, 3> spins;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    site.store(evaluate(generator, Stencil<Site, Real>(site, spins)), output);
+  }
+};
+
+template <class Spins, class Output>
+void require_other_field(char const* who, Spins const& spins, Output const& output) {
+  require_lattice(who, output.lattice(), spins.lattice());
+  if (output.allocation().data() == spins.allocation().data())
+    throw std::invalid_argument(std::string(who) + ": the output must not be the spins themselves");
+}
+
+}  // namespace detail
+
+/// Writes H at time t of every site into `output`. `field`: an EffectiveField or a field term.
+/// Does not wait. Throws std::invalid_argument when the field or the output are of another lattice
+/// than the spins, or the output is the spins themselves.
+template <class Exec, class Field, class Real, class MemorySpace>
+void evaluate_field(Exec const& exec, Field const& field, SpinField<Real, MemorySpace> const& spins,
+                    double t, SiteField<Real, 3, MemorySpace> const& output) {
+  detail::check_access<Exec, MemorySpace>();
+  detail::require_other_field("cayspin::evaluate_field", spins, output);
+  auto prepared = detail::prepare_term(field, exec, spins, t);
+  detail::for_each_site<Real>(exec, "cayspin::evaluate_field", spins.layout(),
+                              detail::FieldOfSites<decltype(prepared), Real>{
+                                  std::move(prepared), spins.array(), output.output(false)});
+}
+
+/// Writes A of m' = A x m at time t of every site into `output`; the rest as evaluate_field.
+template <class Exec, class Generator, class Real, class MemorySpace>
+void evaluate_generator(Exec const& exec, Generator const& generator,
+                        SpinField<Real, MemorySpace> const& spins, double t,
+                        SiteField<Real, 3, MemorySpace> const& output) {
+  detail::check_access<Exec, MemorySpace>();
+  detail::require_other_field("cayspin::evaluate_generator", spins, output);
+  auto prepared = detail::prepare_term(generator, exec, spins, t);
+  detail::for_each_site<Real>(exec, "cayspin::evaluate_generator", spins.layout(),
+                              detail::GeneratorOfSites<decltype(prepared), Real>{
+                                  std::move(prepared), spins.array(), output.output(false)});
+}
+
+}  // namespace cayspin

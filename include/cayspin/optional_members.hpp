@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/vec3.hpp>
+
+#include <concepts>
+
+// Field terms and generators as the library calls them: each function calls the member of its name
+// or, where there is none, does what the tables of concepts.hpp say. field/local_part.hpp has those
+// of the local part.
+namespace cayspin::detail {
+
+template <class Term, class Stencil>
+concept has_field = requires(Term const& term, Stencil const& stencil) {
+  { term.field(stencil) } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+};
+
+template <class Term, class Stencil>
+concept has_energy_density = requires(Term const& term, Stencil const& stencil) {
+  { term.energy_density(stencil) } -> std::convertible_to<typename Stencil::value_type>;
+};
+
+template <class Term, class Stencil>
+concept has_linear_field = requires(Term const& term, Stencil const& stencil) {
+  { term.linear_field(stencil) } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+};
+
+template <class Term, class Stencil>
+concept has_field_rate = requires(Term const& term, Stencil const& stencil) {
+  {
+    term.field_rate(stencil.center(), stencil)
+    } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+};
+
+template <class Generator, class Stencil>
+concept is_generator = requires(Generator const& generator, Stencil const& stencil) {
+  { generator(stencil) } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+};
+
+/// The sentences that a wrong term is answered with.
+template <class Term, class Stencil>
+constexpr void check_field() {
+  static_assert(has_field<Term, Stencil>,
+                "A field term needs a const, device-callable template field(stencil) that "
+                "returns Vec3<typename Stencil::value_type>, or a prepare(exec, spins, t) that "
+                "returns such a term.");
+}
+template <class Source, class Stencil>
+constexpr void check_energy_density() {
+  static_assert(has_energy_density<Source, Stencil>,
+                "A field term needs a const, device-callable template energy_density(stencil) "
+                "that returns typename Stencil::value_type, with field = -d energy / d spin.");
+}
+
+/// The linear part of an affine field at a stencil's centre, applied to the stencil's array.
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+    Term const& term, Stencil const& stencil) {
+  if constexpr (requires { Term::degree; }) {
+    static_assert(
+        Term::degree == 1 || Term::degree == 2,
+        "A field term's degree is that of its energy: 1 for H independent of the spins, 2 "
+        "for H linear in them; leave it out otherwise.");
+    if constexpr (Term::degree == 2)
+      return term.field(stencil);
+    else
+      return zero<typename Stencil::value_type>();
+  } else {
+    static_assert(has_linear_field<Term, Stencil>,
+                  "This needs the derivative of each field term: a static constexpr int degree (1 "
+                  "for H independent of the spins, 2 for H linear in them), linear_field(stencil) "
+                  "for H affine in them, or, for isotropy::Analytic alone, field_rate(m, rates).");
+    return term.linear_field(stencil);
+  }
+}
+
+/// The derivative of a field at a spin m, along the rates of the stencil's array.
+template <class Term, class Value, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Term const& term, Vec3<Value> const& m,
+                                                   Stencil const& rates) {
+  if constexpr (has_field_rate<Term, Stencil>)
+    return term.field_rate(m, rates);
+  else
+    return linear_field(term, rates);
+}
+
+/// The sum of the absolute values of an energy's terms.
+template <class Source, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Source const& source,
+                                                                          Stencil const& stencil) {
+  if constexpr (requires { source.energy_magnitude(stencil); })
+    return source.energy_magnitude(stencil);
+  else
+    return Kokkos::abs(source.energy_density(stencil));
+}
+
+/// Of how many terms the energy is a sum.
+template <class Source>
+inline constexpr int energy_terms = [] {
+  if constexpr (requires { Source::energy_terms; }) return Source::energy_terms;
+  return 1;
+}();
+
+/// The energy of each of them.
+template <class Source, class Stencil, class Value>
+KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil const& stencil,
+                                                  Value* energies) {
+  if constexpr (requires { source.energy_densities(stencil, energies); }) {
+    source.energy_densities(stencil, energies);
+  } else {
+    check_energy_density<Source, Stencil>();
+    energies[0] = source.energy_density(stencil);
+  }
+}
+
+template <class Term>
+inline constexpr bool depends_on_time = [] {
+  if constexpr (requires { Term::depends_on_time; }) return Term::depends_on_time;
+  return false;
+}();
+
+/// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A.
+template <class Term>
+inline constexpr bool is_local = [] {
+  if constexpr (requires { Term::is_local; }) return Term::is_local;
+  return false;
+}();
+
+template <class Term, class Exec, class Spins>
+bool is_stationary(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.is_stationary(exec, spins); })
+    return term.is_stationary(exec, spins);
+  else
+    return !requires { term.prepare(exec, spins, 0.0); };
+}
+
+template <class Term, class Exec, class Spins>
+bool needs_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.needs_time_alone(exec, spins); })
+    return term.needs_time_alone(exec, spins);
+  else
+    return depends_on_time<Term> || is_stationary(term, exec, spins);
+}
+
+template <class Term, class Spins>
+void check_spins(Term const& term, Spins const& spins) {
+  if constexpr (requires { term.check_spins(spins); }) term.check_spins(spins);
+}
+
+/// The device-callable form of a term or generator for one evaluation at time t. Throws
+/// std::invalid_argument when it was made for spins of another lattice.
+template <class Term, class Exec, class Spins>
+auto prepare_term(Term const& term, Exec const& exec, Spins const& spins, double t) {
+  check_spins(term, spins);
+  if constexpr (requires { term.prepare(exec, spins, t); }) {
+    return term.prepare(exec, spins, t);
+  } else {
+    return term;
+  }
+}
+
+/// The same for the derivative of a term or generator along `rates`, the X = A x m of every spin.
+template <class Term, class Exec, class Spins>
+auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double t, double dt) {
+  if constexpr (requires { term.prepare_rate(exec, rates, t, dt); }) {
+    check_spins(term, rates);
+    return term.prepare_rate(exec, rates, t, dt);
+  } else {
+    return prepare_term(term, exec, rates, t);
+  }
+}
+
+/// A generator's A at the centre of a stencil.
+template <class Generator, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> evaluate(Generator const& generator,
+                                                                        Stencil const& stencil) {
+  static_assert(is_generator<Generator, Stencil>,
+                "A generator needs a const, device-callable template operator()(stencil) that "
+                "returns Vec3<typename Stencil::value_type>: the A of m' = A x m.");
+  return generator(stencil);
+}
+
+}  // namespace cayspin::detail

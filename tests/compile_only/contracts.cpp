@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What the library ships keeps its own contracts, and the contracts tell right from wrong. Compiled,
+// not run.
+#include <cayspin/cayspin.hpp>
+
+namespace cayspin::test {
+namespace {
+
+template <class Real>
+using Spins = SpinField<Real, Kokkos::HostSpace>;
+template <class Real>
+using Scalars = ScalarField<Real, Kokkos::HostSpace>;
+
+struct Rotating {
+  Vec3<double> operator()(double t) const { return {t, 0, 1}; }
+};
+struct OnlyAField {
+  template <class Stencil>
+  auto field(Stencil const& stencil) const {
+    return stencil.center();
+  }
+};
+
+template <class Real, class... Terms>
+inline constexpr bool are_terms = (FieldTerm<Terms, Spins<Real>> && ...);
+
+template <class Real>
+inline constexpr bool terms_of_cayspin =
+    are_terms<Real, Exchange, UniaxialAnisotropy, Zeeman, TimeDependentZeeman<Rotating>, SlabDemag,
+              LayerAveragedSlabDemag<Kokkos::HostSpace>, HostField<Spins<Real>, SlabDemagOnHost>,
+              SiteDependentExchange<Real, Kokkos::HostSpace>,
+              SiteDependentUniaxialAnisotropy<Scalars<Real>, Vec3<double>>, EffectiveField<>,
+              EffectiveField<Exchange, Zeeman>,
+              FieldWithVacancies<EffectiveField<Exchange>, Real, Kokkos::HostSpace>>;
+static_assert(terms_of_cayspin<float> && terms_of_cayspin<double>);
+static_assert(!FieldTerm<OnlyAField> && !FieldTerm<RigidBody> && !FieldTerm<int>);
+
+template <class Real>
+using Llg = LandauLifshitz<EffectiveField<Exchange, TimeDependentZeeman<Rotating>>, Scalars<Real>>;
+template <class Real>
+inline constexpr bool generators_of_cayspin =
+    Generator<Llg<Real>, Spins<Real>> && Generator<Orthogonal<Llg<Real>>, Spins<Real>> &&
+    Generator<RigidBody, Spins<Real>> &&
+    Generator<RigidBodyEnsemble<Real, Kokkos::HostSpace>, Spins<Real>>;
+static_assert(generators_of_cayspin<float> && generators_of_cayspin<double>);
+static_assert(!Generator<EffectiveField<Zeeman>> && !Generator<int>);
+
+// Optional members reach through wrappers.
+static_assert(detail::depends_on_time<Orthogonal<Llg<double>>>);
+static_assert(!detail::depends_on_time<LandauLifshitz<EffectiveField<Exchange>>>);
+static_assert(detail::is_local<EffectiveField<Zeeman, UniaxialAnisotropy>>);
+static_assert(!detail::is_local<EffectiveField<Zeeman, Exchange>>);
+static_assert(!detail::is_local<LandauLifshitz<EffectiveField<Zeeman>>>);
+static_assert(detail::is_local<Orthogonal<RigidBody>>);
+static_assert(detail::energy_terms<Orthogonal<Llg<double>>> == 2);
+
+using F64 = Spins<double>;
+using Adaptive = AdaptiveRkmk<F64, tableau::DormandPrince5>;
+static_assert(Stepper<Rkmk4<F64>> && Stepper<LieEuler<F64>> && Stepper<LieHeun<F64>> &&
+              Stepper<RedBlack4<F64>> && Stepper<FieldExtrapolation3<F64>> &&
+              Stepper<Series4<F64>> && Stepper<ImplicitMidpoint<F64>> && Stepper<Adaptive>);
+static_assert(AdaptiveStepper<Adaptive> && !AdaptiveStepper<ImplicitMidpoint<F64>> &&
+              !AdaptiveStepper<Rkmk4<F64>>);
+static_assert(!Stepper<F64> && !Stepper<int>);
+static_assert(evaluations_per_step<Rkmk4<F64>>() == 4 && evaluations_per_step<LieHeun<F64>>() == 2);
+static_assert(!evaluations_per_step<ImplicitMidpoint<F64>>() && !evaluations_per_step<Adaptive>());
+
+using Control = EnergyControl<F64, LandauLifshitz<EffectiveField<Exchange>>>;
+static_assert(Observer<Record<Zeeman>> && Observer<Normalize> && Observer<Every<Normalize>> &&
+              Observer<Control>);
+static_assert(!Observer<Zeeman> && !Observer<int>);
+static_assert(detail::changes_spins<Every<Every<Normalize>>> && detail::changes_spins<Control> &&
+              !detail::changes_spins<Every<Record<Zeeman>>>);
+
+/// Numbers of any type times vectors of any value, and both neighbours without `template`.
+struct Operators {
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    auto h = 2.0 * stencil.center() + stencil.center() * 2 + 0.5f * stencil.center();
+    h += -next<0>(stencil) * Value(3);
+    h -= cayspin::previous<2>(stencil, zero<Value>());
+    return select<Value>(Value(0) < h.z, h, zero<Value>());
+  }
+  template <class Stencil>
+  KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
+    return dot(stencil.center(), field(stencil));
+  }
+};
+static_assert(FieldTerm<Operators, Spins<float>> && FieldTerm<Operators, Spins<double>>);
+
+}  // namespace
+}  // namespace cayspin::test
