@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
 
   cayspin::SpinField<float> spins("spins", lattice);
   cayspin::copy(exec, mine, spins);
+  cayspin::require_unit_spins(exec, spins);  // steppers keep the lengths that they are given
 
   cayspin::LandauLifshitz const generator(
       cayspin::EffectiveField(cayspin::Exchange(lattice, 1.0), cayspin::Zeeman{{0, 0, 0.5}}), 0.2);

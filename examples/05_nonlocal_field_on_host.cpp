@@ -35,12 +35,10 @@ int main(int argc, char** argv) {
   Kokkos::ScopeGuard kokkos(argc, argv);
   Kokkos::DefaultExecutionSpace exec;
   auto const ring = cayspin::Lattice::chain(64, 1.0, cayspin::Boundary::periodic);
-  using Spins = cayspin::SpinField<double>;
-  Spins spins("spins", ring);
+  cayspin::SpinField<double> spins("spins", ring);
 
-  cayspin::EffectiveField const field(
-      cayspin::Exchange(ring, 0.5), cayspin::Zeeman{{0.05, 0, 0}},
-      cayspin::HostField<Spins, DipolesOfChain>(ring, DipolesOfChain{0.2}));
+  cayspin::EffectiveField const field(cayspin::Exchange(ring, 0.5), cayspin::Zeeman{{0.05, 0, 0}},
+                                      cayspin::HostField(spins, DipolesOfChain{0.2}));
   cayspin::LandauLifshitz const generator(field, 0.5);
   cayspin::LieEuler stepper(spins);
   double const before = cayspin::energy(exec, field, spins).value;
