@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// What the library ships keeps its own contracts, and the contracts tell right from wrong. Compiled,
-// not run.
+// What the library ships keeps its own contracts, and the contracts tell right from wrong.
+// Compiled, not run.
 #include <cayspin/cayspin.hpp>
+
+#include <type_traits>
+#include <utility>
 
 namespace cayspin::test {
 namespace {
@@ -38,10 +41,9 @@ static_assert(!FieldTerm<OnlyAField> && !FieldTerm<RigidBody> && !FieldTerm<int>
 template <class Real>
 using Llg = LandauLifshitz<EffectiveField<Exchange, TimeDependentZeeman<Rotating>>, Scalars<Real>>;
 template <class Real>
-inline constexpr bool generators_of_cayspin =
-    Generator<Llg<Real>, Spins<Real>> && Generator<Orthogonal<Llg<Real>>, Spins<Real>> &&
-    Generator<RigidBody, Spins<Real>> &&
-    Generator<RigidBodyEnsemble<Real, Kokkos::HostSpace>, Spins<Real>>;
+inline constexpr bool generators_of_cayspin = Generator<Llg<Real>, Spins<Real>>&&
+    Generator<Orthogonal<Llg<Real>>, Spins<Real>>&& Generator<RigidBody, Spins<Real>>&&
+        Generator<RigidBodyEnsemble<Real, Kokkos::HostSpace>, Spins<Real>>;
 static_assert(generators_of_cayspin<float> && generators_of_cayspin<double>);
 static_assert(!Generator<EffectiveField<Zeeman>> && !Generator<int>);
 
@@ -71,6 +73,13 @@ static_assert(Observer<Record<Zeeman>> && Observer<Normalize> && Observer<Every<
 static_assert(!Observer<Zeeman> && !Observer<int>);
 static_assert(detail::changes_spins<Every<Every<Normalize>>> && detail::changes_spins<Control> &&
               !detail::changes_spins<Every<Record<Zeeman>>>);
+
+// Types are deduced, from spins and without any.
+using OnHost = SlabDemagOnHost;
+static_assert(std::is_same_v<decltype(HostField(std::declval<Spins<float>>(), OnHost({0, 0, 1}))),
+                             HostField<Spins<float>, OnHost>>);
+static_assert(std::is_same_v<decltype(HostField(Lattice(), OnHost({0, 0, 1}))),
+                             HostField<SpinField<double>, OnHost>>);
 
 /// Numbers of any type times vectors of any value, and both neighbours without `template`.
 struct Operators {

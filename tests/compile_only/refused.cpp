@@ -45,6 +45,12 @@ struct WholeGenerator {
   }
 };
 
+struct WithoutEvaluations {
+  using spins_type = SpinField<double, Kokkos::HostSpace>;
+  template <class Exec, class Generator>
+  void step(Exec const&, Generator const&, spins_type&, double, double) {}
+};
+
 struct NoDegree {
   template <class HostSpins>
   void operator()(HostSpins const&, HostSpins const&, double) const {}
@@ -115,5 +121,25 @@ inline void refused() {
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
 #elif CAYSPIN_TEST_MISTAKE == 22
   EnergyControl const control{LandauLifshitz{EffectiveField{rotating}, 0}, spins};
+#elif CAYSPIN_TEST_MISTAKE == 23
+  SpinField<float, Kokkos::HostSpace> const other("other", Lattice::chain(3));
+  with(HostField(other, SlabDemagOnHost({1, 0, 0})));
+#elif CAYSPIN_TEST_MISTAKE == 24
+  AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
+  integrate(exec, adaptive, body, spins, times, Every(10, Normalize{}));
+#elif CAYSPIN_TEST_MISTAKE == 25
+  AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
+  integrate(exec, adaptive, body, spins, times, EnergyControl(body, spins));
+#elif CAYSPIN_TEST_MISTAKE == 26
+  WithoutEvaluations uncounted;
+  integrate(exec, uncounted, body, spins, times);
+#elif CAYSPIN_TEST_MISTAKE == 27
+  energy(exec, orthogonal(WholeGenerator()), spins);
+#elif CAYSPIN_TEST_MISTAKE == 28
+  EnergyControl const control{orthogonal(WholeGenerator()), spins};
+#elif CAYSPIN_TEST_MISTAKE == 29
+  evaluate_field(exec, body, spins, 0, Spins("output", Lattice::chain(3)));
+#elif CAYSPIN_TEST_MISTAKE == 30
+  largest_rate(exec, Zeeman{{0, 0, 1}}, spins);
 #endif
 }

@@ -66,5 +66,26 @@ TYPED_TEST(Normalizing, KeepsRoundOffFromAddingUp) {
   EXPECT_GT(alone, 5 * eps);
 }
 
+TYPED_TEST(Normalizing, SpinsOfOnesOwnAreHeldToLengthOne) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::square(19, 5);
+  auto numbers = random_directions(lattice.sites(), 8);
+  for (auto& number : numbers) number = static_cast<float>(number);  // what a file of floats holds
+  EXPECT_NO_THROW(require_unit_spins(this->exec, spins_of<Spins>(lattice, numbers)));
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  for (double const factor : {0.0, 0.999, 1.001, 3.0, nan}) {
+    auto wrong = numbers;
+    for (std::size_t i = 150; i < 153; ++i) wrong[i] *= factor;
+    EXPECT_THROW(require_unit_spins(this->exec, spins_of<Spins>(lattice, wrong)),
+                 std::invalid_argument)
+        << factor;
+  }
+  for (auto& number : numbers) number *= 0.99;
+  auto const short_ones = spins_of<Spins>(lattice, numbers);
+  EXPECT_NO_THROW(require_unit_spins(this->exec, short_ones, 0.02));
+  for (int i = 0; i < 3; ++i) normalize(this->exec, short_ones);
+  EXPECT_NO_THROW(require_unit_spins(this->exec, short_ones));
+}
+
 }  // namespace
 }  // namespace cayspin::test

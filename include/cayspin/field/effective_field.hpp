@@ -85,6 +85,7 @@ class EffectiveField<First, Rest...>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
     detail::check_field<First, Stencil>();
+    detail::check_energy_density<First, Stencil>();
     if constexpr (sizeof...(Rest) == 0) {
       return first_.field(stencil);
     } else {
