@@ -8,10 +8,10 @@
 #include <cayspin/step.hpp>
 
 #include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 // The five contracts of the library: what a user may bring, and what each of them may leave out.
 // Terms and generators are templates over the stencil; the concepts check them with the host's
@@ -44,7 +44,7 @@ concept has_evaluations = requires {
   { Stepper::evaluations } -> std::convertible_to<int>;
 };
 
-/// A stepper whose number of evaluations depends on the numbers counts them itself.
+/// Where the number of evaluations depends on the spins, the stepper counts them itself.
 template <class Stepper>
 concept counts_evaluations = requires(Stepper const& stepper) {
   { stepper.evaluations_done() } -> std::convertible_to<std::int64_t>;
@@ -52,98 +52,85 @@ concept counts_evaluations = requires(Stepper const& stepper) {
 
 }  // namespace detail
 
-/// A term of the effective field, with H = -dE/dm. On devices, as const templates over the stencil
-/// (Value = Stencil::value_type):
+/// A term of the effective field, with H = -dE/dm. On devices it has const templates over the
+/// stencil; Value = Stencil::value_type.
 ///
-/// | member                         | says                                 | where it is left out |
-/// |--------------------------------|--------------------------------------|----------------------|
-/// | Vec3<Value> field(stencil)     | H at the stencil's centre            | required             |
-/// | Value energy_density(stencil)  | the site's share of E                | required             |
-/// | Value energy_magnitude(stencil)| the sum of its terms' abs(E)         | abs(energy_density)  |
-/// | static int energy_terms,       | how many terms, and the E of each    | 1, energy_density    |
-/// |   energy_densities(stencil, e) |   in e[0], e[1], ...                 |                      |
-/// | static int degree              | 1: H does not depend on the spins,   | nothing: the next    |
-/// |                                |   2: H is linear in them             |   two are asked      |
-/// | Vec3<Value> linear_field(s)    | the linear part of an affine H       | by the degree        |
-/// | Vec3<Value> field_rate(m, X)   | dH/dt at m along the rates X         | linear_field(X)      |
-/// | static bool is_local           | H is of the spin itself and t alone  | false                |
-/// | Vec3<Value> neighbor_field(s)  | H of the other spins                 | field, 0 where local |
-/// | Vec3<Value> local_field(spin)  | the rest of H                        | 0, field where local |
-/// | bool local_field_varies()      | does the rest change with the spin?  | true, false for 1    |
+/// | member | says | left out |
+/// |---|---|---|
+/// | `Vec3<Value> field(stencil)` | H at the stencil's centre | required |
+/// | `Value energy_density(stencil)` | the site's share of E | required |
+/// | `Value energy_magnitude(stencil)` | the sum of absolute E of its terms | energy_density |
+/// | `static int energy_terms` | of how many terms E is the sum | 1 |
+/// | `energy_densities(stencil, Value* e)` | the E of each of them | energy_density |
+/// | `static int degree` | 1: H without the spins, 2: linear in them | asks for the next two |
+/// | `Vec3<Value> linear_field(stencil)` | the linear part of an affine H | by the degree |
+/// | `Vec3<Value> field_rate(m, rates)` | dH/dt at m along the rates | linear_field(rates) |
+/// | `static bool is_local` | H is of the spin itself and t alone | false |
+/// | `Vec3<Value> neighbor_field(stencil)` | H of the other spins | field, 0 if local |
+/// | `Vec3<Value> local_field(spin)` | the rest of H | 0, field if local |
+/// | `bool local_field_varies()` | does the rest change with the spin? | true, unless degree = 1 |
 ///
 /// Steppers ask for linear_field, field_rate and degree where they need derivatives
 /// (isotropy::Analytic and Series4), and for the local part where they split the field.
 /// Multiples of the spin itself may be left out of neighbor_field and local_field.
+/// Conditions on values are select(condition, yes, no). No `if` works: on the host a value is a
+/// pack of several sites.
 ///
-/// On the host, called before kernels:
+/// On the host, before a kernel, these are called:
 ///
-/// | member                          | says                                | where it is left out |
-/// |---------------------------------|-------------------------------------|----------------------|
-/// | check_spins(spins)              | throws for spins of another lattice | any spins are right  |
-/// | auto prepare(exec, spins, t)    | the term for kernels, at time t     | the term itself      |
-/// | auto prepare_rate(exec, rates,  | the same for dH/dt                  | prepare              |
-/// |   t, dt)                        |                                     |                      |
-/// | auto prepare_local(exec, spins, | the same for the local part;        | prepare where local, |
-/// |   t)                            |   reads no spin                     |   otherwise nothing  |
-/// | static bool depends_on_time     | H changes with t, and what is       | false                |
-/// |                                 |   prepared does not with the spins  |                      |
-/// | bool is_stationary(exec, spins) | what is prepared holds for all      | true without prepare |
-/// |                                 |   times and spins                   |                      |
-/// | bool needs_time_alone(exec,     | it can be prepared knowing t alone  | depends_on_time or   |
-/// |   spins)                        |                                     |   is_stationary      |
+/// | member | says | left out |
+/// |---|---|---|
+/// | `check_spins(spins)` | throws for spins of another lattice | takes any spins |
+/// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
+/// | `auto prepare_rate(exec, rates, t, dt)` | the same for dH/dt | prepare |
+/// | `auto prepare_local(exec, spins, t)` | the local part, from no spin | prepare, if local |
+/// | `static bool depends_on_time` | H changes with t, not by what is prepared | false |
+/// | `bool is_stationary(exec, spins)` | prepared once for all t and spins | true without prepare |
+/// | `bool needs_time_alone(exec, spins)` | t is enough to prepare | one of the two above |
 ///
-/// A term with a prepare needs the device members in what that returns. One that is made of others
-/// has the host members of those by Forwarding (field/forwarding.hpp). Conditions on values are
-/// select(condition, yes, no): on the host a value is a pack of several sites, and no `if` works.
+/// A term with a prepare has the device members in what that returns. One that is made of others
+/// gets the host members from Forwarding (field/forwarding.hpp).
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
   requires detail::has_field<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
   requires detail::has_energy_density<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
 };
 
-/// The A of m' = A x m. Members on the host are those of a FieldTerm; on devices:
+/// The A of m' = A x m. The host members are those of a FieldTerm, and so are those of an energy.
 ///
-/// | member                          | says                                | where it is left out |
-/// |---------------------------------|-------------------------------------|----------------------|
-/// | Vec3<Value> operator()(stencil) | A at the stencil's centre           | required             |
-/// | energy_density and its like     | as of a FieldTerm                   | no energy            |
-/// | bool is_conservative()          | E is kept, with A = -dE/dm up to a  | EnergyControl and    |
-/// |                                 |   multiple of m (a host member)     |   EnergyProjection   |
-/// |                                 |                                     |   refuse             |
-/// | bool is_orthogonal()            | A has no part along m               | false                |
-/// | G bare()                        | the same with that part             | itself               |
-/// | Vec3<Value> rate(m, X)          | A' at m along the rates X           | isotropy::Analytic   |
-/// |                                 |                                     |   refuses            |
-/// | static bool is_local            | A is of the spin itself and t alone | false                |
-/// | Vec3<Value> neighbor_field(s),  | A of a spin in a given field of     | field extrapolation  |
-/// |   generator_at(spin, h)         |   the others                        |   refuses            |
-/// | series_source(stencil),         | what Series4 differentiates, its    | Series4 refuses      |
-/// |   linear_series_source(stencil),|   linear part, and d^K A / dt^K     |                      |
-/// |   derivative<K>(m, source)      |                                     |                      |
+/// | member | says | left out |
+/// |---|---|---|
+/// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
+/// | `Value energy_density(stencil)` | the site's share of E | it has no energy |
+/// | `bool is_conservative()` | E is kept: A = -dE/dm + c m (host) | EnergyControl refuses it |
+/// | `bool is_orthogonal()` | A has no part along m | false |
+/// | `auto bare()` | the same with that part | itself |
+/// | `Vec3<Value> rate(m, rates)` | A' at m along the rates | isotropy::Analytic refuses it |
+/// | `static bool is_local` | A is of the spin itself and t alone | false |
+/// | `Vec3<Value> neighbor_field(stencil)` | H of the other spins | 0 |
+/// | `Vec3<Value> generator_at(spin, h)` | A in that field | field extrapolation refuses it |
+/// | `Vec3<Value> series_source(stencil)` | what Series4 differentiates | Series4 refuses it |
+/// | `Vec3<Value> linear_series_source(stencil)` | its linear part | the same |
+/// | `Vec3<Value> derivative<K>(m, source)` | the K-th time derivative of A | the same |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =
     detail::is_generator<detail::PreparedFor<Type, Spins>, detail::StencilOf<Spins>>;
 
-/// A method that takes steps. A stepper is made for a lattice and holds its work memory.
+/// A method that takes steps. A stepper is made for a lattice and holds its work memory. A step may
+/// exchange the memory of the spins with the stepper's own.
 ///
-/// | member                           | says                                | where it is left out
-/// |
-/// |----------------------------------|-------------------------------------|----------------------|
-/// | spins_type                       | the SpinField that it advances      | required | |
-/// step(exec, generator, spins, t,  | advances spins from t to t + dt     | required             |
-/// |   dt)                            |                                     | | | static int
-/// evaluations           | of the generator in each step       | one of these two is  | | int64
-/// evaluations_done()         | of the generator so far             |   required           | |
-/// static int order                 | of the error                        | not known            |
-/// | reset()                          | forgets the steps so far            | nothing to forget |
-/// | bool takes_batches(exec,         | may batch be called?                | false | | generator,
-/// spins)              |                                     |                      | | batch(exec,
-/// generator, spins, t, | `count` steps at once, to the same  | steps one by one     | |   dt,
-/// count)                     |   bits                              |                      | |
-/// static int work_fields           | fields of three numbers per site    | not known            |
-/// | size_t work_bytes()              | bytes of work memory                | not known |
-///
-/// A step may exchange the memory of spins with the stepper's own.
+/// | member | says | left out |
+/// |---|---|---|
+/// | `spins_type` | the SpinField that it advances | required |
+/// | `step(exec, generator, spins, t, dt)` | advances spins from t to t + dt | required |
+/// | `static int evaluations` | of the generator in each step | evaluations_done() is required |
+/// | `int64 evaluations_done()` | of the generator so far | evaluations is required |
+/// | `static int order` | of the error | not known |
+/// | `reset()` | forgets the steps so far | there is nothing to forget |
+/// | `bool takes_batches(exec, generator, spins)` | may batch be called? | false |
+/// | `batch(exec, generator, spins, t, dt, count)` | count steps, same bits | one by one |
+/// | `static int work_fields` | fields of three numbers per site | not known |
+/// | `size_t work_bytes()` | bytes of work memory | not known |
 template <class Type>
 concept Stepper = requires(Type& stepper,
                            detail::ExecutionOf<typename Type::spins_type> const& exec,
@@ -153,14 +140,14 @@ concept Stepper = requires(Type& stepper,
 };
 
 /// A Stepper that chooses its own steps and delivers spins at the times that are asked for. It goes
-/// on from a state of its own: what is written into `spins` between two steps has no effect.
+/// on from a state of its own: what is written into the spins between two steps has no effect.
 ///
-/// | member                        | says                                          | left out |
-/// |-------------------------------|-----------------------------------------------|----------|
-/// | int64 evaluations_done()      | evaluations of the generator so far           | required |
-/// | int64 accepted_steps()        | own steps taken so far                        | required |
-/// | int64 rejected_steps()        | own steps thrown away so far                  | required |
-/// | reset()                       | the next step begins at its own t and spins   | required |
+/// | member | says | left out |
+/// |---|---|---|
+/// | `int64 evaluations_done()` | evaluations of the generator so far | required |
+/// | `int64 accepted_steps()` | own steps taken so far | required |
+/// | `int64 rejected_steps()` | own steps thrown away so far | required |
+/// | `reset()` | the next step begins at its own t and spins | required |
 template <class Type>
 concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
     requires(Type& stepper, Type const& constant) {
@@ -169,26 +156,22 @@ concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
   stepper.reset();
 };
 
-/// Called by integrate() with the state before the first step and after each step.
+/// What integrate() calls with the state before the first step and after each step.
 ///
-/// | member                         | says                                  | where it is left out
-/// |
-/// |--------------------------------|---------------------------------------|----------------------|
-/// | operator()(exec, Step, spins)  | returns nothing, or a Next            | required | | bool
-/// due(Step)                 | is the call wanted at this step?      | true                 | |
-/// static bool changes_spins      | writes into the spins; refused with   | false                |
-/// |                                |   an AdaptiveStepper                  | |
+/// | member | says | left out |
+/// |---|---|---|
+/// | `operator()(exec, Step, spins)` | returns nothing, or a Next | required |
+/// | `bool due(Step)` | is the call wanted at this step? | true |
+/// | `static bool changes_spins` | it writes into the spins: no AdaptiveStepper takes it | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
-concept Observer = std::is_invocable_v < Type&,
-        detail::ExecutionOf<Spins>
-const&, Step const&,
-    Spins const& > &&requires(Type& observer, detail::ExecutionOf<Spins> const& exec,
-                              Step const& step, Spins const& spins) {
+concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& exec,
+                            Step const& step, Spins const& spins) {
+  observer(exec, step, spins);
   requires std::is_void_v<decltype(observer(exec, step, spins))> ||
       std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
-/// Evaluations of the generator in each step; none where their number depends on the numbers.
+/// Evaluations of the generator in each step; none where their number depends on the spins.
 template <class Stepper>
 constexpr std::optional<int> evaluations_per_step() {
   if constexpr (detail::has_evaluations<Stepper>) {

@@ -15,7 +15,7 @@ namespace cayspin {
 
 namespace detail {
 
-/// A field's first numbers: tasks are its rows and then its margins, before, between and behind the
+/// A field's first numbers: tasks are its rows and then its margins, before, between and after the
 /// components. Packs at the ends of rows read a few numbers there that belong to no site; they are
 /// discarded, but must not trap or be denormal.
 template <class Real>
@@ -165,7 +165,8 @@ inline void require_lattice(char const* who, Lattice const& lattice, Lattice con
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 using ScalarField = SiteField<Real, 1, MemorySpace>;
 
-/// A unit vector per site; starts as +z everywhere.
+/// A unit vector per site; starts as +z everywhere. Steppers keep the lengths that they are given:
+/// require_unit_spins (observer/normalize.hpp) checks spins that were copied in.
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SpinField : public SiteField<Real, 3, MemorySpace> {
  public:

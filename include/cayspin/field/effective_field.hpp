@@ -12,9 +12,10 @@
 namespace cayspin {
 
 /// The sum of field terms, composed by type: what is not listed is not computed. A term is a plain
-/// struct with two device-callable templates,
-///   Vec3<Value> field(Stencil const&) const          H at the stencil's centre
-///   Value       energy_density(Stencil const&) const its share of E, with H = -dE/dm
+/// struct with two const, device-callable templates:
+/// - `Vec3<Value> field(stencil)`, H at the stencil's centre,
+/// - `Value energy_density(stencil)`, its share of E, with H = -dE/dm,
+///
 /// where Value = Stencil::value_type. What else a term may say: FieldTerm in concepts.hpp.
 template <class... Terms>
 class EffectiveField;
@@ -71,7 +72,7 @@ class EffectiveField<First, Rest...>
   explicit EffectiveField(First first, Rest... rest)
       : first_(std::move(first)), rest_(std::move(rest)...) {}
 
-  /// Terms without a local part are left out of what prepare_local returns.
+  // For Forwarding. What prepare_local returns has no terms without a local part.
   template <class Make>
   auto with_parts(Make const& make) const {
     return join(make(first_), rest_.with_parts(make));

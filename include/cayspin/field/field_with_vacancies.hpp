@@ -174,6 +174,7 @@ class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, Mem
   void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, occupation_, "cayspin::FieldWithVacancies");
   }
+  // For Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     using Prepared = decltype(make(field_));

@@ -51,6 +51,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   void check_spins(Spins const& spins) const {
     detail::require_lattice_of(spins, damping_, "cayspin::LandauLifshitz");
   }
+  // For Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     auto prepared = make(field_);

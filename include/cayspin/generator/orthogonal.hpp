@@ -51,6 +51,7 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
  public:
   explicit Orthogonal(Generator generator) : generator_(std::move(generator)) {}
 
+  // For Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     auto prepared = make(generator_);
