@@ -22,10 +22,10 @@
 #include <cayspin/isotropy/policies.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/observer/energy_control.hpp>
-#include <cayspin/observer/evaluate.hpp>
+#include <cayspin/evaluate.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>
-#include <cayspin/observer/scalars.hpp>
+#include <cayspin/scalars.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/spin_field.hpp>

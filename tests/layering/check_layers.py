@@ -18,6 +18,7 @@ LIBRARY = [
     ("generators", ["generator/"]),
     ("rotations", ["rotation/"]),
     ("isotropies", ["isotropy/", "isotropy.hpp"]),
+    ("reductions", ["scalars.hpp", "evaluate.hpp"]),
     ("stages", ["stage/"]),
     ("stability", ["stability.hpp"]),
     ("steppers", ["stepper/"]),

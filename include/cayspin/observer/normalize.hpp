@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/observer/scalars.hpp>
+#include <cayspin/scalars.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/step.hpp>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/observer/scalars.hpp>
+#include <cayspin/scalars.hpp>
 #include <cayspin/step.hpp>
 
 #include <cmath>

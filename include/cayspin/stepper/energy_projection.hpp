@@ -4,7 +4,7 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/isotropy/sigma.hpp>
-#include <cayspin/observer/scalars.hpp>
+#include <cayspin/scalars.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/stepper_base.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/field_algebra.hpp>
+#include <cayspin/stepper/field_algebra.hpp>
 
 #include <array>
 #include <cmath>
