@@ -36,12 +36,17 @@ KOKKOS_FORCEINLINE_FUNCTION void find_arrays(Step const& step,
   constexpr int stage = Flow::stage;
   if constexpr (Flow::reads_start) arrays.start = step.start();
   arrays.level = step.template level<stage>();
-  unrolled<Flow::stages - 1>([&](auto j) {
-    if constexpr (Flow::reads_increment(j()) && Flow::recovers)
-      arrays.increments[j()] = step.template spins<j() + 1>();
-    else if constexpr (Flow::reads_increment(j()))
-      arrays.increments[j()] = step.template increment<j()>();
-  });
+  if constexpr (Flow::recovers) {
+    unrolled<Flow::stages - 1>([&](auto j) {
+      if constexpr (Flow::reads_increment(j()))
+        arrays.increments[j()] = step.template spins<j() + 1>();
+    });
+  } else {
+    unrolled<Flow::stages - 1>([&](auto j) {
+      if constexpr (Flow::reads_increment(j()))
+        arrays.increments[j()] = step.template increment<j()>();
+    });
+  }
   if constexpr (Flow::reads_sum) arrays.sum_before = step.template sum_before<stage>();
   if constexpr (Flow::writes_sum) arrays.sum = step.template sum<stage>();
   if constexpr (Flow::stores_increment) arrays.increment = step.template new_increment<stage>();
