@@ -92,6 +92,30 @@ TEST(RedBlackOrder, OfATermThatSaysNothingAboutItself) {
   expect_orders("blended term", LandauLifshitz(EffectiveField{Blended{{block, 1}}}, 0.1));
 }
 
+/// An antisymmetric coupling to neighbours. It names what stands for a missing one, and does not say
+/// that all of it comes from neighbours.
+struct OpenBonds {
+  static constexpr int degree = 2;
+
+  template <class Stencil>
+  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
+    auto const none = zero<typename Stencil::value_type>();
+    auto const x = next<0>(stencil, none) - previous<0>(stencil, none);
+    auto const z = next<2>(stencil, none) - previous<2>(stencil, none);
+    return Vec3<typename Stencil::value_type>{x.z, z.z, -x.x - z.y};
+  }
+  template <class Stencil>
+  KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(Value(-0.5) * dot(stencil.center(), field(stencil)));
+  }
+};
+
+TEST(RedBlackOrder, OfATermThatNamesWhatStandsForAMissingNeighbour) {
+  expect_orders("open bonds",
+                LandauLifshitz(EffectiveField{Exchange(block, 1), OpenBonds{}}, 0.1));
+}
+
 TEST(RedBlackOrder, OnALatticeWithVacancies) {
   EffectiveField const field(
       SiteDependentExchange(numbers_on<Spins>(block, [](auto site) { return 0.3 * (site % 4); })),
