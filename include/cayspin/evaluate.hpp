@@ -7,6 +7,7 @@
 #include <cayspin/stencil.hpp>
 
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace cayspin {
@@ -40,10 +41,10 @@ struct GeneratorOfSites {
 };
 
 template <class Spins, class Output>
-void require_other_field(char const* who, Spins const& spins, Output const& output) {
-  require_lattice(who, output.lattice(), spins.lattice());
+void require_other_field(char const* output_of, Spins const& spins, Output const& output) {
+  require_lattice(output_of, output.lattice(), spins.lattice());
   if (output.allocation().data() == spins.allocation().data())
-    throw std::invalid_argument(std::string(who) + ": the output must not be the spins themselves");
+    throw std::invalid_argument(std::string(output_of) + ": must not be the spins themselves");
 }
 
 }  // namespace detail
@@ -55,7 +56,7 @@ template <class Exec, class Field, class Real, class MemorySpace>
 void evaluate_field(Exec const& exec, Field const& field, SpinField<Real, MemorySpace> const& spins,
                     double t, SiteField<Real, 3, MemorySpace> const& output) {
   detail::check_access<Exec, MemorySpace>();
-  detail::require_other_field("cayspin::evaluate_field", spins, output);
+  detail::require_other_field("cayspin::evaluate_field's output", spins, output);
   auto prepared = detail::prepare_term(field, exec, spins, t);
   detail::for_each_site<Real>(exec, "cayspin::evaluate_field", spins.layout(),
                               detail::FieldOfSites<decltype(prepared), Real>{
@@ -68,7 +69,7 @@ void evaluate_generator(Exec const& exec, Generator const& generator,
                         SpinField<Real, MemorySpace> const& spins, double t,
                         SiteField<Real, 3, MemorySpace> const& output) {
   detail::check_access<Exec, MemorySpace>();
-  detail::require_other_field("cayspin::evaluate_generator", spins, output);
+  detail::require_other_field("cayspin::evaluate_generator's output", spins, output);
   auto prepared = detail::prepare_term(generator, exec, spins, t);
   detail::for_each_site<Real>(exec, "cayspin::evaluate_generator", spins.layout(),
                               detail::GeneratorOfSites<decltype(prepared), Real>{

@@ -193,7 +193,7 @@ template <class Exec, class Real, class MemorySpace>
 Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const& spins,
                            std::type_identity_t<ScalarField<Real, MemorySpace>> const& weights) {
   detail::check_access<Exec, MemorySpace>();
-  detail::require_lattice_of(spins, weights, "cayspin::magnetization");
+  detail::require_lattice_of(spins, weights, "cayspin::magnetization's weights");
   auto const total = detail::reduce_sites<detail::Sum, 4>(
       exec, "cayspin::magnetization", spins.layout(),
       detail::WeightedSpinOfSites<Real>{spins.array(), weights.array()});

@@ -129,13 +129,13 @@ TYPED_TEST(Lattices, OfObservers) {
     refused("Exchange", [&] { record(this->exec, Step{}, spins); });
     EXPECT_TRUE(samples.empty());
     Spins const output("output", made_for);
-    refused("evaluate_field", [&] {
+    refused("evaluate_field's output", [&] {
       evaluate_field(this->exec, Zeeman{{0, 0, 1}}, spins, 0, output);
     });
-    refused("evaluate_generator", [&] {
+    refused("evaluate_generator's output", [&] {
       evaluate_generator(this->exec, RigidBody::principal(1, 2, 3), spins, 0, output);
     });
-    refused("magnetization", [&] {
+    refused("magnetization's weights", [&] {
       magnetization(this->exec, spins, numbers_on<Spins>(made_for, [](auto) { return 1; }));
     });
   }
