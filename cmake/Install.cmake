@@ -21,7 +21,7 @@ if(TARGET cayspin_io)
   install(EXPORT cayspin_ioTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
 endif()
 if(TARGET cayspin_program)
-  install(TARGETS cayspin_program RUNTIME)
+  install(TARGETS cayspin_program cayspin_reproduce cayspin_extremes RUNTIME)
 endif()
 
 if(Kokkos_DIR)

@@ -36,7 +36,7 @@ auto make_generator(io::Scene const& scene, cayspin::Lattice const& lattice) {
   auto const& anisotropy = field.anisotropies.at(0);
   return cayspin::LandauLifshitz(
       cayspin::EffectiveField(
-          cayspin::Exchange(lattice, field.exchange.value()),
+          cayspin::Exchange(lattice, field.exchange.value().constant),
           cayspin::UniaxialAnisotropy(anisotropy.constant, vector(anisotropy.axis)),
           cayspin::SlabDemag(vector(field.slab_demag.value().normal)),
           cayspin::Zeeman{{applied(0), applied(1), applied(2)}}),

@@ -3,6 +3,7 @@
 
 #include <hdf5.h>
 
+#include <filesystem>
 #include <utility>
 
 namespace cayspin::io {
@@ -41,5 +42,8 @@ using DataspaceHandle = Handle<H5Sclose>;
 using DatatypeHandle = Handle<H5Tclose>;
 using AttributeHandle = Handle<H5Aclose>;
 using PropertyHandle = Handle<H5Pclose>;
+
+/// Opens an existing file for reading.
+FileHandle open_file(std::filesystem::path const& path);
 
 }  // namespace cayspin::io

@@ -2,7 +2,6 @@
 #include "real_dataset.hpp"
 
 #include "error.hpp"
-#include "file.hpp"
 
 #include <fmt/ranges.h>
 

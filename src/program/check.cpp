@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
-#include "describe.hpp"
-#include "failure.hpp"
-#include "kokkos_settings.hpp"
-#include "text.hpp"
-#include "trade/automatic.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/text.hpp"
+#include "trade/resolved.hpp"
 
 #include <fmt/format.h>
 
@@ -29,16 +28,16 @@ void print_json(Plan const& plan, Precision precision) {
       "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"}}\n",
       stable, plan.times.dt, plan.times.steps, plan.lattice.sites(), bytes_per_site(plan),
       memory.spins, memory.work, memory.field, memory.files, memory.total(),
-      plan.method.evaluations == 0 ? "null" : fmt::format("{}", plan.method.evaluations),
-      plan.method.order, plan.frames, plan.file_bytes, io::to_string(plan.method.key.method),
+      plan.variant.evaluations ? fmt::format("{}", *plan.variant.evaluations) : "null",
+      plan.variant.order, plan.frames, plan.file_bytes, plan.variant.method->word,
       to_string(precision));
 }
 
-std::string evaluations_text(MethodEntry const& method) {
-  if (io::is_adaptive(method.key.method)) return "as many evaluations as the tolerance takes";
-  if (method.evaluations == 0) return "as many evaluations as the iteration takes";
-  if (method.evaluations == 1) return "1 evaluation";
-  return fmt::format("{} evaluations", method.evaluations);
+std::string evaluations_text(Variant const& variant) {
+  if (variant.method->adaptive) return "as many evaluations as the tolerance takes";
+  if (!variant.evaluations) return "as many evaluations as the iteration takes";
+  if (variant.evaluations == 1) return "1 evaluation";
+  return fmt::format("{} evaluations", *variant.evaluations);
 }
 
 std::string stability_text(Plan const& plan) {
@@ -68,13 +67,13 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
   auto const& memory = plan.memory;
   print("method",
         fmt::format("{}, order {}, {} of the field per step", describe_method(scene.integrator),
-                    plan.method.order, evaluations_text(plan.method)));
+                    plan.variant.order, evaluations_text(plan.variant)));
   print("time", fmt::format("{} steps of {:.9g}, to t = {:.9g}", plan.times.steps, plan.times.dt,
                             plan.times.at(plan.times.steps)));
   print("stable dt", stability_text(plan));
   print("cost",
         fmt::format(
-            "{} per step, {:.4g} spin updates in all", evaluations_text(plan.method),
+            "{} per step, {:.4g} spin updates in all", evaluations_text(plan.variant),
             static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites())));
   print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, method {}, fields "
                               "{}; with {} of buffers on the host {}",
@@ -93,7 +92,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
 int check(CheckOptions const& options) {
   auto scene = io::read_scene(options.scene, options.overrides);
   io::check_files(scene);
-  if (scene.integrator.method == io::Method::automatic) {
+  if (scene.integrator.method->automatic) {
     auto const space = chosen_space({});
     KokkosSession const kokkos(space, {}, {});
     scene = trade::with_method(scene, space, options.precision);

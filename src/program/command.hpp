@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "plan.hpp"
+#include "simulation/plan.hpp"
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::program {
 
+using namespace simulation;
+
 struct SceneOptions {
   std::filesystem::path scene;
   std::vector<std::string> overrides;
-  Precision precision = Precision::double_precision;
 };
 
 struct RunOptions : SceneOptions {
+  Precision precision = Precision::double_precision;
   std::optional<std::filesystem::path> output, restart;
   std::optional<std::string> space;
   std::optional<int> threads, device;
@@ -24,37 +27,32 @@ struct RunOptions : SceneOptions {
 };
 
 struct CheckOptions : SceneOptions {
+  Precision precision = Precision::double_precision;
   bool json = false;
 };
 
-struct TradeOptions : SceneOptions {
+/// Of commands that try methods, in both precisions or in one.
+struct TryOptions : SceneOptions {
+  std::optional<Precision> precision;
   std::optional<std::string> space;
   std::optional<int> threads;
+};
+
+struct TradeOptions : TryOptions {
   double seconds = 10;  // that a run may take
   bool json = false, advice = false;
 };
 
-struct AdviseOptions : SceneOptions {
-  std::optional<std::string> space;
-  std::optional<int> threads;
+struct AdviseOptions : TryOptions {
   double error = 0;
   std::optional<double> budget;  // seconds
 };
 
-struct ReproduceOptions {
-  std::vector<std::string> parts = {"all"};
-  std::int64_t bodies = 1000;
-  std::uint64_t seed = 1;
-  std::optional<std::filesystem::path> output;  // folder
-  int threads = 1;
-};
+/// What a scene models, in words: headings and lines.
+std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene);
 
-struct ExtremesOptions {
-  bool json = false, longest = false;
-};
-
-/// What `reproduce` may be asked for.
-std::vector<std::string> reproducible_parts();
+/// "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation"
+std::string describe_method(io::Integrator const& integrator);
 
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);
@@ -63,7 +61,9 @@ int trade_off(TradeOptions const& options);
 int advise_on(AdviseOptions const& options);
 int methods();
 int info(std::filesystem::path const& file);
-int reproduce(ReproduceOptions const& options);
-int extremes(ExtremesOptions const& options);
+
+/// Becomes the program of this name that lies beside this one, with the arguments after the
+/// command. Throws UsageError when it cannot.
+[[noreturn]] void become_sibling(std::string const& name, char** argv);
 
 }  // namespace cayspin::program

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "describe.hpp"
+#include "command.hpp"
 
+#include <fmt/args.h>
 #include <fmt/format.h>
 
 namespace cayspin::program {
@@ -33,6 +34,19 @@ std::string lattice_text(io::Scene const& scene) {
                            io::to_string(boundary[axis]));
   return fmt::format("{} x {} x {} = {} sites{}", shape[0], shape[1], shape[2], io::sites(scene),
                      edges);
+}
+
+// The term's formula with its parameters in it.
+template <class Term>
+std::string term_text(Term const& term) {
+  fmt::dynamic_format_arg_store<fmt::format_context> numbers;
+  for (auto const& [name, member] : Term::parameters) {
+    if (auto const* const number = std::get_if<double Term::*>(&member))
+      numbers.push_back(fmt::format("{:.6g}", term.**number));
+    else
+      numbers.push_back(vector_text(term.*std::get<io::Triple Term::*>(member)));
+  }
+  return fmt::vformat(Term::formula, numbers);
 }
 
 std::string applied_text(io::Field const& field) {
@@ -73,11 +87,10 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
   if (scene.system.kind == io::SystemKind::llg) {
     auto const& field = scene.field;
     lines.emplace_back("lattice", lattice_text(scene));
-    if (field.exchange)
-      lines.emplace_back("exchange", fmt::format("H = {:.6g} Lap(m)", *field.exchange));
-    for (auto const& term : field.anisotropies)
-      lines.emplace_back("anisotropy", fmt::format("H = {:.6g} (m.e) e, e = {}", term.constant,
-                                                   vector_text(term.axis)));
+    io::for_each_lattice_term(field, [&]<class Term>(std::optional<Term> const& term) {
+      if (term) lines.emplace_back(Term::key, term_text(*term));
+    });
+    for (auto const& term : field.anisotropies) lines.emplace_back("anisotropy", term_text(term));
     if (field.applied) lines.emplace_back("applied", applied_text(field));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));
   }
@@ -86,8 +99,8 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
 }
 
 std::string describe_method(io::Integrator const& integrator) {
-  std::string text(io::to_string(integrator.method));
-  if (io::is_baseline(integrator.method)) return text;
+  std::string text(integrator.method->word);
+  if (integrator.method->is_baseline()) return text;
   text += fmt::format(", {} generator, {} rotation", io::to_string(integrator.generator),
                       io::to_string(integrator.rotation));
   if (integrator.isotropy == io::Isotropy::constant)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
-#include "failure.hpp"
-#include "text.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/text.hpp"
 
 #include <cayspin/io/trajectory.hpp>
 

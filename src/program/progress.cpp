@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "progress.hpp"
 
-#include "text.hpp"
+#include "simulation/text.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,6 +11,8 @@
 #include <limits>
 
 namespace cayspin::program {
+
+using namespace simulation;
 
 Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool quiet)
     : quiet_(quiet),

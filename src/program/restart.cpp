@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "restart.hpp"
 
-#include "failure.hpp"
+#include "simulation/failure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "plan.hpp"
+#include "simulation/plan.hpp"
 
 #include <cayspin/io/trajectory.hpp>
 
 #include <filesystem>
 
 namespace cayspin::program {
+
+using namespace simulation;
 
 /// The last frame of a trajectory file, from which a run of a scene goes on.
 class Restart {

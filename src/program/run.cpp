@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
-#include "controlled_watch.hpp"
-#include "denormals.hpp"
-#include "describe.hpp"
-#include "failure.hpp"
-#include "kokkos_settings.hpp"
 #include "restart.hpp"
-#include "text.hpp"
-#include "trade/automatic.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/text.hpp"
+#include "trade/resolved.hpp"
+#include "watch.hpp"
 
-#include <cayspin/stepper/implicit.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
@@ -40,7 +37,7 @@ io::TrajectoryHeader make_header(io::Scene const& typed, io::Scene const& scene,
                                  Precision precision, Space const& exec) {
   io::TrajectoryHeader header;
   header.scene_text = typed.text;
-  if (typed.integrator.method == io::Method::automatic) header.resolved_scene = scene.text;
+  if (typed.integrator.method->automatic) header.resolved_scene = scene.text;
   header.cayspin_version = CAYSPIN_VERSION_STRING;
   header.git_commit = CAYSPIN_GIT_COMMIT;
   header.kokkos_version = fmt::format("{}.{}.{}", KOKKOS_VERSION / 10000,
@@ -56,26 +53,22 @@ template <class Real, class Space>
 int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
            RunOptions const& options, Restart const* restart) {
   Kokkos::Timer const clock;
-  using Job = Simulation<Real, Space>;
-  typename Job::Spins const spins("spins", plan.lattice);
-  copy_from_host(restart ? restart->spins() : io::initial_spins(scene), spins);
-  Job job{Space(), spins, SceneGenerator<typename Job::Spins>(scene, plan.lattice), plan.times};
-  if (restart) job.times.first = restart->step();
+  auto times = plan.times;
+  if (restart) times.first = restart->step();
+  Simulation<Real, Space> simulation(scene, plan.lattice, times,
+                                     restart ? restart->spins() : io::initial_spins(scene));
 
   auto const path = output_file(scene, options);
   Watch<Real, Space> watch(
-      scene, job.generator, spins, job.times.first,
+      scene, simulation.generator, simulation.spins, times.first,
       [&] {
-        return io::TrajectoryFile(path, make_header(typed, scene, options.precision, job.exec),
-                                  options.overwrite);
+        return io::TrajectoryFile(
+            path, make_header(typed, scene, options.precision, simulation.exec), options.overwrite);
       },
       options.quiet);
-  job.observer = &watch;
   std::optional<ControlledWatch<Real, Space>> controlled;
-  if (scene.integrator.energy_control) {
-    controlled.emplace(watch, job.generator, spins);
-    job.observer = &*controlled;
-  }
+  if (scene.integrator.energy_control)
+    controlled.emplace(watch, simulation.generator, simulation.spins);
 
   auto const kept = [&] {
     if (!watch.file()) return std::string("no frame was written");
@@ -83,25 +76,19 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
     return fmt::format("the last good frame is {} in {} (step {}, t = {:.9g})",
                        watch.file()->frames() - 1, path.string(), frame.step, frame.time);
   };
-  Summary summary;
-  try {
-    FlushDenormals const while_stepping;
-    summary = plan.method.advance(&job, plan.options);
-  } catch (NumbersFailed const& error) {
-    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
-  } catch (NotConverged const& error) {
-    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
-  } catch (StepTooSmall const& error) {
-    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), error.what(), kept()));
-  }
+  auto const failed = [&](std::string const& why) {
+    return NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), why, kept()));
+  };
+  auto [summary, failure] = controlled ? simulation.advance(plan.variant, plan.options, *controlled)
+                                       : simulation.advance(plan.variant, plan.options, watch);
+  if (failure) throw failed(*failure);
   if (controlled) summary.evaluations += controlled->evaluations();
   auto const frames = watch.file() ? watch.file()->frames() : 0;
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
   bool const whole = !watch.failure() && !watch.interrupted();
   if (watch.file()) whole ? watch.file()->finish(cost) : watch.file()->close(cost);
   watch.progress().close(summary, frames, path.string());
-  if (watch.failure())
-    throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), *watch.failure(), kept()));
+  if (watch.failure()) throw failed(*watch.failure());
   if (!watch.interrupted()) return Status::done;
   fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
              summary.steps, plan.times.steps, kept());
@@ -124,12 +111,12 @@ int run(RunOptions const& options) {
     throw UsageError(
         "--restart: compensated goes on with what rounding left over, which is in no file; "
         "accepted: a run without it");
-  if (typed.integrator.method == io::Method::automatic && options.restart)
+  if (typed.integrator.method->automatic && options.restart)
     throw UsageError(
         "--restart: method \"auto\" may choose other steps; accepted: the method and "
         "dt or tolerance that `cayspin advise` names");
   auto const scene = trade::with_method(typed, space, options.precision);
-  if (typed.integrator.method == io::Method::automatic && !options.quiet)
+  if (typed.integrator.method->automatic && !options.quiet)
     fmt::print("method auto: {}, {}\n", describe_method(scene.integrator),
                scene.integrator.tolerance
                    ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)
@@ -147,14 +134,9 @@ int run(RunOptions const& options) {
   Restart const* const from = restart ? &*restart : nullptr;
   warn_above_stable_dt(scene, plan);
   catch_signals();
-  int status = Status::wrong_usage;
-  EnabledSpaces::for_each([&]<class Space>() {
-    if (space_name<Space>() != space) return;
-    status = options.precision == Precision::double_precision
-                 ? run_on<double, Space>(typed, scene, plan, options, from)
-                 : run_on<float, Space>(typed, scene, plan, options, from);
+  return in_space(space, options.precision, [&]<class Real, class Space>() {
+    return run_on<Real, Space>(typed, scene, plan, options, from);
   });
-  return status;
 }
 
 }  // namespace cayspin::program

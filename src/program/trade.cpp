@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
-#include "failure.hpp"
-#include "kokkos_settings.hpp"
-#include "text.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/text.hpp"
 #include "trade/resolved.hpp"
 
 #include <fmt/format.h>
@@ -20,8 +20,8 @@ using namespace trade;
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
 
 std::string steps_text(Candidate const& candidate, Rung const& rung) {
-  return candidate.is_adaptive() ? fmt::format("tol {:.1e}", rung.steps.tolerance)
-                                 : fmt::format("dt {:.3e}", rung.dt);
+  return candidate.method->adaptive ? fmt::format("tol {:.1e}", rung.steps.tolerance)
+                                    : fmt::format("dt {:.3e}", rung.dt);
 }
 
 std::string amount_text(double amount, char const* form) {
@@ -72,14 +72,14 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
   for (auto const& ladder : ladders) {
     nlohmann::json one;
     one["method"] = ladder.candidate.name();
-    one["baseline"] = ladder.candidate.is_baseline();
+    one["baseline"] = ladder.candidate.method->is_baseline();
     one["rungs"] = nlohmann::json::array();
     for (auto const& rung : ladder.rungs) {
       nlohmann::json step{{"error", rung.error},
                           {"seconds", rung.seconds},
                           {"evaluations", rung.evaluations},
                           {"front", rung.on_front}};
-      if (ladder.candidate.is_adaptive())
+      if (ladder.candidate.method->adaptive)
         step["tolerance"] = rung.steps.tolerance;
       else
         step["dt"] = rung.dt;
@@ -101,8 +101,8 @@ struct Verdict {
 
 // `pilot`: of the scene up to the reference's horizon, where the ladders end.
 Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
-              double asked) {
-  Verdict verdict{asked, advise(pilot, {asked, {}, {}}), 0, 0, 0, {}};
+              double asked, std::optional<Precision> precision) {
+  Verdict verdict{asked, advise(pilot, {asked, {}, precision}), 0, 0, 0, {}};
   verdict.best = std::numeric_limits<double>::infinity();
   for (auto const& ladder : ladders) {
     double const seconds = seconds_to(ladder, asked);
@@ -116,7 +116,7 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
     count = (count + Pilot::looks - 1) / Pilot::looks * Pilot::looks;
     auto const outcome = pilot.run(choice->candidate, reference.horizon, steps, 3);
     verdict.error = distance(outcome, reference.solution);
-    verdict.seconds = outcome.seconds;
+    verdict.seconds = outcome.seconds();
   }
   return verdict;
 }
@@ -124,7 +124,7 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
 void print_verdicts(std::vector<Verdict> const& verdicts) {
   constexpr auto line = "{:>8} {:<33} {:>14} {:>15} {:>15} {:>15} {:>10}\n";
   fmt::print("\nwhat `cayspin advise` says, and how it turns out\n");
-  fmt::print(line, "asked", "advised", "steps", "error / asked", "time / best", "time / foretold",
+  fmt::print(line, "asked", "advised", "steps", "error / asked", "time / best", "time / predicted",
              "tried for");
   for (auto const& [asked, advised, error, seconds, best, best_method] : verdicts) {
     auto const& choice = advised.choice;
@@ -163,7 +163,7 @@ int trade_off(TradeOptions const& options) {
   limits.seconds = options.seconds;
   limits.least_error = std::max(limits.least_error, 10 * reference.uncertainty);
   std::vector<Ladder> ladders;
-  for (auto const& candidate : candidates(scene))
+  for (auto const& candidate : candidates(scene, options.precision))
     ladders.push_back(climb(pilot, candidate, reference, ladders, limits));
   mark_front(ladders);
   if (options.json)
@@ -176,7 +176,7 @@ int trade_off(TradeOptions const& options) {
   Pilot const pilot_as_far(as_far, space);
   std::vector<Verdict> verdicts;
   for (double const error : errors_compared)
-    verdicts.push_back(judge(pilot_as_far, reference, ladders, error));
+    verdicts.push_back(judge(pilot_as_far, reference, ladders, error, options.precision));
   print_verdicts(verdicts);
   return Status::done;
 }
@@ -187,7 +187,7 @@ int advise_on(AdviseOptions const& options) {
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);
-  auto const advised = advise(pilot, {options.error, options.budget, {}});
+  auto const advised = advise(pilot, {options.error, options.budget, options.precision});
   fmt::print("scene       {}\n", scene.path.string());
   print_horizon(advised.horizon, pilot.end(), advised.why_shorter);
   if (!advised.choice) {
@@ -203,7 +203,7 @@ int advise_on(AdviseOptions const& options) {
   auto const& candidate = choice.candidate;
   auto const resolved = resolve(scene, choice);
   fmt::print("method      {}\n", candidate.name());
-  if (candidate.is_adaptive())
+  if (candidate.method->adaptive)
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
   else
     fmt::print("dt          {:.9g}, {} steps\n", resolved.dt, resolved.steps);

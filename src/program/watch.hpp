@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "guard.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
-#include "simulation.hpp"
+#include "simulation/guard.hpp"
+#include "simulation/simulate.hpp"
 
 #include <cayspin/io/scene.hpp>
 #include <cayspin/io/trajectory.hpp>
+#include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <functional>
@@ -17,18 +18,11 @@
 
 namespace cayspin::program {
 
+using namespace simulation;
+
 inline io::Scalars as_scalars(Sample const& sample) {
   auto const& m = sample.magnetization;
   return {sample.energy.value, sample.norm_defect, {m.x, m.y, m.z}};
-}
-
-/// Looks are cheap up to this many sites and taken at every step; beyond, at every tenth.
-inline std::int64_t guard_period(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
-
-inline bool energy_must_fall(io::Scene const& scene) {
-  return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
-         !io::depends_on_time(scene) && scene.integrator.energy_guard &&
-         !io::is_classical(scene.integrator.method);
 }
 
 /// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
@@ -42,7 +36,7 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
   using OpenFile = std::function<io::TrajectoryFile()>;
 
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
-  /// `first`: the step behind which the run begins.
+  /// `first`: the step after which the run begins.
   Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
         std::int64_t first, OpenFile open_file, bool quiet)
       : first_(first),
@@ -50,8 +44,7 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
         output_(scene.output),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
-        guard_(energy_must_fall(scene), !io::is_classical(scene.integrator.method),
-               std::numeric_limits<Real>::epsilon(), guard_period(spins.sites())),
+        guard_(scene, std::numeric_limits<Real>::epsilon()),
         progress_(first, scene.integrator.steps, spins.sites(), quiet),
         frame_("cayspin::frame", static_cast<std::size_t>(spins.sites())),
         host_frame_(Kokkos::create_mirror_view(frame_)) {
@@ -121,6 +114,31 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
   Sample last_frame_;
   std::optional<std::string> failure_;
   bool interrupted_ = false, at_rest_ = false;
+};
+
+/// A watch, and after it the control that holds the run's energy.
+template <class Real, class Space>
+class ControlledWatch : public Observer<Space, SpinField<Real, typename Space::memory_space>> {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+
+ public:
+  ControlledWatch(Watch<Real, Space>& watch, SceneGenerator<Spins> const& generator,
+                  Spins const& spins)
+      : watch_(watch), control_(generator, spins) {}
+
+  bool due(Step const&) const override { return true; }
+
+  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    auto const next = watch_.due(step) ? watch_(exec, step, spins) : Next::proceed;
+    if (next == Next::proceed && !step.last) control_(exec, step, spins);
+    return next;
+  }
+
+  std::int64_t evaluations() const { return control_.evaluations_done(); }
+
+ private:
+  Watch<Real, Space>& watch_;
+  EnergyControl<Spins, SceneGenerator<Spins>> control_;
 };
 
 }  // namespace cayspin::program

@@ -14,7 +14,7 @@ namespace {
 std::string accepted_isotropies(Integrator const& integrator, SystemKind kind) {
   std::string list;
   for (auto const& word : words<Isotropy>()) {
-    if (!takes_isotropy(integrator.method, word.value, kind)) continue;
+    if (!integrator.method->takes(word.value, kind)) continue;
     if (!list.empty()) list += ", ";
     list += word.value == Isotropy::constant ? std::string("{ constant = sigma }")
                                              : fmt::format("\"{}\"", word.name);
@@ -30,27 +30,27 @@ void check_energy_control(Scene const& scene) {
     refuse(scene, key, "needs a system that conserves its energy",
            "damping = 0 with precession, or no such key");
   if (depends_on_time(scene)) refuse(scene, key, "needs a field without t", "no such key");
-  if (is_adaptive(integrator.method) || integrator.method == Method::automatic)
+  if (!integrator.method->has_equal_steps())
     refuse(scene, key,
            fmt::format("method \"{}\" does not step from the spins that it changes",
-                       to_string(integrator.method)),
+                       integrator.method->word),
            "a method with steps of dt, or no such key");
 }
 
 std::string compensated_methods() {
   std::string list;
-  for (auto const& word : words<Method>())
-    if (takes_compensation(word.value))
-      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word.name);
+  for (auto const* const method : methods())
+    if (method->compensated)
+      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", method->word);
   return list;
 }
 
 void check_compensation(Scene const& scene) {
   auto const& integrator = scene.integrator;
   if (!integrator.compensated) return;
-  if (!takes_compensation(integrator.method))
+  if (!integrator.method->compensated)
     refuse(scene, "integrator.compensated",
-           fmt::format("does not go with method \"{}\"", to_string(integrator.method)),
+           fmt::format("does not go with method \"{}\"", integrator.method->word),
            compensated_methods());
   if (integrator.isotropy == Isotropy::energy)
     refuse(scene, "integrator.isotropy", "\"energy\" does not go with compensated",
@@ -62,10 +62,10 @@ void check_compensation(Scene const& scene) {
 void check_isotropy(Scene const& scene) {
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   constexpr std::string_view key = "integrator.isotropy";
-  if (!takes_isotropy(integrator.method, integrator.isotropy, system.kind))
+  if (!integrator.method->takes(integrator.isotropy, system.kind))
     refuse(scene, key,
            fmt::format("\"{}\" does not go with method \"{}\" and kind = \"{}\"",
-                       to_string(integrator.isotropy), to_string(integrator.method),
+                       to_string(integrator.isotropy), integrator.method->word,
                        to_string(system.kind)),
            accepted_isotropies(integrator, system.kind));
   if (integrator.isotropy != Isotropy::energy) return;
@@ -81,9 +81,9 @@ void check_isotropy(Scene const& scene) {
 }
 
 // Colours of a checkerboard that closes on itself, and spins that see their neighbours alone.
-void check_red_black(Scene const& scene) {
+void check_two_colours(Scene const& scene) {
   constexpr std::string_view key = "integrator.method";
-  auto const method = to_string(scene.integrator.method);
+  auto const method = scene.integrator.method->word;
   if (scene.system.kind != SystemKind::llg)
     refuse(scene, key, fmt::format("\"{}\" moves spins of a lattice", method),
            "another method, or kind = \"llg\"");
@@ -108,9 +108,9 @@ void check_red_black(Scene const& scene) {
 
 void check_tangent(Scene const& scene) {
   auto const& integrator = scene.integrator;
-  if (!takes_tangent(integrator.method))
+  if (!integrator.method->takes(Generator::tangent))
     refuse(scene, "integrator.generator",
-           fmt::format("\"tangent\" does not go with method \"{}\"", to_string(integrator.method)),
+           fmt::format("\"tangent\" does not go with method \"{}\"", integrator.method->word),
            "\"default\", \"orthogonal\"");
   if (integrator.isotropy != Isotropy::zero)
     refuse(scene, "integrator.isotropy", "generator \"tangent\" has no isotropy of its own",
@@ -124,22 +124,24 @@ void check_tangent(Scene const& scene) {
 
 void check_combination(Scene const& scene) {
   auto const& integrator = scene.integrator;
-  auto const method = to_string(integrator.method);
+  auto const& method = *integrator.method;
   check_energy_control(scene);
   check_compensation(scene);
-  if (is_baseline(integrator.method) || integrator.method == Method::automatic) return;
-  if (needs_exponential(integrator.method) && integrator.rotation != Rotation::exponential)
+  if (method.is_baseline() || method.automatic) return;
+  if (!method.takes(integrator.rotation)) {
+    bool const exponential = method.usual_rotation() == Rotation::exponential;
     refuse(scene, "integrator.rotation",
-           fmt::format("method \"{}\" is made of exact exponentials", method), "\"exponential\"");
-  if (needs_cayley(integrator.method) && integrator.rotation != Rotation::cayley)
-    refuse(scene, "integrator.rotation",
-           fmt::format("method \"{}\" belongs to Cayley coordinates", method), "\"cayley\"");
-  if (is_red_black(integrator.method)) check_red_black(scene);
+           fmt::format(
+               "method \"{}\" {}", method.word,
+               exponential ? "is made of exact exponentials" : "belongs to Cayley coordinates"),
+           exponential ? "\"exponential\"" : "\"cayley\"");
+  }
+  if (method.neighbors == Neighbors::by_colour) check_two_colours(scene);
   if (integrator.generator == Generator::tangent) return check_tangent(scene);
   check_isotropy(scene);
-  if (is_series(integrator.method) && depends_on_time(scene))
+  if (method.differentiates_field && depends_on_time(scene))
     refuse(scene, "integrator.method",
-           fmt::format("\"{}\" refuses fields that depend on t", method),
+           fmt::format("\"{}\" refuses fields that depend on t", method.word),
            "a method without derivatives, or numbers in field.applied");
 }
 

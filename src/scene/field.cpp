@@ -11,20 +11,57 @@
 namespace cayspin::io::detail {
 namespace {
 
-Anisotropy read_anisotropy(Item const& item, Scene& scene) {
+// A table with every parameter of the term.
+template <class Term>
+Term read_term(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  table.accept_only({"constant", "axis"});
-  return {number(table.required("constant", "a finite number")),
-          direction(table.required("axis", "three numbers"))};
+  std::vector<std::string_view> keys;
+  for (auto const& parameter : Term::parameters) keys.push_back(parameter.name);
+  table.accept_only(keys);
+  Term term;
+  for (auto const& [name, member] : Term::parameters) {
+    if (auto const* const value = std::get_if<double Term::*>(&member))
+      term.** value = number(table.required(name, "a finite number"));
+    else
+      term.*std::get<Triple Term::*>(member) = direction(table.required(name, "three numbers"));
+  }
+  return term;
+}
+
+// Such a table, or the number itself where the term has no other parameter.
+template <class Term>
+Term read_lattice_term(Item const& item, Scene& scene) {
+  if constexpr (Term::parameters.size() == 1) {
+    Term term;
+    term.*std::get<double Term::*>(Term::parameters[0].member) = number(item);
+    return term;
+  } else {
+    return read_term<Term>(item, scene);
+  }
+}
+
+void read_lattice_terms(Table const& table, Field& field) {
+  for_each_lattice_term(field, [&]<class Term>(std::optional<Term>& term) {
+    if (auto const item = table.find(Term::key))
+      term = read_lattice_term<Term>(*item, table.scene());
+  });
+}
+
+std::vector<std::string_view> field_keys() {
+  std::vector<std::string_view> keys;
+  for_each_lattice_term(Field{},
+                        [&]<class Term>(std::optional<Term> const&) { keys.push_back(Term::key); });
+  keys.insert(keys.end(), {"anisotropy", "applied", "slab_demag", "mu0"});
+  return keys;
 }
 
 std::vector<Anisotropy> read_anisotropies(Item const& item, Scene& scene) {
   constexpr std::string_view accepted =
       "{ constant = K, axis = [x, y, z] }, or an array of such tables";
-  if (item.node->is_table()) return {read_anisotropy(item, scene)};
+  if (item.node->is_table()) return {read_term<Anisotropy>(item, scene)};
   std::vector<Anisotropy> all;
   for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
-    all.push_back(read_anisotropy(entry, scene));
+    all.push_back(read_term<Anisotropy>(entry, scene));
   }
   return all;
 }
@@ -78,8 +115,8 @@ Field read_field(Table const& root, SystemKind kind) {
     found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
   }
   Table const table(*found, root.scene());
-  table.accept_only({"exchange", "anisotropy", "applied", "slab_demag", "mu0"});
-  if (auto const item = table.find("exchange")) field.exchange = number(*item);
+  table.accept_only(field_keys());
+  read_lattice_terms(table, field);
   if (auto const item = table.find("anisotropy")) {
     field.anisotropies = read_anisotropies(*item, root.scene());
   }

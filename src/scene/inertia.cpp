@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "files.hpp"
+#include "hdf5/real_dataset.hpp"
 #include "sections.hpp"
+#include "trajectory/stored_spins.hpp"
 
 #include <cayspin/io/scene.hpp>
 
@@ -22,12 +23,20 @@ Eigen::Matrix3d inverse(InertiaTensor const& tensor) {
   return symmetric_part(tensor).llt().solve(Eigen::Matrix3d::Identity());
 }
 
+// Dataset /inertia, which has to be (count, 3, 3). Throws std::runtime_error with one line.
+RealDataset open_inertia(std::filesystem::path const& path, std::int64_t count) {
+  RealDataset inertia(path, "/inertia");
+  if (inertia.extents() != Extents{static_cast<hsize_t>(count), 3, 3})
+    inertia.refuse_extents(fmt::format("({}, 3, 3)", count));
+  return inertia;
+}
+
 std::vector<InertiaTensor> read_file(Scene const& scene, std::filesystem::path const& path) {
   constexpr std::string_view key = "system.inertia.file";
   std::vector<InertiaTensor> tensors(static_cast<std::size_t>(sites(scene)));
   double tolerance = 0;
   try {
-    auto const dataset = detail::open_inertia(path, sites(scene));
+    auto const dataset = open_inertia(path, sites(scene));
     auto const values = dataset.read();
     for (std::size_t body = 0; body < tensors.size(); ++body) {
       std::copy_n(values.data() + 9 * body, 9, tensors[body].begin());
@@ -56,6 +65,24 @@ std::optional<std::string> detail::inertia_fault(InertiaTensor const& tensor, do
   bool const positive = symmetric_part(tensor).llt().info() == Eigen::Success;
   if (!positive || !inverse(tensor).allFinite()) return "the tensor is not positive definite";
   return std::nullopt;
+}
+
+void check_files(Scene const& scene) {
+  if (auto const* const start = std::get_if<FileStart>(&scene.initial)) {
+    try {
+      StoredSpins(start->path, scene.lattice.shape);
+    } catch (std::runtime_error const& error) {
+      throw scene_error(scene, "initial.file", error.what());
+    }
+  }
+  auto const* const file = std::get_if<InertiaFile>(&scene.system.inertia);
+  if (scene.system.kind == SystemKind::rigid_body && file != nullptr) {
+    try {
+      open_inertia(file->path, sites(scene));
+    } catch (std::runtime_error const& error) {
+      throw scene_error(scene, "system.inertia.file", error.what());
+    }
+  }
 }
 
 std::vector<InertiaTensor> inertia(Scene const& scene) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
-#include "start_variables.hpp"
+#include "start.hpp"
 
 #include <cayspin/io/expression.hpp>
 

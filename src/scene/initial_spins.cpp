@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "normalise.hpp"
-#include "start_variables.hpp"
+#include "start.hpp"
 
 #include <cayspin/io/expression.hpp>
 #include <cayspin/io/scene.hpp>

@@ -2,6 +2,7 @@
 #include "sections.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,22 +61,34 @@ void read_isotropy(Item const& item, Scene& scene, Integrator& integrator) {
   if (integrator.isotropy == Isotropy::constant) item.fail("\"constant\" has no value", accepted);
 }
 
+Method const* read_method(Table const& table) {
+  std::vector<std::string_view> known;
+  for (auto const* const method : methods()) known.push_back(method->word);
+  auto const accepted = fmt::format("\"{}\"", fmt::join(known, "\", \""));
+  auto const item = table.required("method", accepted);
+  auto const word = string(item, accepted);
+  auto const* const method = find_method(word);
+  if (method == nullptr) unknown_word(item, word, known, accepted);
+  return method;
+}
+
 // How the method meets the group: what the baselines do not have.
 void read_coordinates(Table const& table, Integrator& integrator) {
-  auto const method = to_string(integrator.method);
+  auto const& method = *integrator.method;
   auto const generator = table.find("generator");
   auto const isotropy = table.find("isotropy");
   auto const rotation = table.find("rotation");
   auto const cap = table.find("isotropy_cap");
-  if (is_baseline(integrator.method) || integrator.method == Method::automatic) {
+  if (method.is_baseline() || method.automatic) {
     for (auto const& item : {generator, isotropy, rotation, cap}) {
-      if (item) item->fail(fmt::format("method \"{}\" does not take it", method), "no such key");
+      if (item)
+        item->fail(fmt::format("method \"{}\" does not take it", method.word), "no such key");
     }
     return;
   }
   if (generator) integrator.generator = word<Generator>(*generator);
   if (isotropy) read_isotropy(*isotropy, table.scene(), integrator);
-  if (needs_exponential(integrator.method)) integrator.rotation = Rotation::exponential;
+  integrator.rotation = method.usual_rotation();
   if (rotation) integrator.rotation = word<Rotation>(*rotation);
   if (cap) {
     if (integrator.isotropy != Isotropy::finite_difference &&
@@ -88,10 +101,10 @@ void read_coordinates(Table const& table, Integrator& integrator) {
 
 // What chooses the steps of an adaptive method; the others have none of it.
 void read_tolerance(Table const& table, Integrator& integrator) {
-  if (!is_adaptive(integrator.method)) {
+  if (!integrator.method->adaptive) {
     for (auto const* key : {"tolerance", "min_dt", "max_dt"})
       if (auto const item = table.find(key))
-        item->fail(fmt::format("method \"{}\" takes steps of dt", to_string(integrator.method)),
+        item->fail(fmt::format("method \"{}\" takes steps of dt", integrator.method->word),
                    "no such key");
     return;
   }
@@ -111,7 +124,7 @@ void read_tolerance(Table const& table, Integrator& integrator) {
 // What "auto" chooses a method for.
 void read_error(Table const& table, Integrator& integrator) {
   auto const item = table.find("error");
-  if (integrator.method != Method::automatic) {
+  if (!integrator.method->automatic) {
     if (item) item->fail("belongs to method \"auto\"", "no such key");
     return;
   }
@@ -125,8 +138,8 @@ void read_error(Table const& table, Integrator& integrator) {
 // An adaptive run that does not say how often to look does so at its end.
 double read_dt(Table const& table, Integrator const& integrator) {
   auto const end = table.find("end");
-  bool const chooses = is_adaptive(integrator.method) || integrator.method == Method::automatic;
-  if (chooses && end && !table.contains("dt")) return positive_number(*end);
+  if (!integrator.method->has_equal_steps() && end && !table.contains("dt"))
+    return positive_number(*end);
   return positive_number(table.required("dt", "a number > 0"));
 }
 
@@ -134,11 +147,12 @@ double read_dt(Table const& table, Integrator const& integrator) {
 
 Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table = root.table("integrator", "a table [integrator]");
-  table.accept_only({"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end",
-                     "steps", "tolerance", "min_dt", "max_dt", "error", "compensated",
-                     "energy_guard", "energy_control", "until_torque"});
+  table.accept_only(with_flags<Integrator>(
+      {"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end", "steps",
+       "tolerance", "min_dt", "max_dt", "error", "until_torque"},
+      "until_torque"));
   Integrator integrator;
-  integrator.method = word<Method>(table.required("method", all_words<Method>()));
+  integrator.method = read_method(table);
   read_coordinates(table, integrator);
   read_tolerance(table, integrator);
   read_error(table, integrator);
@@ -147,9 +161,7 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   if (!std::isfinite(static_cast<double>(integrator.steps) * integrator.dt)) {
     table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");
   }
-  if (auto const item = table.find("compensated")) integrator.compensated = boolean(*item);
-  if (auto const item = table.find("energy_guard")) integrator.energy_guard = boolean(*item);
-  if (auto const item = table.find("energy_control")) integrator.energy_control = boolean(*item);
+  read_flags(table, integrator);
   if (auto const item = table.find("until_torque")) {
     if (kind == SystemKind::rigid_body) {
       item->fail("a rigid body has no torque m x H", "no such key");

@@ -11,7 +11,7 @@ Output read_output(Table const& root, std::int64_t steps) {
   auto const found = root.find("output");
   if (!found) return output;
   Table const table(*found, root.scene());
-  table.accept_only({"file", "every", "scalars_every"});
+  table.accept_only(with_flags<Output>({"file", "every", "scalars_every"}));
   constexpr std::string_view accepted = "the name of an HDF5 file";
   constexpr std::string_view period = "a whole number of steps >= 1";
   if (auto const item = table.find("file")) {
@@ -25,6 +25,7 @@ Output read_output(Table const& root, std::int64_t steps) {
   if (auto const item = table.find("scalars_every")) {
     output.scalars_every = integer(*item, 1, period);
   }
+  read_flags(table, output);
   return output;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "overrides.hpp"
-
-#include "message.hpp"
+#include "sections.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "overrides.hpp"
 #include "sections.hpp"
 
 #include <cayspin/io/expression.hpp>

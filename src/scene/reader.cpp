@@ -1,16 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "reader.hpp"
 
-#include "normalise.hpp"
+#include "start.hpp"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 namespace cayspin::io::detail {
 namespace {
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      std::size_t const replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
 
 std::string type_name(toml::node const& node) {
   switch (node.type()) {
@@ -39,6 +54,35 @@ std::string typed_text(toml::node const& node) {
 
 }  // namespace
 
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text;
+}
+
+void fail(std::string_view place, std::string_view key, std::string_view what,
+          std::string_view accepted) {
+  std::string line(place);
+  if (!key.empty()) line += fmt::format(": {}", key);
+  line += fmt::format(": {}", what);
+  if (!accepted.empty()) line += fmt::format("; accepted: {}", accepted);
+  throw SceneError(one_line(std::move(line)));
+}
+
+std::string did_you_mean(std::string_view word, std::span<std::string_view const> known) {
+  if (word.size() > 64) return {};
+  std::string_view best;
+  std::size_t best_distance = 3;
+  for (auto const candidate : known) {
+    auto const distance = edit_distance(word, candidate);
+    if (distance < best_distance && distance < candidate.size()) {
+      best = candidate;
+      best_distance = distance;
+    }
+  }
+  return best.empty() ? std::string{} : fmt::format(", did you mean \"{}\"?", best);
+}
+
 void Item::wrong_type(std::string_view accepted) const {
   constexpr std::size_t longest = 40;
   bool const short_value = node->is_value() && typed_text(*node).size() <= longest;
@@ -57,13 +101,13 @@ Table::Table(Item item, Scene& scene) : item_(std::move(item)), scene_(&scene) {
   if (!item_.node->is_table()) item_.wrong_type("a table");
 }
 
-void Table::accept_only(std::initializer_list<std::string_view> known) const {
+void Table::accept_only(std::vector<std::string_view> const& known) const {
   for (auto const& [key, node] : *item_.node->as_table()) {
     if (std::ranges::find(known, key.str()) != known.end()) continue;
     auto const place = place_of(node.source(), item_.place);
     auto const full =
         item_.key.empty() ? std::string(key.str()) : fmt::format("{}.{}", item_.key, key.str());
-    auto const hint = did_you_mean(key.str(), {known.begin(), known.size()});
+    auto const hint = did_you_mean(key.str(), known);
     detail::fail(place, full, "unknown key" + hint, fmt::format("{}", fmt::join(known, ", ")));
   }
 }
@@ -154,6 +198,11 @@ Triple direction(Item const& item) {
   auto const normalised = normalise(triple(item));
   if (!normalised) item.fail("is a zero vector", "three numbers that are not all zero");
   return *normalised;
+}
+
+void unknown_word(Item const& item, std::string_view name,
+                  std::vector<std::string_view> const& known, std::string_view accepted) {
+  item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), accepted);
 }
 
 std::filesystem::path input_file(Table const& table, std::string_view name) {

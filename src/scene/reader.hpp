@@ -1,20 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "message.hpp"
-
 #include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <initializer_list>
+#include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace cayspin::io::detail {
+
+/// Control characters become '?', so that a name typed in a scene cannot break the line.
+std::string one_line(std::string text);
+
+/// `place: key: what; accepted: accepted`; empty parts are left out.
+[[noreturn]] void fail(std::string_view place, std::string_view key, std::string_view what,
+                       std::string_view accepted = {});
+
+/// `, did you mean "..."?` when one of the known words is within two edits, otherwise empty.
+std::string did_you_mean(std::string_view word, std::span<std::string_view const> known);
 
 /// A value of the scene with its full key and the place it was typed at.
 struct Item {
@@ -38,7 +47,7 @@ class Table {
   Table(Item item, Scene& scene);
 
   /// Refuses every other key.
-  void accept_only(std::initializer_list<std::string_view> known) const;
+  void accept_only(std::vector<std::string_view> const& known) const;
 
   std::optional<Item> find(std::string_view name) const;
   Item required(std::string_view name, std::string_view accepted) const;
@@ -78,6 +87,11 @@ std::string all_words() {
   return list;
 }
 
+/// Refuses a word that is not one of `known`.
+[[noreturn]] void unknown_word(Item const& item, std::string_view name,
+                               std::vector<std::string_view> const& known,
+                               std::string_view accepted);
+
 /// A word of the tables in words.hpp.
 template <class Value>
 Value word(Item const& item, std::string_view accepted = {}) {
@@ -86,7 +100,23 @@ Value word(Item const& item, std::string_view accepted = {}) {
   if (auto const* const found = find_word<Value>(name)) return found->value;
   std::vector<std::string_view> known;
   for (auto const& word : words<Value>()) known.push_back(word.name);
-  item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), all);
+  unknown_word(item, name, known, all);
+}
+
+/// Sets the keys of a section that are true or false.
+template <class Section>
+void read_flags(Table const& table, Section& section) {
+  for (auto const& flag : Section::flags())
+    if (auto const item = table.find(flag.key)) section.*flag.member = boolean(*item);
+}
+
+/// `keys` with those of a section's flags before the one that is `before`, or at the end.
+template <class Section>
+std::vector<std::string_view> with_flags(std::vector<std::string_view> keys,
+                                         std::string_view before = {}) {
+  auto place = std::ranges::find(keys, before);
+  for (auto const& flag : Section::flags()) place = keys.insert(place, flag.key) + 1;
+  return keys;
 }
 
 }  // namespace cayspin::io::detail

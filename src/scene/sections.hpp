@@ -13,6 +13,10 @@ Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
 Output read_output(Table const& root, std::int64_t steps);
 
+/// Puts "key.path=VALUE" into the table. Missing tables are created; a whole number in the path is
+/// an index into an array. Throws SceneError.
+void apply_override(toml::table& root, std::string const& assignment);
+
 /// Why a tensor is refused, or nothing when it is symmetric to `tolerance` times its largest entry
 /// and positive definite.
 std::optional<std::string> inertia_fault(InertiaTensor const& tensor, double tolerance);

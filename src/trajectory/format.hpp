@@ -1,10 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "hdf5/handle.hpp"
+
+#include <array>
+#include <cstdint>
+
 namespace cayspin::io {
 
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
+
+/// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame, or,
+/// where that passes `limit` bytes, the frame cut into equal slabs along z, then y, then x.
+/// HDF5 stores a chunk's length in 32 bits, the 4 bytes of the checksum included.
+inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
+                                          std::uint64_t bytes_per_component,
+                                          std::uint64_t limit = 0xFFFFFFFFu - 4u) {
+  std::array<hsize_t, 5> chunk{1, 1, 1, 1, 3};
+  std::uint64_t inner = 3 * bytes_per_component;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto const extent = static_cast<std::uint64_t>(shape[axis]);
+    auto const fits = limit / inner;
+    auto const pieces = fits >= extent ? 1 : fits == 0 ? extent : (extent + fits - 1) / fits;
+    chunk[3 - axis] = (extent + pieces - 1) / pieces;
+    inner *= extent;
+  }
+  return chunk;
+}
 
 }  // namespace cayspin::io

@@ -40,7 +40,7 @@ void require_replaceable(fs::path const& path) {
   if (locked) throw_failure(path, action, "another program has it open");
 }
 
-// Here as ever, HDF5 is not to be the one that finds the disk full.
+// Here as always, HDF5 is not to be the one that finds the disk full.
 void create_with_room(fs::path const& written, fs::path const& path, bool may_exist) {
   int const flags = O_WRONLY | O_CREAT | O_CLOEXEC | (may_exist ? 0 : O_EXCL);
   int const file = ::open(written.c_str(), flags, 0666);

@@ -3,7 +3,7 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/file.hpp"
+#include "hdf5/handle.hpp"
 #include "scalar_series.hpp"
 
 #include <cayspin/io/trajectory.hpp>

@@ -48,7 +48,7 @@ void limit(int resource, long value) {
   std::vector<char*> words{const_cast<char*>("cayspin")};
   for (auto const& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  ::execv(CAYSPIN_PROGRAM, words.data());
+  ::execv(treatment.program.c_str(), words.data());
   ::_exit(122);
 }
 

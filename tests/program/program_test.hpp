@@ -32,6 +32,7 @@ struct Treatment {
   long memory_limit = -1;      // bytes of address space
   double interrupt_after = 0;  // SIGINT, in seconds after its first frame is in the file
   std::filesystem::path interrupt_when = {};  // ... of this file
+  std::filesystem::path program = CAYSPIN_PROGRAM;
 };
 
 /// Each test in a folder of its own, which is the program's working directory.

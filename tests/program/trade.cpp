@@ -161,5 +161,36 @@ TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {
   EXPECT_TRUE(contains(outcome.errors, "beyond the budget"));
 }
 
+// Without --precision both are tried: here single precision is among the fastest.
+TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
+  for (std::string const precision : {"double", "single"}) {
+    auto const outcome = start({"trade", write("scene.toml", scene()), "--json", "--seconds", "0.1",
+                                "--threads", "1", "--precision", precision});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    auto const trade = nlohmann::json::parse(outcome.output);
+    ASSERT_FALSE(trade["methods"].empty());
+    for (auto const& method : trade["methods"])
+      EXPECT_EQ(method["method"].get<std::string>().find(", single") != std::string::npos,
+                precision == "single")
+          << method["method"];
+  }
+}
+
+TEST_F(Trading, AdvisesInTheOnePrecisionThatIsAskedFor) {
+  for (std::string const precision : {"double", "single"}) {
+    auto const outcome = start({"advise", write("scene.toml", scene()), "--error", "1e-3",
+                                "--threads", "1", "--precision", precision});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    auto const command = outcome.output.substr(outcome.output.find("run it"));
+    EXPECT_EQ(command.find("--precision single") != std::string::npos, precision == "single")
+        << outcome.output;
+    std::istringstream lines(outcome.output.substr(outcome.output.find("next to it")));
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line))
+      EXPECT_EQ(line.find(", single") != std::string::npos, precision == "single") << line;
+  }
+}
+
 }  // namespace
 }  // namespace cayspin::program::test

@@ -113,6 +113,10 @@ std::vector<WrongUse> wrong_commands() {
       {"InfoOfMissingFile", {"info", "none.h5"}, "none.h5"},
       {"InfoOfAnotherFile", {"info", "chain.toml"}, "chain.toml"},
       {"InfoOfOtherHdf5", {"info", "small.h5"}, "small.h5"},
+      {"UnknownPartOfThePaper", {"reproduce", "table9"}, "table1"},
+      {"UnknownOptionOfReproduce", {"reproduce", "--fast"}, "--fast"},
+      {"UnknownOptionOfExtremes", {"extremes", "--fast"}, "--fast"},
+      {"TradeInUnknownPrecision", {"trade", "chain.toml", "--precision", "half"}, "single"},
       {"MethodsWithArgument", {"methods", "euler"}, "euler"},
   };
 }
@@ -133,6 +137,18 @@ TEST_P(WrongCommand, IsOneLineAndStatusTwo) {
 
 INSTANTIATE_TEST_SUITE_P(Program, WrongCommand, testing::ValuesIn(wrong_commands()),
                          [](auto const& use) { return std::string(use.param.name); });
+
+using MissingSibling = ProgramTest;
+
+TEST_F(MissingSibling, IsOneLineAndStatusTwo) {
+  fs::copy_file(CAYSPIN_PROGRAM, in_folder("cayspin"));
+  for (std::string const command : {"reproduce", "extremes"}) {
+    auto const outcome = start({command}, {.program = in_folder("cayspin")});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors));
+    EXPECT_TRUE(contains(outcome.errors, in_folder("cayspin-" + command).string()));
+  }
+}
 
 using ExistingOutput = ProgramTest;
 

@@ -30,7 +30,7 @@ TEST(Scene, EveryKeyArrives) {
   EXPECT_EQ(scene.lattice.boundary[0], BoundaryKind::open);
   EXPECT_EQ(scene.lattice.boundary[1], BoundaryKind::periodic);
   EXPECT_EQ(sites(scene), 12);
-  EXPECT_EQ(scene.field.exchange, 1.0);
+  EXPECT_EQ(scene.field.exchange.value().constant, 1.0);
   ASSERT_EQ(scene.field.anisotropies.size(), 1U);
   EXPECT_EQ(scene.field.anisotropies[0].constant, 1);
   EXPECT_EQ(scene.field.anisotropies[0].axis, (Triple{0, 0, 1}));
@@ -45,7 +45,7 @@ TEST(Scene, EveryKeyArrives) {
   EXPECT_FALSE(scene.field.slab_demag->average_layer);
   EXPECT_FALSE(scene.field.slab_demag->on_host);
   EXPECT_EQ(scene.field.mu0, 1.5);
-  EXPECT_EQ(scene.integrator.method, Method::rkmk4);
+  EXPECT_EQ(scene.integrator.method, find_method("rkmk4"));
   EXPECT_EQ(scene.integrator.steps, 6000);
   EXPECT_EQ(scene.output.file, "slab.h5");
   EXPECT_EQ(scene.output.every, 100);
@@ -91,7 +91,7 @@ TEST(Scene, WholeNumbersServeAsNumbers) {
                                {"system.damping=1", "field.exchange=2", "field.mu0=3",
                                 "lattice.spacing=2", "integrator.dt=1", "integrator.end=60"});
   EXPECT_EQ(scene.system.damping, 1);
-  EXPECT_EQ(scene.field.exchange, 2.0);
+  EXPECT_EQ(scene.field.exchange.value().constant, 2.0);
   EXPECT_EQ(scene.lattice.spacing, (Triple{2, 2, 2}));
   EXPECT_EQ(scene.integrator.steps, 60);
 }
@@ -124,12 +124,12 @@ TEST(Scene, IsotropyConstantCarriesSigma) {
 
 TEST(Scene, EveryMethodIsAccepted) {
   Folder const folder;
-  for (auto const& method : words<Method>()) {
-    auto const path = folder.write(replaced(least_scene, "euler", method.name));
+  for (auto const* const method : methods()) {
+    auto const path = folder.write(replaced(least_scene, "euler", method->word));
     std::vector<std::string> more;
-    if (is_adaptive(method.value)) more = {"integrator.tolerance=1e-3"};
-    if (method.value == Method::automatic) more = {"integrator.error=1e-3"};
-    EXPECT_EQ(read_scene(path, more).integrator.method, method.value);
+    if (method->adaptive) more = {"integrator.tolerance=1e-3"};
+    if (method->automatic) more = {"integrator.error=1e-3"};
+    EXPECT_EQ(read_scene(path, more).integrator.method, method);
   }
 }
 

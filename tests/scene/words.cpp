@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include <cayspin/io/method.hpp>
 #include <cayspin/io/words.hpp>
 
 #include <gtest/gtest.h>
+
+#include <set>
 
 namespace cayspin::io {
 namespace {
 
 template <class Value>
 class Words : public testing::Test {};
-using Kinds = testing::Types<SystemKind, BoundaryKind, Method, Generator, Isotropy, Rotation>;
+using Kinds = testing::Types<SystemKind, BoundaryKind, Generator, Isotropy, Rotation>;
 TYPED_TEST_SUITE(Words, Kinds);
 
 TYPED_TEST(Words, NamesAndValuesBelongTogether) {
@@ -20,19 +23,50 @@ TYPED_TEST(Words, NamesAndValuesBelongTogether) {
   EXPECT_EQ(find_word<TypeParam>("no such word"), nullptr);
 }
 
-TEST(Methods, HaveTheirTraits) {
-  int baselines = 0;
-  int classical = 0;
-  for (auto const& word : words<Method>()) {
-    EXPECT_EQ(is_classical(word.value), word.name.starts_with("classical_")) << word.name;
-    bool const outside = word.name.starts_with("classical_") || word.name.starts_with("projected_");
-    EXPECT_EQ(is_baseline(word.value), outside) << word.name;
-    baselines += is_baseline(word.value) ? 1 : 0;
-    classical += is_classical(word.value) ? 1 : 0;
+TEST(Methods, HaveWordsOfTheirOwn) {
+  std::set<std::string_view> words;
+  for (auto const* const method : methods()) {
+    words.insert(method->word);
+    EXPECT_EQ(find_method(method->word), method);
   }
-  EXPECT_EQ(baselines, 9);
-  EXPECT_EQ(classical, 3);
-  EXPECT_EQ(words<Method>().size(), 29U);
+  EXPECT_EQ(words.size(), methods().size());
+  EXPECT_EQ(find_method("no such word"), nullptr);
+}
+
+TEST(Methods, HaveTheTraitsThatTheirWordsSay) {
+  for (auto const* const method : methods()) {
+    bool const classical = method->word.starts_with("classical_");
+    EXPECT_EQ(method->keeps_length, !classical) << method->word;
+    EXPECT_EQ(method->is_baseline(), classical || method->word.starts_with("projected_"))
+        << method->word;
+    EXPECT_EQ(method->automatic, method->word == "auto");
+    EXPECT_EQ(method->order > 0, !method->automatic) << method->word;
+  }
+}
+
+// What does not go together: a row that says so would be refused whatever a scene says.
+TEST(Methods, AreConsistent) {
+  for (auto const* const method : methods()) {
+    auto const& word = method->word;
+    bool const on_group = !method->rotations.empty();
+    EXPECT_EQ(method->takes(Generator::standard), on_group) << word;
+    EXPECT_EQ(method->takes(Isotropy::zero, SystemKind::llg), on_group) << word;
+    if (method->takes(Generator::tangent)) {
+      EXPECT_TRUE(method->takes(Rotation::cayley)) << word;
+    }
+    if (method->trials.contains(Trial::in_chart)) {
+      EXPECT_TRUE(method->takes(Generator::tangent)) << word;
+    }
+    if (method->trials.contains(Trial::sigma)) {
+      EXPECT_TRUE(method->takes(Isotropy::constant, SystemKind::llg)) << word;
+    }
+    if (method->trials.contains(Trial::compensated_single_precision)) {
+      EXPECT_TRUE(method->compensated) << word;
+    }
+    if (!method->has_equal_steps()) {
+      EXPECT_FALSE(method->evaluations) << word;
+    }
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What other tools find in the file, asked through HDF5's own interface.
 #include "hdf5/handle.hpp"
-#include "trajectory/frame_chunk.hpp"
+#include "trajectory/format.hpp"
 #include "trajectory_test.hpp"
 
 #include <limits>

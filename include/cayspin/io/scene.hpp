@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/io/field.hpp>
+#include <cayspin/io/method.hpp>
 #include <cayspin/io/words.hpp>
 
 #include <array>
@@ -25,7 +27,6 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-using Triple = std::array<double, 3>;
 using PrincipalMoments = Triple;
 using InertiaTensor = std::array<double, 9>;  ///< symmetric 3x3, row by row
 struct InertiaFile {
@@ -40,35 +41,9 @@ struct System {
 };
 
 struct Lattice {
-  std::array<std::int64_t, 3> shape = {1, 1,
-                                       1};  ///< nx, ny, nz; a rigid body ensemble: count, 1, 1
+  std::array<std::int64_t, 3> shape = {1, 1, 1};  ///< nx, ny, nz; rigid bodies: count, 1, 1
   Triple spacing = {1, 1, 1};
   std::array<BoundaryKind, 3> boundary = {};
-};
-
-struct Anisotropy {
-  double constant = 0;  ///< K in H = K (m.e) e
-  Triple axis = {};     ///< unit vector e
-};
-
-struct SlabDemagnetization {
-  Triple normal = {};  ///< unit vector n in H = -strength (m.n) n
-  double strength = 1;
-  bool average_layer =
-      false;             ///< (m.n) averaged over each plane normal to n; n is then along an axis
-  bool on_host = false;  ///< computed on the host through a mirror copy
-};
-
-/// A number, or the text of an expression in t.
-using AppliedComponent = std::variant<double, std::string>;
-
-/// Only terms that stand in the scene have a value.
-struct Field {
-  std::optional<double> exchange;  ///< A in H = A Lap(m)
-  std::vector<Anisotropy> anisotropies;
-  std::optional<std::array<AppliedComponent, 3>> applied;
-  std::optional<SlabDemagnetization> slab_demag;
-  double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
 };
 
 struct UniformStart {
@@ -85,8 +60,15 @@ struct FileStart {
 };
 using Initial = std::variant<UniformStart, ExpressionStart, RandomStart, FileStart>;
 
+/// A key that is true or false. The scene reader goes through the lists of these.
+template <class Section>
+struct Flag {
+  std::string_view key;
+  bool Section::*member;
+};
+
 struct Integrator {
-  Method method = Method::euler;
+  Method const* method = nullptr;
   Generator generator = Generator::standard;
   Isotropy isotropy = Isotropy::zero;
   double sigma = 0;  ///< isotropy constant: what is added to A along m
@@ -97,16 +79,24 @@ struct Integrator {
   std::optional<double> tolerance;  ///< of adaptive methods, which have one
   std::optional<double> error;      ///< of method "auto": what its choice is to come to
   double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();  ///< of their own steps
-  bool compensated = false;  ///< what rounding takes off the spins goes into the next step
-  bool energy_guard = true;
+  bool compensated = false;     ///< what rounding takes off the spins goes into the next step
+  bool energy_guard = true;     ///< stops a run whose energy rises although it can only fall
   bool energy_control = false;  ///< holds the energy of a run without damping
   std::optional<double> until_torque;
+
+  static constexpr auto flags() {
+    return std::to_array<Flag<Integrator>>({{"compensated", &Integrator::compensated},
+                                            {"energy_guard", &Integrator::energy_guard},
+                                            {"energy_control", &Integrator::energy_control}});
+  }
 };
 
 struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
   std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
   std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
+
+  static constexpr std::array<Flag<Output>, 0> flags() { return {}; }
 };
 
 struct Scene {

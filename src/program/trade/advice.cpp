@@ -11,7 +11,7 @@ namespace {
 
 constexpr double aim = 0.85;      // of the error asked for
 constexpr double seconds = 5;     // that a coarse run of the scene may take
-constexpr double near = 4;        // error over error asked for, from where to foretell
+constexpr double near = 4;        // error over error asked for, from where to predict
 constexpr double far = 30;        // the same, where the order is as expected
 constexpr double most_finer = 4;  // cost over that of the try before
 constexpr int tries = 12;         // of one candidate
@@ -34,21 +34,22 @@ struct Prospect {
   bool dropped = false;
 
   double resolution(Steps const& steps) const {
-    return candidate.is_adaptive() ? 1 / steps.tolerance : static_cast<double>(steps.count);
+    return candidate.method->adaptive ? 1 / steps.tolerance : static_cast<double>(steps.count);
   }
   Steps steps_of(double resolution) const {
-    if (candidate.is_adaptive()) return {0, std::min(1 / resolution, coarsest.tolerance)};
+    if (candidate.method->adaptive) return {0, std::min(1 / resolution, coarsest.tolerance)};
     auto const per_look = std::ceil(resolution / Pilot::looks - 1e-9);
     return {std::max(static_cast<std::int64_t>(per_look) * Pilot::looks, coarsest.count), 0};
   }
 
   bool can_take(Steps const& steps) const {
-    return !candidate.is_adaptive() || steps.tolerance >= candidate.least_tolerance();
+    return !candidate.method->adaptive || steps.tolerance >= candidate.least_tolerance();
   }
   Try const& last() const { return tried.back(); }
   /// Of the coarsest steps that ran.
   double least_seconds() const {
-    return tried.empty() ? std::numeric_limits<double>::infinity() : tried.front().outcome.seconds;
+    return tried.empty() ? std::numeric_limits<double>::infinity()
+                         : tried.front().outcome.seconds();
   }
   bool is_judged() const { return tried.size() > 1; }
   /// From the last two tries; the method's own where they do not say.
@@ -81,11 +82,11 @@ struct Prospect {
   }
   double seconds_of(Steps const& steps) const {
     for (auto const& one : tried)
-      if (resolution(one.steps) == resolution(steps)) return one.outcome.seconds;
-    return last().outcome.seconds *
+      if (resolution(one.steps) == resolution(steps)) return one.outcome.seconds();
+    return last().outcome.seconds() *
            std::pow(resolution(steps) / resolution(last().steps), cost_order);
   }
-  /// Is it near enough to foretell the rest?
+  /// Is it near enough to predict the rest?
   bool is_settled(double error) const {
     double const off = std::abs(seen_order() - order);
     return last().error < near * error || (last().error < far * error && off < 0.3 * order);
@@ -99,14 +100,12 @@ class Search {
     double const error = request.error;
     // What to measure by: an error of a thirtieth of the one asked for, by a method whose error
     // follows its tolerance.
-    Candidate const by{io::Method::tsit5, io::Generator::tangent};
+    Candidate const by{{.method = io::find_method("tsit5"), .generator = io::Generator::tangent}};
     finest_.steps.tolerance = std::max(error / 100, by.least_tolerance());
     finest_.outcome = pilot.run(by, horizon.horizon, finest_.steps);
     if (!finest_.outcome.failure) finest_.error = error / 30;
-    for (auto const& candidate : candidates(pilot.scene()))
-      if (candidate.least_error() < error &&
-          (!request.precision || *request.precision == candidate.precision))
-        add(candidate);
+    for (auto const& candidate : candidates(pilot.scene(), request.precision))
+      if (candidate.least_error() < error) add(candidate);
   }
 
   /// Best first, until the cheapest one is near enough.
@@ -139,7 +138,7 @@ class Search {
       Advice advice{prospect.candidate, steps, 0, error_, prospect.seconds_of(steps), 0};
       double const parts = pilot_.end() / horizon_.horizon;
       advice.seconds *= parts;
-      if (!prospect.candidate.is_adaptive()) {
+      if (!prospect.candidate.method->adaptive) {
         advice.steps.count =
             static_cast<std::int64_t>(std::ceil(static_cast<double>(steps.count) * parts));
         advice.dt = pilot_.end() / static_cast<double>(advice.steps.count);
@@ -154,8 +153,8 @@ class Search {
  private:
   void add(Candidate const& candidate) {
     auto const coarsest = coarsest_steps(pilot_, candidate, horizon_.horizon, horizon_.own_steps);
-    double const order = pilot_.plan(candidate, horizon_.horizon, coarsest).method.order;
-    bool const adaptive = candidate.is_adaptive();
+    double const order = pilot_.plan(candidate, horizon_.horizon, coarsest).variant.order;
+    bool const adaptive = candidate.method->adaptive;
     // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
     Steps const first = adaptive ? Steps{0, std::min(coarsest.tolerance, 30 * error_)} : coarsest;
     prospects_.push_back(
@@ -238,8 +237,8 @@ class Search {
       double const direct = distance(now.outcome, finest_.outcome);
       if (finest_.error < 0.2 * direct) now.error = direct;
     }
-    bool const twice = prospect.candidate.precision == Precision::double_precision;
-    if (twice && now.error < finest_.error) finest_ = now;
+    bool const in_double = prospect.candidate.precision == Precision::double_precision;
+    if (in_double && now.error < finest_.error) finest_ = now;
   }
 
   Pilot const& pilot_;

@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "../plan.hpp"
-
-#include <cayspin/io/scene.hpp>
+#include "simulation/choice.hpp"
+#include "simulation/plan.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace cayspin::program::trade {
 
-/// A method with its coordinates and precision, whose steps are still to be chosen.
-struct Candidate {
-  io::Method method;
-  io::Generator generator = io::Generator::standard;
-  io::Rotation rotation = io::Rotation::cayley;
-  Precision precision = Precision::double_precision;
-  double sigma = 0;  // a constant isotropy
-  bool compensated = false;
+using namespace simulation;
 
-  bool is_adaptive() const { return io::is_adaptive(method); }
-  bool is_baseline() const { return io::is_baseline(method); }
+/// A choice in one precision, whose steps are still to be chosen.
+struct Candidate : Choice {
+  Precision precision = Precision::double_precision;
+
   double least_tolerance() const;
   /// Round-off of a run comes up to here: no smaller error is asked of the candidate.
   double least_error() const { return 2 * least_tolerance(); }
@@ -35,8 +30,8 @@ struct Steps {
   double tolerance = 0;
 };
 
-/// All that can run a scene.
-std::vector<Candidate> candidates(io::Scene const& scene);
+/// All that can run a scene, those of high order first; in one precision, where that is given.
+std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
 /// The scene up to `horizon` by a candidate, looked at `looks` times on the way, the last at the
 /// end; a whole number of steps falls between two looks.

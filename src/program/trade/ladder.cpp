@@ -40,10 +40,11 @@ double interpolated(Ladder const& ladder, double error, bool of_evaluations) {
 
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps) {
-  if (candidate.is_adaptive()) return {0, 0.1};
+  if (candidate.method->adaptive) return {0, 0.1};
   // Fewer than an adaptive method takes at its coarsest, but stable ones.
   double const few = static_cast<double>(own_steps) / 4;
   auto plain = candidate;
+  plain.isotropy = io::Isotropy::zero;
   plain.sigma = 0;  // it may make slow modes grow by a little, which is no reason to begin finer
   auto const plan = pilot.plan(plain, horizon, {Pilot::looks, 0});
   double const stable =
@@ -52,7 +53,7 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
 }
 
 Steps finer(Candidate const& candidate, Steps const& steps) {
-  if (candidate.is_adaptive()) return {0, steps.tolerance / std::sqrt(10.0)};
+  if (candidate.method->adaptive) return {0, steps.tolerance / std::sqrt(10.0)};
   return {with_looks(finer_by * static_cast<double>(steps.count)), 0};
 }
 
@@ -63,20 +64,20 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
   double best = std::numeric_limits<double>::infinity();
   Steps steps = coarsest_steps(pilot, candidate, reference.horizon, reference.own_steps);
   for (int i = 0; i < limits.rungs; ++i, steps = finer(candidate, steps)) {
-    if (candidate.is_adaptive() && steps.tolerance < candidate.least_tolerance()) break;
+    if (candidate.method->adaptive && steps.tolerance < candidate.least_tolerance()) break;
     auto const outcome = pilot.run(candidate, reference.horizon, steps, 3);
     double const error = distance(outcome, reference.solution);
     double const dt =
-        candidate.is_adaptive() ? 0 : reference.horizon / static_cast<double>(steps.count);
+        candidate.method->adaptive ? 0 : reference.horizon / static_cast<double>(steps.count);
     if (std::isfinite(error))
-      ladder.rungs.push_back({steps, dt, error, outcome.seconds, outcome.evaluations});
+      ladder.rungs.push_back({steps, dt, error, outcome.seconds(), outcome.summary.evaluations});
     worse = error < 0.9 * best ? 0 : worse + 1;
     best = std::min(best, error);
     bool const far_behind = std::ranges::any_of(others, [&](Ladder const& other) {
-      return outcome.seconds > limits.far_behind * seconds_to(other, error);
+      return outcome.seconds() > limits.far_behind * seconds_to(other, error);
     });
     // Round-off, or dt at which the method is of no use.
-    if (error < limits.least_error || outcome.seconds > limits.seconds || far_behind ||
+    if (error < limits.least_error || outcome.seconds() > limits.seconds || far_behind ||
         (worse > 2 && best < 1e-3) || worse > 12)
       break;
   }

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "pilot.hpp"
 
-#include "../denormals.hpp"
-#include "../failure.hpp"
-#include "../kokkos_settings.hpp"
-#include "../simulation.hpp"
-
-#include <cayspin/stepper/implicit.hpp>
-
 #include <Kokkos_Timer.hpp>
 
 #include <algorithm>
@@ -42,27 +35,11 @@ class KeepStates : public Observer<Space, SpinField<Real, typename Space::memory
 
 template <class Real, class Space>
 Outcome run_on(io::Scene const& scene, Plan const& plan, std::vector<double> const& start) {
-  using Job = Simulation<Real, Space>;
-  typename Job::Spins const spins("spins", plan.lattice);
-  copy_from_host(start, spins);
-  Job job{Space(), spins, SceneGenerator<typename Job::Spins>(scene, plan.lattice), plan.times};
+  Simulation<Real, Space> simulation(scene, plan.lattice, plan.times, start);
   Outcome outcome;
   KeepStates<Real, Space> keep(scene.output.every, outcome.states);
-  job.observer = &keep;
-  try {
-    FlushDenormals const while_stepping;
-    auto const summary = plan.method.advance(&job, plan.options);
-    outcome.seconds = summary.step_seconds;
-    outcome.evaluations = summary.evaluations;
-    outcome.own_steps = summary.own_steps;
-    if (summary.stopped) outcome.failure = "the spins are not finite";
-  } catch (NumbersFailed const& error) {
-    outcome.failure = error.what();
-  } catch (NotConverged const& error) {
-    outcome.failure = error.what();
-  } catch (StepTooSmall const& error) {
-    outcome.failure = error.what();
-  }
+  static_cast<Ending&>(outcome) = simulation.advance(plan.variant, plan.options, keep);
+  if (outcome.summary.stopped) outcome.failure = "the spins are not finite";
   return outcome;
 }
 
@@ -100,20 +77,17 @@ Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& step
                    int repetitions) const {
   auto const scene = with(scene_, candidate, horizon, looks, steps);
   auto const plan = make_plan(scene, candidate.precision);
+  constexpr double enough = 5e-3;  // seconds in all: of what takes microseconds, more are run
+  Kokkos::Timer const clock;
   Outcome best;
-  EnabledSpaces::for_each([&]<class Space>() {
-    if (space_name<Space>() != space_) return;
-    constexpr double enough = 5e-3;  // seconds in all: of what takes microseconds, more are run
-    Kokkos::Timer const clock;
-    for (int i = 0; i < repetitions || (repetitions > 1 && i < 100 && clock.seconds() < enough);
-         ++i) {
-      auto outcome = candidate.precision == Precision::double_precision
-                         ? run_on<double, Space>(scene, plan, start_)
-                         : run_on<float, Space>(scene, plan, start_);
-      if (i == 0 || outcome.seconds < best.seconds) std::swap(best, outcome);
-      if (best.failure || best.seconds > 0.3) break;
-    }
-  });
+  for (int i = 0; i < repetitions || (repetitions > 1 && i < 100 && clock.seconds() < enough);
+       ++i) {
+    auto outcome = in_space(space_, candidate.precision, [&]<class Real, class Space>() {
+      return run_on<Real, Space>(scene, plan, start_);
+    });
+    if (i == 0 || outcome.seconds() < best.seconds()) std::swap(best, outcome);
+    if (best.failure || best.seconds() > 0.3) break;
+  }
   return best;
 }
 

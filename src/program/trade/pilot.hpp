@@ -2,6 +2,7 @@
 #pragma once
 
 #include "candidate.hpp"
+#include "simulation/simulate.hpp"
 
 #include <optional>
 #include <string>
@@ -10,12 +11,10 @@
 namespace cayspin::program::trade {
 
 /// What a run without files came to.
-struct Outcome {
-  std::optional<std::string> failure;
-  double seconds = 0;  // stepping alone, the least of the repetitions
-  std::int64_t evaluations = 0;
-  std::int64_t own_steps = 0;               // of adaptive methods
+struct Outcome : Ending {
   std::vector<std::vector<double>> states;  // at the looks, (sites, 3)
+
+  double seconds() const { return summary.step_seconds; }
 };
 
 /// The largest distance of any spin at any look; infinite where one of them is not finite.

@@ -5,7 +5,7 @@
 
 namespace cayspin::program::trade {
 
-/// A converged solution of a scene, up to its end or as far as one can be had.
+/// A converged solution of a scene, up to its end or as far as there is one.
 struct Reference {
   Outcome solution;
   double horizon = 0;

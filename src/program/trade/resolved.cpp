@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "resolved.hpp"
 
+#include "simulation/failure.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +20,7 @@ std::int64_t within(io::Integrator const& integrator, std::int64_t every) {
 // How many of the scene's steps lie between looks that the advised method cannot leave out.
 std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
   auto const& integrator = scene.integrator;
-  bool const looks_at_each = io::is_adaptive(integrator.method) ||
-                             integrator.method == io::Method::automatic || integrator.until_torque;
+  bool const looks_at_each = !integrator.method->has_equal_steps() || integrator.until_torque;
   if (adaptive && looks_at_each) return 1;
   return std::gcd(std::max<std::int64_t>(integrator.steps, 1),
                   std::gcd(within(integrator, scene.output.every),
@@ -30,17 +31,11 @@ std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
 std::string integrator_table(io::Integrator const& of_scene, Advice const& advice, double dt,
                              std::int64_t steps) {
   auto const& candidate = advice.candidate;
-  std::string keys = fmt::format("method=\"{}\"", io::to_string(candidate.method));
-  if (candidate.generator != io::Generator::standard)
-    keys += fmt::format(",generator=\"{}\"", io::to_string(candidate.generator));
-  if (candidate.rotation != io::Rotation::cayley)
-    keys += fmt::format(",rotation=\"{}\"", io::to_string(candidate.rotation));
-  if (candidate.sigma != 0) keys += fmt::format(",isotropy={{constant={:#}}}", candidate.sigma);
-  if (candidate.compensated) keys += ",compensated=true";
-  if (candidate.is_adaptive()) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
+  auto keys = candidate.keys();
+  if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
   keys += fmt::format(",dt={:#},steps={}", dt, steps);
   if (!of_scene.energy_guard) keys += ",energy_guard=false";
-  if (of_scene.energy_control && !candidate.is_adaptive()) keys += ",energy_control=true";
+  if (of_scene.energy_control && !candidate.method->adaptive) keys += ",energy_control=true";
   if (of_scene.until_torque) keys += fmt::format(",until_torque={:#}", *of_scene.until_torque);
   return fmt::format("integrator={{{}}}", keys);
 }
@@ -49,9 +44,9 @@ std::string integrator_table(io::Integrator const& of_scene, Advice const& advic
 
 Resolved resolve(io::Scene const& scene, Advice const& advice) {
   auto const& integrator = scene.integrator;
-  auto const together = steps_between_looks(scene, advice.candidate.is_adaptive());
+  auto const together = steps_between_looks(scene, advice.candidate.method->adaptive);
   double const time = integrator.dt * static_cast<double>(together);
-  std::int64_t const parts = advice.candidate.is_adaptive()
+  std::int64_t const parts = advice.candidate.method->adaptive
                                  ? 1
                                  : static_cast<std::int64_t>(std::ceil(time / advice.dt - 1e-9));
   Resolved resolved{time / static_cast<double>(parts), integrator.steps / together * parts, {}};
@@ -64,6 +59,20 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   keep("every", scene.output.every);
   keep("scalars_every", scene.output.scalars_every);
   return resolved;
+}
+
+io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision) {
+  auto const& integrator = scene.integrator;
+  if (!integrator.method->automatic) return scene;
+  Advised advised;
+  if (integrator.steps == 0)
+    advised.choice = {{{.method = io::find_method("rkmk4")}}, {}, integrator.dt};  // no steps
+  else
+    advised = advise(Pilot(scene, space), {*integrator.error, {}, precision});
+  if (!advised.choice)
+    throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g} in {} precision",
+                                    scene.path.string(), *integrator.error, to_string(precision)));
+  return io::with_overrides(scene, resolve(scene, *advised.choice).overrides);
 }
 
 }  // namespace cayspin::program::trade

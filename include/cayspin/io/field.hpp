@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+// The terms of [field]. A lattice term, whose H is linear in the spin and its neighbours, is all
+// here: a struct with the members of Exchange, a member of Field, and its place in
+// Field::lattice_terms. The scene reader, `cayspin check`, the stability bound and the kernels go
+// through that list.
+namespace cayspin {
+class Exchange;
+}
+
+namespace cayspin::io {
+
+using Triple = std::array<double, 3>;
+
+/// A key of a term's table: a number, or a vector that is normalised.
+template <class Term>
+struct Parameter {
+  std::string_view name;
+  std::variant<double Term::*, Triple Term::*> member;
+};
+
+/// H = constant Lap(m).
+struct Exchange {
+  double constant = 0;
+
+  static constexpr std::string_view key = "exchange";
+  /// One number alone is typed without a table.
+  static constexpr std::array parameters{Parameter<Exchange>{"constant", &Exchange::constant}};
+  /// For `cayspin check`: the parameters in the order above.
+  static constexpr std::string_view formula = "H = {} Lap(m)";
+
+  /// The largest |H| of unit spins that alternate, or an upper bound of it.
+  template <class Lattice>
+  double field_bound(Lattice const& lattice) const {
+    return exchange_bound(lattice, constant);
+  }
+  /// The largest sum of |bond energies| of a site: what round-off is proportional to.
+  template <class Lattice>
+  double energy_magnitude(Lattice const& lattice) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (lattice.has_neighbors(axis))
+        sum += 2 * (constant < 0 ? -constant : constant) /
+               (lattice.spacing[axis] * lattice.spacing[axis]);
+    return sum;
+  }
+  /// The term of the library that kernels evaluate, with neighbor_field.
+  template <class Lattice, class Term = cayspin::Exchange>
+  Term term(Lattice const& lattice) const {
+    return Term(lattice, constant);
+  }
+};
+
+struct Anisotropy {
+  double constant = 0;  ///< K in H = K (m.e) e
+  Triple axis = {};     ///< unit vector e
+
+  static constexpr std::string_view formula = "H = {} (m.e) e, e = {}";
+  static constexpr std::array parameters{Parameter<Anisotropy>{"constant", &Anisotropy::constant},
+                                         Parameter<Anisotropy>{"axis", &Anisotropy::axis}};
+};
+
+struct SlabDemagnetization {
+  Triple normal = {};  ///< unit vector n in H = -strength (m.n) n
+  double strength = 1;
+  bool average_layer = false;  ///< (m.n) averaged over each plane normal to n, along an axis
+  bool on_host = false;        ///< computed on the host through a mirror copy
+};
+
+/// A number, or the text of an expression in t.
+using AppliedComponent = std::variant<double, std::string>;
+
+/// Only terms that stand in the scene have a value.
+struct Field {
+  std::optional<Exchange> exchange;
+  std::vector<Anisotropy> anisotropies;
+  std::optional<std::array<AppliedComponent, 3>> applied;
+  std::optional<SlabDemagnetization> slab_demag;
+  double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
+
+  static constexpr std::tuple lattice_terms{&Field::exchange};
+};
+
+/// Calls work(term) for the std::optional of each lattice term.
+template <class AnyField, class Work>
+void for_each_lattice_term(AnyField&& field, Work&& work) {
+  std::apply([&](auto... member) { (work(field.*member), ...); }, Field::lattice_terms);
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "context.hpp"
+#include "ensemble.hpp"
+#include "numbers_file.hpp"
+
+#include <string_view>
+#include <vector>
+
+namespace cayspin::paper {
+
+/// One method of a table, and what the paper prints for it, dt by dt. NaN: not recoverable.
+struct Column {
+  std::string_view name;
+  Choice choice;
+  std::vector<double> paper;
+};
+
+/// One ensemble of a table.
+struct Block {
+  std::string_view name;
+  Law law;
+  double end;  // of the interval, from 0
+  std::vector<double> dts;
+  std::vector<Column> columns;
+};
+
+/// Prints a table of largest energy errors, each of the paper's beside our median, our range, and
+/// the range of means over ten bodies, which is the paper's own statistic; and the order that means
+/// show from one dt to the next.
+class EnergyTable {
+ public:
+  /// `name`: of the CSV file.
+  EnergyTable(Context const& context, std::string_view name, std::string_view title);
+  void add(Block const& block);
+  /// Why figures differ: one paragraph.
+  void note(std::string_view text) const;
+  /// Writes the file.
+  void close() const { file_.write(); }
+
+ private:
+  Context context_;
+  NumbersFile file_;
+};
+
+}  // namespace cayspin::paper

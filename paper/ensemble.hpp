@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "host_job.hpp"
+#include "random_bodies.hpp"
+#include "simulation/choice.hpp"
+
+#include <vector>
+
+namespace cayspin::paper {
+
+/// The [integrator] of a choice that steps to `end`.
+io::Integrator integrator_of(Choice const& choice, double dt, double end);
+
+/// What became of each body.
+struct EnsembleRun {
+  std::vector<double> energy_errors;  // max over all steps of |H - H(start)|
+  std::vector<Vector> ends;
+};
+
+/// Runs the bodies side by side, by the program's own method, in double precision on the host.
+void run_bodies(std::vector<Body> const& bodies, Choice const& choice, double dt, double end,
+                HostObserver& observer);
+EnsembleRun run_ensemble(std::vector<Body> const& bodies, Choice const& choice, double dt,
+                         double end);
+
+}  // namespace cayspin::paper

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "context.hpp"
+#include "slab.hpp"
+
+/// The numbers of the paper's figures: one or more CSV files each, and what can be said in a line.
+namespace cayspin::paper {
+
+void figure_trajectories(Context const& context);
+void figure_slab(Context const& context, Slab const& slab, std::string_view label,
+                 std::string_view remark);
+void figure_orders(Context const& context);
+void figure_convergence(Context const& context);
+void figure_norm(Context const& context);
+
+}  // namespace cayspin::paper

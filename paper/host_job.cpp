@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "host_job.hpp"
+
+#include "simulation/variant.hpp"
+
+namespace cayspin::paper {
+
+HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
+                      std::vector<SymmetricTensor> const& inverse_inertia, HostObserver& observer) {
+  auto const lattice = Lattice::chain(scene.lattice.shape[0]);
+  auto const& integrator = scene.integrator;
+  Simulation<double, HostSpace> simulation(
+      lattice, Times{0, integrator.dt, integrator.steps}, starts,
+      SceneGenerator<HostSpins>(scene, lattice, inverse_inertia));
+  // No plan of the run is made: its search for the stable dt would take longer than the run.
+  auto const ending = simulation.advance(
+      find_variant(scene), {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
+      observer);
+  if (ending.failure) throw NumbersFailed(*ending.failure);
+  return simulation.spins;
+}
+
+}  // namespace cayspin::paper

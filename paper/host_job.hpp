@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "simulation/simulate.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <vector>
+
+namespace cayspin::paper {
+
+using namespace simulation;
+
+using HostSpace = Kokkos::DefaultHostExecutionSpace;
+using HostSpins = Simulation<double, HostSpace>::Spins;
+using HostObserver = Observer<HostSpace, HostSpins>;
+
+/// Runs a chain, spacing 1, as `cayspin run` does, but from a start and inverse inertias in memory
+/// and without files. Returns the state at the end. `starts`: sites x 3 unit vectors.
+/// `inverse_inertia`: one per body; not looked at for spins.
+HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
+                      std::vector<SymmetricTensor> const& inverse_inertia, HostObserver& observer);
+
+}  // namespace cayspin::paper

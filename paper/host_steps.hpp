@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "random_bodies.hpp"
+
+#include <cayspin/rotation/cayley.hpp>
+
+#include <cmath>
+#include <cstdint>
+
+/// Steps m <- cay(F(m)) m of one rigid body on plain numbers, for formulas that the library does
+/// not have because they are wrong.
+namespace cayspin::paper {
+
+/// A without its part along m.
+inline Vector orthogonal_part(Vector const& a, Vector const& m) {
+  return multiply_add(-dot(a, m), m, a);
+}
+
+/// A = -I^-1 m, and the same without its part along m.
+inline Vector default_generator(Body const& body, Vector const& m) {
+  return -1.0 * body.velocity(m);
+}
+inline Vector orthogonal_generator(Body const& body, Vector const& m) {
+  return orthogonal_part(default_generator(body, m), m);
+}
+
+/// What became of one body.
+struct HostRun {
+  Vector end;
+  double energy_error;  // max over all steps of |H - H(start)|
+};
+
+/// `update(m)` is F, with the step in it.
+template <class Update>
+HostRun take_steps(Body const& body, std::int64_t steps, Update const& update) {
+  HostRun run{body.start, 0};
+  double const first = body.energy(body.start);
+  for (std::int64_t n = 0; n < steps; ++n) {
+    run.end = Cayley::rotate(Vector(update(run.end)), run.end);
+    run.energy_error = std::max(run.energy_error, std::abs(body.energy(run.end) - first));
+  }
+  return run;
+}
+
+/// Heun's F of any generator A(m).
+template <class Generator>
+Vector heun_update(Generator const& generator, Vector const& m, double dt) {
+  Vector const a = generator(m);
+  return (0.5 * dt) * (a + generator(Cayley::rotate(Vector(dt * a), m)));
+}
+
+inline double distance(Vector const& a, Vector const& b) {
+  Vector const d = a - b;
+  return std::sqrt(dot(d, d));
+}
+
+}  // namespace cayspin::paper

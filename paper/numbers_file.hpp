@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace cayspin::paper {
+
+/// A CSV file that appears whole, or not at all. Without a folder nothing is written.
+class NumbersFile {
+ public:
+  NumbersFile(std::optional<std::filesystem::path> const& folder, std::string_view name,
+              std::string_view columns);
+
+  /// One cell per column; text must hold no quotes.
+  template <class... Cells>
+  void row(Cells const&... cells) {
+    std::string line;
+    ((line += cell(cells), line += ','), ...);
+    line.back() = '\n';
+    text_ += line;
+  }
+
+  /// Throws std::runtime_error, one line, when it cannot be written.
+  void write() const;
+
+ private:
+  static std::string cell(std::string_view text) { return fmt::format("\"{}\"", text); }
+  static std::string cell(double number) { return fmt::format("{}", number); }
+
+  std::optional<std::filesystem::path> path_;
+  std::string text_;
+};
+
+}  // namespace cayspin::paper

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <vector>
+
+namespace cayspin::paper {
+
+/// The value below which the fraction `q` of the values lies; NaN when there are none.
+double quantile(std::vector<double> values, double q);
+
+double mean(std::vector<double> const& values);
+
+/// Median, and the range that holds nine tenths.
+struct Spread {
+  double low, median, high;  // 5, 50, 95 %
+};
+Spread spread(std::vector<double> const& values);
+
+/// The paper's statistic, again and again: means of ten consecutive values. With fewer than ten
+/// values, their mean.
+std::vector<double> means_of_ten(std::vector<double> const& values);
+
+/// Orders log(coarse/fine) / log(ratio of the steps), value by value, where both are above
+/// round-off.
+std::vector<double> orders(std::vector<double> const& coarse, std::vector<double> const& fine,
+                           double step_ratio, double round_off);
+
+/// Least-squares slope of log(error) over log(dt).
+double fitted_order(std::vector<double> const& dts, std::vector<double> const& errors);
+
+}  // namespace cayspin::paper

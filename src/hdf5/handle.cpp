@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "handle.hpp"
+
+#include "error.hpp"
+
+namespace cayspin::io {
+
+FileHandle open_file(std::filesystem::path const& path) {
+  std::string const action = "cannot open the file";
+  // HDF5 would wait for the other end of a pipe.
+  std::error_code ignored;
+  auto const status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw_failure(path, action, "it is not a regular file");
+  FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  if (file.get() >= 0) return file;
+  auto reason = failure_reason();
+  if (reason == "file signature not found") reason = "it is not an HDF5 file";
+  if (reason == "Resource temporarily unavailable") reason = "another program is writing it";
+  throw_failure(path, action, reason);
+}
+
+}  // namespace cayspin::io

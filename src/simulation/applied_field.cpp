@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "applied_field.hpp"
+
+#include "failure.hpp"
+
+#include <fmt/format.h>
+
+namespace cayspin::simulation {
+
+AppliedField::AppliedField(io::Scene const& scene)
+    : mu0_(scene.field.mu0),
+      present_(scene.field.applied.has_value()),
+      depends_on_time_(io::depends_on_time(scene)) {
+  if (!present_) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    auto const& component = (*scene.field.applied)[c];
+    if (auto const* text = std::get_if<std::string>(&component))
+      components_[c] = io::Expression(*text, {"t"});
+    else
+      components_[c] = std::get<double>(component);
+  }
+}
+
+Vec3<double> AppliedField::operator()(double t) const {
+  auto const at = [&](std::size_t c) {
+    auto const* expression = std::get_if<io::Expression>(&components_[c]);
+    if (!expression) return mu0_ * std::get<double>(components_[c]);
+    try {
+      return mu0_ * (*expression)(&t);
+    } catch (std::runtime_error const& error) {
+      throw NumbersFailed(fmt::format("field.applied, t = {}: {}", t, error.what()));
+    }
+  };
+  return {at(0), at(1), at(2)};
+}
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/expression.hpp>
+#include <cayspin/io/scene.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <array>
+#include <variant>
+
+namespace cayspin::simulation {
+
+/// The uniform field mu0 applied(t) of a scene.
+class AppliedField {
+ public:
+  explicit AppliedField(io::Scene const& scene);
+
+  bool present() const { return present_; }
+  bool depends_on_time() const { return depends_on_time_; }
+
+  /// mu0 applied at t. Throws NumbersFailed when a component is not finite there.
+  Vec3<double> operator()(double t) const;
+
+ private:
+  std::array<std::variant<double, io::Expression>, 3> components_;
+  double mu0_;
+  bool present_, depends_on_time_;
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "families.hpp"
+#include "kokkos_settings.hpp"
+#include "variant.hpp"
+
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/rotation/exponential.hpp>
+#include <cayspin/stability.hpp>
+#include <cayspin/stepper/compensated.hpp>
+#include <cayspin/stepper/energy_projection.hpp>
+
+#include <limits>
+
+// From a row of the list of methods to its variants: the types that the row's words ask for.
+namespace cayspin::simulation {
+
+/// What distinguishes the variants of a row when compiled.
+struct VariantKey {
+  io::Isotropy isotropy = io::Isotropy::zero;
+  bool in_chart = false, compensated = false, of_rigid_bodies = false;
+};
+
+template <std::size_t Number>
+inline constexpr io::Method const& method_at = std::get<Number>(method_list);
+
+/// Variant `Key` of row `Number`.
+template <std::size_t Number, VariantKey Key>
+class Compiled {
+  static constexpr io::Method const& method = method_at<Number>;
+  using Family = typename std::tuple_element_t<Number, decltype(method_list)>::family;
+  using HostSpins = SpinField<double, Kokkos::DefaultHostExecutionSpace::memory_space>;
+
+  static constexpr bool projects_to_energy =
+      Key.isotropy == io::Isotropy::energy && !Key.of_rigid_bodies;
+
+  static constexpr auto isotropy(MethodOptions const& options) {
+    using enum io::Isotropy;
+    if constexpr (Key.isotropy == analytic)
+      return isotropy::Analytic{};
+    else if constexpr (Key.isotropy == finite_difference)
+      return isotropy::FiniteDifference{options.cap};
+    else if constexpr (Key.isotropy == finite_difference_backward)
+      return isotropy::FiniteDifferenceBackward{options.cap};
+    else if constexpr (Key.isotropy == energy && Key.of_rigid_bodies)
+      return isotropy::Energy{};
+    else
+      return SceneIsotropy{options.sigma};
+  }
+  using Isotropy = decltype(isotropy({}));
+
+  template <class Spins, class Rotation>
+  static auto plain_stepper() {
+    if constexpr (Key.in_chart)
+      return std::type_identity<typename Family::template Chart<Spins>>{};
+    else
+      return std::type_identity<typename Family::template Stepper<Spins, Isotropy, Rotation>>{};
+  }
+  /// Neither compensated nor projected: what a bound on dt is known of.
+  template <class Spins, class Rotation>
+  using Plain = typename decltype(plain_stepper<Spins, Rotation>())::type;
+
+  template <class Spins, class Rotation>
+  static auto whole_stepper() {
+    using Of = Plain<Spins, Rotation>;
+    if constexpr (Key.compensated)
+      return std::type_identity<Compensated<Of>>{};
+    else if constexpr (projects_to_energy)
+      return std::type_identity<EnergyProjection<Of>>{};
+    else
+      return std::type_identity<Of>{};
+  }
+  template <class Spins, class Rotation>
+  using Stepper = typename decltype(whole_stepper<Spins, Rotation>())::type;
+
+  static constexpr io::SetOf<io::Rotation> rotations() {
+    if (Key.in_chart || Key.compensated || Key.isotropy == io::Isotropy::energy)
+      return {method.usual_rotation()};
+    return method.rotations;
+  }
+  template <class Work>
+  static auto with_rotation(io::Rotation rotation, Work const& work) {
+    // A method with one rotation has it in its stepper.
+    if constexpr (rotations() == sets::both_rotations) {
+      if (rotation == io::Rotation::exponential) return work(Exponential{});
+    }
+    return work(Cayley{});
+  }
+
+  template <class Of, class Spins>
+  static Of make(Spins const& like, MethodOptions const& options) {
+    if constexpr (std::is_constructible_v<Of, Spins, StepOptions, Isotropy>)
+      return Of(like, options.steps, isotropy(options));
+    else if constexpr (std::is_constructible_v<Of, Spins, StepOptions>)
+      return Of(like, options.steps);
+    else if constexpr (projects_to_energy)
+      return Of(like, Plain<Spins, Cayley>(like));
+    else if constexpr (std::is_constructible_v<Of, Spins, Isotropy>)
+      return Of(like, isotropy(options));
+    else
+      return Of(like);
+  }
+  template <class Generator>
+  static decltype(auto) generator(Generator const& of_the_scene) {
+    if constexpr (Key.of_rigid_bodies)
+      return of_the_scene.rigid_bodies();
+    else if constexpr (method.neighbors == io::Neighbors::by_colour)
+      return of_the_scene.landau_lifshitz();
+    else
+      return (of_the_scene);
+  }
+
+  static double stable_step(double field_bound, double damping, bool precession,
+                            MethodOptions const& options) {
+    return with_rotation(options.rotation, [&]<class Rotation>(Rotation) {
+      if constexpr (!Key.of_rigid_bodies) {
+        using Of = Plain<HostSpins, Rotation>;
+        auto const bound = [&]<class As>(std::type_identity<As>) {
+          return largest_stable_step<As>(field_bound, damping, precession, options.sigma);
+        };
+        if constexpr (requires { typename Family::template StableAs<HostSpins>; })
+          return bound(std::type_identity<typename Family::template StableAs<HostSpins>>{});
+        else if constexpr (
+            requires { typename Of::tableau_type; } ||
+            requires { Of::largest_stable_step(1.0, 1.0, true); })
+          return bound(std::type_identity<Of>{});
+      }
+      return std::numeric_limits<double>::infinity();
+    });
+  }
+
+  static constexpr int work_fields() {
+    if constexpr (Key.of_rigid_bodies && requires { Family::work_fields_of_rigid_bodies; })
+      return Family::work_fields_of_rigid_bodies;
+    else
+      return Stepper<HostSpins, Cayley>::work_fields;
+  }
+  template <class Real>
+  static std::int64_t work_bytes_of(Lattice const& lattice, bool by_time_alone) {
+    using Of = Stepper<SpinField<Real>, Cayley>;
+    if constexpr (requires { Of::work_bytes(lattice, by_time_alone, 1); })
+      return static_cast<std::int64_t>(Of::work_bytes(lattice, by_time_alone, expected_threads()));
+    auto const layout = cayspin::detail::RowLayout::of<Real>(lattice);
+    return static_cast<std::int64_t>(work_fields() * layout.allocation(3) * sizeof(Real));
+  }
+  static std::int64_t work_bytes(Lattice const& lattice, bool by_time_alone, Precision precision) {
+    return precision == Precision::double_precision ? work_bytes_of<double>(lattice, by_time_alone)
+                                                    : work_bytes_of<float>(lattice, by_time_alone);
+  }
+
+  template <class Simulation>
+  static Summary advance_one(Simulation& simulation, MethodOptions const& options) {
+    return with_rotation(options.rotation, [&]<class Rotation>(Rotation) {
+      using Of = Stepper<typename Simulation::Spins, Rotation>;
+      Of stepper = make<Of>(simulation.spins, options);
+      return integrate(simulation.exec, stepper, generator(simulation.generator), simulation.spins,
+                       simulation.times, *simulation.observer);
+    });
+  }
+  static Summary advance(AnySimulation any, MethodOptions const& options) {
+    return std::visit([&](auto* simulation) { return advance_one(*simulation, options); }, any);
+  }
+
+  static std::optional<int> evaluations() {
+    using Of = Stepper<HostSpins, Cayley>;
+    if constexpr (requires { Of::evaluations; }) {
+      if (Of::evaluations > 0) return Of::evaluations;
+    }
+    return std::nullopt;
+  }
+
+ public:
+  static Variant variant() {
+    static_assert(Stepper<HostSpins, Cayley>::order == method.order,
+                  "A row of the list of methods names another order than its stepper has.");
+    return {.method = &method,
+            .isotropy = Key.isotropy,
+            .in_chart = Key.in_chart,
+            .compensated = Key.compensated,
+            .of_rigid_bodies = Key.of_rigid_bodies,
+            .rotations = rotations(),
+            .order = Stepper<HostSpins, Cayley>::order,
+            .evaluations = evaluations(),
+            .work_fields = work_fields(),
+            .work_bytes = work_bytes,
+            .stable_step = stable_step,
+            .advance = advance};
+  }
+};
+
+/// All variants of a row.
+template <std::size_t Number>
+std::vector<Variant> compile_method() {
+  using enum io::Isotropy;
+  constexpr io::Method const& method = method_at<Number>;
+  using Family = typename std::tuple_element_t<Number, decltype(method_list)>::family;
+  std::vector<Variant> all;
+  if constexpr (!method.automatic) {
+    auto const add = [&]<VariantKey Key>() { all.push_back(Compiled<Number, Key>::variant()); };
+    constexpr auto has = [](io::Isotropy isotropy, io::SystemKind kind = io::SystemKind::llg) {
+      return method.takes(isotropy, kind);
+    };
+    add.template operator()<VariantKey{}>();
+    if constexpr (method.compensated) add.template operator()<VariantKey{.compensated = true}>();
+    if constexpr (requires { Family::distinguishes_rigid_bodies; })
+      add.template operator()<VariantKey{.of_rigid_bodies = true}>();
+    if constexpr (has(energy, io::SystemKind::rigid_body))
+      add.template operator()<VariantKey{.isotropy = energy, .of_rigid_bodies = true}>();
+    if constexpr (has(energy)) add.template operator()<VariantKey{.isotropy = energy}>();
+    if constexpr (has(analytic)) add.template operator()<VariantKey{.isotropy = analytic}>();
+    if constexpr (has(finite_difference))
+      add.template operator()<VariantKey{.isotropy = finite_difference}>();
+    if constexpr (has(finite_difference_backward))
+      add.template operator()<VariantKey{.isotropy = finite_difference_backward}>();
+    if constexpr (method.takes(io::Generator::tangent)) {
+      add.template operator()<VariantKey{.in_chart = true}>();
+      if constexpr (method.compensated)
+        add.template operator()<VariantKey{.in_chart = true, .compensated = true}>();
+    }
+  }
+  return all;
+}
+
+/// Rows `Shard`, `Shard` + `Shards`, ...
+template <std::size_t Shard, std::size_t Shards>
+std::vector<Variant> compile_shard() {
+  constexpr std::size_t rows = std::tuple_size_v<decltype(method_list)>;
+  std::vector<Variant> all;
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    auto const add = [&](std::vector<Variant> const& some) {
+      all.insert(all.end(), some.begin(), some.end());
+    };
+    (add(compile_method<Shard + I * Shards>()), ...);
+  }
+  (std::make_index_sequence<(rows - Shard + Shards - 1) / Shards>{});
+  return all;
+}
+
+}  // namespace cayspin::simulation

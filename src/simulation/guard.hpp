@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/observer/record.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace cayspin::simulation {
+
+/// Up to so many sites a look costs little and is taken at every step. Beyond, at every tenth.
+inline std::int64_t guard_period(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
+
+inline bool energy_must_fall(io::Scene const& scene) {
+  return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
+         !io::depends_on_time(scene) && scene.integrator.energy_guard &&
+         scene.integrator.method->keeps_length;
+}
+
+/// Watches the numbers of a run: all must be finite; a length that is kept must be 1 to 64 epsilon
+/// at the start, and later to 64 epsilon a step, of which there may be a million between two looks,
+/// but at most to 0.01; an energy that can only fall must not rise by more than round-off, 64
+/// epsilon times the sum of its terms' absolute values.
+class Guard {
+ public:
+  /// `epsilon`: of the run's precision.
+  Guard(io::Scene const& scene, double epsilon)
+      : energy_must_fall_(energy_must_fall(scene)),
+        keeps_norm_(scene.integrator.method->keeps_length),
+        epsilon_(epsilon),
+        period_(guard_period(io::sites(scene))) {}
+
+  bool due(Step const& step) const { return step.number % period_ == 0; }
+
+  /// What is wrong with a state, if anything: one line with step and time.
+  std::optional<std::string> judge(Step const& step, Energy const& energy, double norm_defect);
+
+  double first_energy() const { return first_->energy; }
+
+ private:
+  struct Look {
+    std::int64_t step;
+    double energy;
+  };
+  bool energy_must_fall_, keeps_norm_;
+  double epsilon_;
+  std::int64_t period_;
+  std::optional<Look> first_, last_;
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "kokkos_settings.hpp"
+
+#include "denormals.hpp"
+#include "failure.hpp"
+#include "simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+#include <type_traits>
+
+namespace cayspin::simulation {
+namespace {
+
+Kokkos::InitializationSettings settings(std::string const& space, std::optional<int> threads,
+                                        std::optional<int> device) {
+  Kokkos::InitializationSettings settings;
+  settings.set_disable_warnings(true);
+  // Threads that never get work would only cost.
+  if (space == "serial") threads = 1;
+  if (threads) settings.set_num_threads(*threads);
+  if (!device) return settings;
+  int const devices = Kokkos::num_devices();
+  if (devices < 1)
+    throw UsageError("--device: there is no device, or no backend for one is compiled in");
+  if (*device >= devices)
+    throw UsageError(fmt::format("--device {}: accepted: 0 .. {}", *device, devices - 1));
+  settings.set_device_id(*device);
+  return settings;
+}
+
+}  // namespace
+
+int expected_threads() {
+  if (Kokkos::is_initialized()) return Kokkos::DefaultHostExecutionSpace().concurrency();
+#if defined(KOKKOS_ENABLE_OPENMP)
+  if (std::is_same_v<Kokkos::DefaultHostExecutionSpace, Kokkos::OpenMP>)
+    return omp_get_max_threads();
+#endif
+  int const all = static_cast<int>(std::thread::hardware_concurrency());
+  bool serial = false;
+#if defined(KOKKOS_ENABLE_SERIAL)
+  serial = std::is_same_v<Kokkos::DefaultHostExecutionSpace, Kokkos::Serial>;
+#endif
+  return serial ? 1 : std::max(1, all);
+}
+
+std::string chosen_space(std::optional<std::string> const& asked) {
+  if (!asked) return space_name<Kokkos::DefaultExecutionSpace>();
+  std::string names;
+  bool known = false;
+  EnabledSpaces::for_each([&]<class Space>() {
+    auto const name = space_name<Space>();
+    known = known || name == *asked;
+    names += (names.empty() ? "" : ", ") + name;
+  });
+  if (!known)
+    throw UsageError(fmt::format("--space {}: not compiled in; accepted: {}", *asked, names));
+  return *asked;
+}
+
+KokkosSession::KokkosSession(std::string const& space, std::optional<int> threads,
+                             std::optional<int> device) {
+  FlushDenormals const inherited_by_threads;
+  Kokkos::initialize(settings(space, threads, device));
+}
+
+}  // namespace cayspin::simulation

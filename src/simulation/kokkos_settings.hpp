@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <string>
+
+namespace cayspin::simulation {
+
+/// The word for an execution space: openmp, serial, cuda, ...
+template <class Space>
+std::string space_name() {
+  std::string name = Space::name();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
+/// The word asked for, or Kokkos' default. Throws UsageError when it is not compiled in.
+std::string chosen_space(std::optional<std::string> const& asked);
+
+/// Threads of the default space on hosts: how many there are, or will be by default.
+int expected_threads();
+
+/// Kokkos, from here to the end of the scope.
+class KokkosSession {
+ public:
+  /// Throws UsageError for a device that there is not.
+  KokkosSession(std::string const& space, std::optional<int> threads, std::optional<int> device);
+  ~KokkosSession() { Kokkos::finalize(); }
+  KokkosSession(KokkosSession const&) = delete;
+  KokkosSession& operator=(KokkosSession const&) = delete;
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/io/field.hpp>
+
+#include <tuple>
+#include <type_traits>
+
+namespace cayspin::simulation {
+
+/// Lattice terms for kernels, each asked at run time whether the scene has it.
+template <class... Terms>
+struct TermsIfThere {
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const&, Vector const& h) const {
+    return h;
+  }
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_neighbor_field(Stencil const&, Vector const& h) const {
+    return h;
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value add_energy_density(Stencil const&, Value const& e) const {
+    return e;
+  }
+};
+template <class Term, class... Others>
+struct TermsIfThere<Term, Others...> {
+  Term term;
+  bool there;
+  TermsIfThere<Others...> others;
+
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const& stencil, Vector const& h) const {
+    return others.add_field(stencil, there ? Vector(h + term.field(stencil)) : h);
+  }
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_neighbor_field(Stencil const& stencil,
+                                                        Vector const& h) const {
+    return others.add_neighbor_field(
+        stencil, there ? Vector(h + cayspin::detail::neighbor_field(term, stencil)) : h);
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value add_energy_density(Stencil const& stencil,
+                                                       Value const& e) const {
+    return others.add_energy_density(stencil, there ? Value(e + term.energy_density(stencil)) : e);
+  }
+};
+
+/// All lattice terms of io::Field. The first, the exchange, is evaluated in every scene.
+template <class First, class... Others>
+struct LatticeTerms {
+  First first;
+  TermsIfThere<Others...> others;
+  double magnitude;  // of the energy of a site: what round-off is proportional to
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto field(Stencil const& stencil) const {
+    return others.add_field(stencil, first.field(stencil));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto neighbor_field(Stencil const& stencil) const {
+    return others.add_neighbor_field(stencil, first.neighbor_field(stencil));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto energy_density(Stencil const& stencil) const {
+    return others.add_energy_density(stencil, first.energy_density(stencil));
+  }
+};
+
+/// The library's term of a scene's term; a scene without it has one of default numbers.
+template <class OfScene>
+auto library_term(std::optional<OfScene> const& term, Lattice const& lattice) {
+  return term.value_or(OfScene{}).term(lattice);
+}
+
+inline TermsIfThere<> terms_if_there(Lattice const&) { return {}; }
+template <class OfScene, class... Others>
+auto terms_if_there(Lattice const& lattice, std::optional<OfScene> const& term,
+                    Others const&... others) {
+  auto rest = terms_if_there(lattice, others...);
+  auto made = library_term(term, lattice);
+  return [&]<class... Rest>(TermsIfThere<Rest...> const& more) {
+    return TermsIfThere<decltype(made), Rest...>{made, term.has_value(), more};
+  }(rest);
+}
+
+/// Those of a scene's [field].
+inline auto lattice_terms_of(io::Field const& field, Lattice const& lattice) {
+  double magnitude = 0;
+  io::for_each_lattice_term(field, [&](auto const& term) {
+    if (term) magnitude += term->energy_magnitude(lattice);
+  });
+  return std::apply(
+      [&](auto first, auto... others) {
+        auto made = library_term(field.*first, lattice);
+        auto more = terms_if_there(lattice, field.*others...);
+        return [&]<class... Others>(TermsIfThere<Others...> const& rest) {
+          return LatticeTerms<decltype(made), Others...>{made, rest, magnitude};
+        }(more);
+      },
+      io::Field::lattice_terms);
+}
+using SceneLatticeTerms = decltype(lattice_terms_of({}, {}));
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "plan.hpp"
+
+#include "applied_field.hpp"
+#include "failure.hpp"
+#include "text.hpp"
+
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/stability.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace cayspin::simulation {
+namespace {
+
+Lattice make_lattice(io::Scene const& scene) {
+  Lattice lattice;
+  lattice.shape = scene.lattice.shape;
+  lattice.spacing = scene.lattice.spacing;
+  for (int axis = 0; axis < 3; ++axis)
+    lattice.boundary[axis] = scene.lattice.boundary[axis] == io::BoundaryKind::periodic
+                                 ? Boundary::periodic
+                                 : Boundary::open;
+  try {
+    lattice.validate();
+  } catch (std::invalid_argument const& error) {
+    std::string_view const message = error.what();
+    throw io::scene_error(scene, "lattice.shape", message.substr(message.find(": ") + 2));
+  }
+  return lattice;
+}
+
+// The largest |mu0 applied| at 1001 equal times of the run.
+double largest_applied(io::Scene const& scene, Times const& times) {
+  AppliedField const applied(scene);
+  if (!applied.present()) return 0;
+  int const samples = applied.depends_on_time() ? 1000 : 0;
+  double const end = times.at(times.steps);
+  double largest = 0;
+  for (int i = 0; i <= samples; ++i) {
+    double const t = samples == 0 ? 0 : end * i / samples;
+    try {
+      auto const h = applied(t);
+      largest = std::max(largest, std::hypot(h.x, h.y, h.z));
+    } catch (NumbersFailed const& error) {
+      throw io::scene_error(scene, "field.applied", error.what());
+    }
+  }
+  return largest;
+}
+
+double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+  auto const& field = scene.field;
+  double bound = 0;
+  io::for_each_lattice_term(field, [&](auto const& term) {
+    if (term) bound += term->field_bound(lattice);
+  });
+  bound += largest_applied(scene, times);
+  for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
+  if (field.slab_demag) bound += std::abs(field.mu0 * field.slab_demag->strength);
+  return bound;
+}
+
+// At most |A|: of rigid bodies the largest row sum of I^-1, where it is in the scene.
+double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+  auto const& system = scene.system;
+  if (system.kind == io::SystemKind::llg)
+    return field_bound(scene, lattice, times) * std::hypot(system.damping, system.precession);
+  double largest = 0;
+  if (std::holds_alternative<io::InertiaFile>(system.inertia)) return largest;
+  for (auto const& [xx, yy, zz, xy, xz, yz] : io::inverse_inertia(scene))
+    largest = std::max({largest, std::abs(xx) + std::abs(xy) + std::abs(xz),
+                        std::abs(xy) + std::abs(yy) + std::abs(yz),
+                        std::abs(xz) + std::abs(yz) + std::abs(zz)});
+  return largest;
+}
+
+// As SceneField says of itself.
+bool by_time_alone(io::Scene const& scene) {
+  auto const& slab = scene.field.slab_demag;
+  return !slab || !(slab->on_host || slab->average_layer);
+}
+
+template <class Real>
+std::int64_t field_bytes(Lattice const& lattice, int components) {
+  return static_cast<std::int64_t>(
+      cayspin::detail::RowLayout::of<Real>(lattice).allocation(components) * sizeof(Real));
+}
+
+template <class Real>
+Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& variant,
+                 Precision precision) {
+  Memory memory;
+  memory.spins = field_bytes<Real>(lattice, 3);
+  memory.work = variant.work_bytes(lattice, by_time_alone(scene), precision);
+  if (auto const& slab = scene.field.slab_demag) {
+    if (slab->on_host) memory.field += memory.spins;
+    if (slab->average_layer) memory.field += 8 * std::ranges::max(lattice.shape);
+  }
+  std::int64_t const numbers = 3 * lattice.sites();
+  std::int64_t start = 8 * numbers;
+  if (std::holds_alternative<io::FileStart>(scene.initial)) start *= 2;
+  if (std::holds_alternative<io::InertiaFile>(scene.system.inertia) &&
+      scene.system.kind == io::SystemKind::rigid_body) {
+    memory.field += field_bytes<Real>(lattice, 6);
+    start += 8 * (9 + 6 + 6) * lattice.sites();
+  }
+  // A frame, and the copies of it that a filter of the file reads and writes.
+  std::int64_t const frame = 3 * static_cast<std::int64_t>(sizeof(Real)) * numbers;
+  memory.files = std::max(start - memory.work, frame);
+  return memory;
+}
+
+std::int64_t available_memory() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("MemAvailable:")) return std::stoll(line.substr(13)) * 1024;
+  return std::numeric_limits<std::int64_t>::max();
+}
+
+}  // namespace
+
+Plan make_plan(io::Scene const& scene, Precision precision) {
+  auto const lattice = make_lattice(scene);
+  auto const& integrator = scene.integrator;
+  Plan plan{lattice,
+            find_variant(scene),
+            {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
+            {0, integrator.dt, integrator.steps},
+            std::numeric_limits<double>::infinity(),
+            0,
+            {},
+            0,
+            0};
+  if (integrator.tolerance) {
+    plan.options.steps = {*integrator.tolerance, 0, integrator.min_dt, integrator.max_dt,
+                          plan.times.at(integrator.steps)};
+    double const least = precision == Precision::double_precision
+                             ? StepOptions::least_tolerance<double>()
+                             : StepOptions::least_tolerance<float>();
+    if (*integrator.tolerance < least)
+      throw io::scene_error(scene, "integrator.tolerance",
+                            fmt::format("{:.3g} is beyond {} precision; accepted: at least {:.3g}",
+                                        *integrator.tolerance, to_string(precision), least));
+  }
+  if (scene.system.kind == io::SystemKind::llg)
+    plan.stable_dt =
+        plan.variant.stable_step(field_bound(scene, lattice, plan.times), scene.system.damping,
+                                 scene.system.precession, plan.options);
+  bool const in_double = precision == Precision::double_precision;
+  plan.memory = in_double ? memory_of<double>(scene, lattice, plan.variant, precision)
+                          : memory_of<float>(scene, lattice, plan.variant, precision);
+  auto const count = [&](std::int64_t every) { return (integrator.steps + every - 1) / every + 1; };
+  plan.frames = count(scene.output.every);
+  std::int64_t const sample_bytes = 8 * 7;
+  plan.file_bytes = plan.frames * (lattice.sites() * 3 * (in_double ? 8 : 4) + sample_bytes) +
+                    count(scene.output.scalars_every) * sample_bytes;
+  plan.turn = integrator.dt * largest_rate(scene, lattice, plan.times);
+  return plan;
+}
+
+std::optional<std::string> dt_warning(Plan const& plan) {
+  double const dt = plan.times.dt;
+  if (plan.times.steps == 0 || plan.variant.method->adaptive) return std::nullopt;
+  if (dt > plan.stable_dt && plan.stable_dt > 0)
+    return fmt::format("{:.6g} is above the stable {:.6g}", dt, plan.stable_dt);
+  if (dt > plan.stable_dt)
+    return fmt::format("{:.6g} is not stable: at this damping the method amplifies at every dt",
+                       dt);
+  // Order 8 is stable where it no longer follows.
+  double const most = std::isfinite(plan.stable_dt) ? 3 : 2;
+  if (!(plan.turn <= most))
+    return fmt::format("{:.6g} turns spins by up to {:.3g} radians a step, too many to follow", dt,
+                       plan.turn);
+  return std::nullopt;
+}
+
+bool fits(Plan const& plan) { return plan.memory.total() <= available_memory(); }
+
+void require_memory(io::Scene const& scene, Plan const& plan) {
+  std::int64_t const available = available_memory();
+  if (plan.memory.total() > available)
+    throw io::scene_error(scene, "lattice.shape",
+                          fmt::format("the run needs {} of memory, {} are available",
+                                      bytes_text(plan.memory.total()), bytes_text(available)));
+}
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "precision.hpp"
+#include "variant.hpp"
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/lattice.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace cayspin::simulation {
+
+/// Bytes that a run takes, known before it allocates.
+struct Memory {
+  std::int64_t spins = 0;  // the state
+  std::int64_t work = 0;   // the method's
+  std::int64_t field = 0;  // of terms and inertia that are stored per site or layer
+  std::int64_t files = 0;  // the start as it is read, and frames on their way to the file
+
+  std::int64_t simulation() const { return spins + work + field; }
+  std::int64_t total() const { return simulation() + files; }
+};
+
+/// What a scene amounts to: everything that is known before it runs.
+struct Plan {
+  Lattice lattice;
+  Variant const& variant;
+  MethodOptions options;
+  Times times;
+  double stable_dt;  // infinity where there is no limit, 0 when every dt amplifies
+  double turn;       // the most that a spin can turn in a step, in radians
+  Memory memory;
+  std::int64_t frames;
+  std::int64_t file_bytes;
+};
+
+/// Throws io::SceneError, among others for a lattice that cannot be.
+Plan make_plan(io::Scene const& scene, Precision precision);
+
+/// Why dt is too large, if it is: above the stable one, or, where none is known, so that a step
+/// turns spins by more than 2 radians.
+std::optional<std::string> dt_warning(Plan const& plan);
+
+/// Is there memory for the run?
+bool fits(Plan const& plan);
+
+/// Throws io::SceneError when the run needs more memory than there is.
+void require_memory(io::Scene const& scene, Plan const& plan);
+
+}  // namespace cayspin::simulation

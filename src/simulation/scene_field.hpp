@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "applied_field.hpp"
+#include "lattice_terms.hpp"
+
+#include <cayspin/field/host_field.hpp>
+#include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/field/local_part.hpp>
+#include <cayspin/field/slab_demag_on_host.hpp>
+#include <cayspin/field/zeeman.hpp>
+#include <cayspin/generator/rigid_body.hpp>
+#include <cayspin/io/scene.hpp>
+
+#include <optional>
+
+namespace cayspin::simulation {
+
+/// All terms quadratic in one spin, as one symmetric matrix M: H = M m, E = -m.M m / 2. Any number
+/// of anisotropy axes, and a slab's demagnetising field spin by spin.
+class QuadraticTerms {
+ public:
+  void add(double constant, io::Triple const& axis) {
+    sum_.add(constant, axis);
+    magnitude_.add(std::abs(constant), axis);
+    present_ = true;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION bool present() const { return present_; }
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field(Vec3<Value> const& m) const {
+    return sum_.template matrix<Value>() * m;
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m) const {
+    return Value(-0.5) * dot(m, field(m));
+  }
+  /// Sum of |energy| over the terms.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value magnitude(Vec3<Value> const& m) const {
+    return Value(0.5) * dot(m, magnitude_.template matrix<Value>() * m);
+  }
+
+ private:
+  struct Sum {
+    double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+    void add(double c, io::Triple const& e) {
+      xx += c * e[0] * e[0], yy += c * e[1] * e[1], zz += c * e[2] * e[2];
+      xy += c * e[0] * e[1], xz += c * e[0] * e[2], yz += c * e[1] * e[2];
+    }
+    template <class Value>
+    KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::SymmetricMatrix<Value> matrix() const {
+      using Scalar = cayspin::detail::scalar_t<Value>;
+      return {Value(static_cast<Scalar>(xx)), Value(static_cast<Scalar>(yy)),
+              Value(static_cast<Scalar>(zz)), Value(static_cast<Scalar>(xy)),
+              Value(static_cast<Scalar>(xz)), Value(static_cast<Scalar>(yz))};
+    }
+  };
+
+  Sum sum_, magnitude_;
+  bool present_ = false;
+};
+
+/// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
+/// once per pack of spins, so that a kernel is compiled once for all scenes.
+template <class Real>
+struct SceneFieldNow {
+  SceneLatticeTerms lattice_terms;
+  QuadraticTerms quadratic;
+  Zeeman zeeman;
+  cayspin::detail::LayerField layers;
+  cayspin::detail::StoredField<Real> stored;
+  bool has_applied, has_layers, has_stored;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    auto const h = linear_field(stencil);
+    return has_applied ? h + zeeman.field(stencil) : h;
+  }
+
+  /// Does the part of the spin itself depend on the spin?
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
+
+  /// The linear part alone: without the applied field.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    auto h = lattice_terms.field(stencil);
+    if (quadratic.present()) h = h + quadratic.field(stencil.center());
+    if (has_layers) h = h + layers.field(stencil);
+    if (has_stored) h = h + stored.field(stencil);
+    return h;
+  }
+  /// The part that comes from other spins, and the rest.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    auto h = lattice_terms.neighbor_field(stencil);
+    if (has_layers) h = h + layers.field(stencil);
+    if (has_stored) h = h + stored.field(stencil);
+    return h;
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+    auto h = zero<typename Spin::value_type>();
+    if (quadratic.present()) h = quadratic.field(spin.center());
+    if (has_applied) h = h + zeeman.field(spin);
+    return h;
+  }
+  /// dH/dt along rates, of what prepare_rate returns.
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&,
+                                                     Stencil const& rates) const {
+    return field(rates);
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    auto e = lattice_terms.energy_density(stencil);
+    if (quadratic.present()) e = e + quadratic.energy(stencil.center());
+    if (has_applied) e = e + zeeman.energy_density(stencil);
+    if (has_layers) e = e + layers.energy_density(stencil);
+    if (has_stored) e = e + stored.energy_density(stencil);
+    return e;
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value e(static_cast<cayspin::detail::scalar_t<Value>>(lattice_terms.magnitude));
+    if (quadratic.present()) e = e + quadratic.magnitude(stencil.center());
+    if (has_applied) e = e + Kokkos::abs(zeeman.energy_density(stencil));
+    if (has_layers) e = e + Kokkos::abs(layers.energy_density(stencil));
+    if (has_stored) e = e + Kokkos::abs(stored.energy_density(stencil));
+    return e;
+  }
+};
+
+/// The effective field that a scene's [field] describes.
+template <class Spins>
+class SceneField {
+  using Real = typename Spins::value_type;
+
+ public:
+  SceneField(io::Scene const& scene, Lattice const& lattice)
+      : lattice_terms_(lattice_terms_of(scene.field, lattice)), applied_(scene) {
+    for (auto const& term : scene.field.anisotropies) quadratic_.add(term.constant, term.axis);
+    if (scene.field.slab_demag) add(*scene.field.slab_demag, scene.field.mu0, lattice);
+  }
+
+  /// Throws NumbersFailed when an applied field is not finite at t.
+  template <class Exec>
+  SceneFieldNow<Real> prepare(Exec const& exec, Spins const& spins, double t) const {
+    auto now = prepare_local(exec, spins, t);
+    now.has_layers = layers_.has_value();
+    now.has_stored = stored_.has_value();
+    if (layers_) now.layers = layers_->prepare(exec, spins, t);
+    if (stored_) now.stored = stored_->prepare(exec, spins, t);
+    return now;
+  }
+  /// Looks at no spin: without the terms that do.
+  template <class Exec>
+  SceneFieldNow<Real> prepare_local(Exec const&, Spins const&, double t) const {
+    SceneFieldNow<Real> now{lattice_terms_,     quadratic_, {},   {}, {},
+                            applied_.present(), false,      false};
+    if (now.has_applied) now.zeeman = {applied_(t)};
+    return now;
+  }
+
+  template <class Exec, class Any>
+  bool is_stationary(Exec const& exec, Any const& spins) const {
+    return !applied_.depends_on_time() && needs_time_alone(exec, spins);
+  }
+  template <class Exec, class Any>
+  bool needs_time_alone(Exec const&, Any const&) const {
+    return !layers_ && !stored_;
+  }
+
+  /// The same for rates of spins, the applied field's own rate in place of the field.
+  template <class Exec>
+  SceneFieldNow<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
+                                   double dt) const {
+    auto now = prepare(exec, rates, t);
+    now.has_applied = applied_.depends_on_time();
+    if (now.has_applied) now.zeeman = {cayspin::detail::time_derivative(applied_, t, dt)};
+    return now;
+  }
+
+ private:
+  void add(io::SlabDemagnetization const& slab, double mu0, Lattice const& lattice) {
+    Vec3<double> const normal{slab.normal[0], slab.normal[1], slab.normal[2]};
+    double const strength = mu0 * slab.strength;
+    if (slab.on_host) {
+      stored_.emplace(lattice, SlabDemagOnHost(normal, strength, slab.average_layer));
+    } else if (slab.average_layer) {
+      layers_.emplace(lattice, normal.x != 0 ? 0 : normal.y != 0 ? 1 : 2, strength);
+    } else {
+      quadratic_.add(-strength, slab.normal);
+    }
+  }
+
+  SceneLatticeTerms lattice_terms_;
+  QuadraticTerms quadratic_;
+  AppliedField applied_;
+  std::optional<LayerAveragedSlabDemag<typename Spins::memory_space>> layers_;
+  std::optional<HostField<Spins, SlabDemagOnHost>> stored_;
+};
+
+}  // namespace cayspin::simulation

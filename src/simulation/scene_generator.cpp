@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "scene_generator.hpp"
+
+#include "space.hpp"
+
+namespace cayspin::simulation {
+
+template <class Spins>
+SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice)
+    : SceneGenerator(scene, lattice,
+                     scene.system.kind == io::SystemKind::llg ? std::vector{SymmetricTensor{}}
+                                                              : io::inverse_inertia(scene)) {}
+
+template <class Spins>
+SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
+                                      std::vector<SymmetricTensor> const& inverse_inertia)
+    : llg_(SceneField<Spins>(scene, lattice), scene.system.damping, scene.system.precession),
+      is_llg_(scene.system.kind == io::SystemKind::llg),
+      orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
+      bodies_(inverse_inertia, lattice) {}
+
+template <class Spins>
+SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {
+  SceneGenerator other = *this;
+  other.llg_ = LandauLifshitz(llg_.field(), 0, true);
+  other.orthogonal_ = false;
+  return other;
+}
+
+template <class Spins>
+template <class Exec>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare(Exec const& exec, Spins const& spins,
+                                                        double t) const {
+  return {llg_.prepare(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_, orthogonal_};
+}
+
+template <class Spins>
+template <class Exec>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_local(Exec const& exec, Spins const& spins,
+                                                              double t) const {
+  return {llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_,
+          orthogonal_};
+}
+
+template <class Spins>
+template <class Exec>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
+                                                             double t, double dt) const {
+  return {llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t), is_llg_,
+          orthogonal_};
+}
+
+#define CAYSPIN_INSTANTIATE(Space, Real)                                        \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare(                \
+      Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_local(          \
+      Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_rate(           \
+      Space const&, SpinField<Real, Space::memory_space> const&, double, double) const;
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
+#undef CAYSPIN_INSTANTIATE
+
+#define CAYSPIN_INSTANTIATE(Space, Real) \
+  template class SceneGenerator<SpinField<Real, Space::memory_space>>;
+CAYSPIN_FOR_EACH_MEMORY(CAYSPIN_INSTANTIATE, double)
+CAYSPIN_FOR_EACH_MEMORY(CAYSPIN_INSTANTIATE, float)
+#undef CAYSPIN_INSTANTIATE
+
+}  // namespace cayspin::simulation

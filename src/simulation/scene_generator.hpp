@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "scene_bodies.hpp"
+#include "scene_field.hpp"
+
+#include <cayspin/generator/landau_lifshitz.hpp>
+#include <cayspin/generator/orthogonal.hpp>
+
+namespace cayspin::simulation {
+
+/// The A of any scene at one instant, for kernels. One type for all scenes: which system it is, and
+/// whether the part along the spin is removed, is asked at run time.
+template <class Spins>
+struct SceneGeneratorNow {
+  LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
+  SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
+  bool is_llg, orthogonal;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Vec3<Value> const a = is_llg ? llg(stencil) : bodies(stencil);
+    return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
+  }
+  /// Of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
+  /// rigid body is its own.
+  template <class Spin, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
+                                                       Vec3<Value> const& neighbor_field) const {
+    Vec3<Value> const a = is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin);
+    return orthogonal ? cayspin::detail::orthogonal_part(a, spin.center()) : a;
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return is_llg ? llg.neighbor_field(stencil) : zero<Value>();
+  }
+
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
+    return is_llg ? llg.rate(m, rates) : bodies.rate(m, rates);
+  }
+
+  /// With the part along the spin.
+  SceneGeneratorNow bare() const {
+    auto other = *this;
+    other.orthogonal = false;
+    return other;
+  }
+
+  // Series of rigid bodies have a generator of their own.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
+      Stencil const& stencil) const {
+    return llg.series_source(stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
+      Stencil const& stencil) const {
+    return llg.linear_series_source(stencil);
+  }
+  template <int K, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
+                                                     Vec3<Value> const* source) const {
+    return orthogonal ? cayspin::detail::orthogonal_derivative<K>(llg, m, source)
+                      : llg.template derivative<K>(m, source);
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    return is_llg ? llg.energy_density(stencil) : bodies.energy_density(stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    return is_llg ? llg.energy_magnitude(stencil) : Kokkos::abs(bodies.energy_density(stencil));
+  }
+};
+
+/// The generator that a scene's [system], [field] and integrator.generator describe.
+template <class Spins>
+class SceneGenerator {
+ public:
+  /// Throws io::SceneError for an inertia that cannot be.
+  SceneGenerator(io::Scene const& scene, Lattice const& lattice);
+
+  /// For rigid bodies whose inverse inertia is in memory; the scene's own is not looked at.
+  SceneGenerator(io::Scene const& scene, Lattice const& lattice,
+                 std::vector<SymmetricTensor> const& inverse_inertia);
+
+  bool is_llg() const { return is_llg_; }
+  template <class Exec>
+  bool is_stationary(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.is_stationary(exec, spins);
+  }
+  template <class Exec>
+  bool needs_time_alone(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.needs_time_alone(exec, spins);
+  }
+  LandauLifshitz<SceneField<Spins>> const& landau_lifshitz() const { return llg_; }
+  RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
+  bool is_orthogonal() const { return orthogonal_; }
+  bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }
+
+  /// The effective field alone, as the generator of a precession about it.
+  SceneGenerator precession_alone() const;
+
+  /// Compiled in scene_generator.cpp alone, for the spaces of space.hpp.
+  template <class Exec>
+  SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
+  template <class Exec>
+  SceneGeneratorNow<Spins> prepare_local(Exec const& exec, Spins const& spins, double t) const;
+  template <class Exec>
+  SceneGeneratorNow<Spins> prepare_rate(Exec const& exec, Spins const& rates, double t,
+                                        double dt) const;
+
+ private:
+  LandauLifshitz<SceneField<Spins>> llg_;
+  bool is_llg_, orthogonal_;
+  SceneBodies<Spins> bodies_;
+};
+
+/// The isotropies that are a number, zero among them: asked at run time.
+struct SceneIsotropy {
+  double sigma = 0;
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& m,
+                                                     Vec3<Value> const& a) const {
+    if (sigma == 0) return a;
+    return multiply_add(Value(static_cast<cayspin::detail::scalar_t<Value>>(sigma)), m, a);
+  }
+};
+
+}  // namespace cayspin::simulation

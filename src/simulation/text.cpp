@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace cayspin::simulation {
+namespace {
+
+constexpr std::array<char const*, 7> prefixes{"", "k", "M", "G", "T", "P", "E"};
+
+std::pair<double, char const*> prefixed(double value) {
+  std::size_t index = 0;
+  while (value >= 999.5 && index + 1 < prefixes.size()) value /= 1000, ++index;
+  return {value, prefixes[index]};
+}
+
+}  // namespace
+
+std::string bytes_text(std::int64_t bytes) {
+  auto const [value, prefix] = prefixed(static_cast<double>(bytes));
+  return fmt::format("{:.3g} {}B", value, prefix);
+}
+
+std::string duration_text(double seconds) {
+  if (!(seconds < 3.2e9)) return "centuries";
+  if (seconds < 59.5) return fmt::format("{:.3g} s", seconds);
+  auto const total = static_cast<std::int64_t>(std::llround(seconds));
+  if (total < 3600) return fmt::format("{} min {} s", total / 60, total % 60);
+  if (total < 86400) return fmt::format("{} h {} min", total / 3600, total / 60 % 60);
+  return fmt::format("{} d {} h", total / 86400, total / 3600 % 24);
+}
+
+std::string rate_text(double per_second) {
+  auto const [value, prefix] = prefixed(per_second);
+  return fmt::format("{:.3g} {}", value, prefix);
+}
+
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  return text;
+}
+
+}  // namespace cayspin::simulation

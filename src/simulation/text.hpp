@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace cayspin::simulation {
+
+/// "1.2 GB"
+std::string bytes_text(std::int64_t bytes);
+/// "3 min 20 s"
+std::string duration_text(double seconds);
+/// With a decimal prefix: "12.3 M" for 12300000.
+std::string rate_text(double per_second);
+/// Without line breaks and control characters.
+std::string one_line(std::string text);
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "situation.hpp"
+
+#include <cayspin/vec3.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace cayspin::extremes {
+
+/// The start's components across and along the field.
+inline constexpr double across = 0.6, along = 0.8;
+
+/// How often the exact solution turns, in radians, between 0 and `time`.
+inline long double exact_angle(Setting const& setting, bool body, long double time) {
+  if (setting.switched_on_at > 0) time = std::fmax(time - setting.switched_on_at, 0.0L);
+  return (body ? -along : 1.0L) * setting.field * time;
+}
+
+/// One spin in a constant field: the azimuth grows as field t, and tan(theta / 2) falls as
+/// exp(-damping field t).
+inline Vec3<double> exact_end(Setting const& setting, bool body, long double time) {
+  if (setting.along_field) return {0, 0, 1};
+  long double const angle =
+      std::fmod(exact_angle(setting, body, time), 2 * std::numbers::pi_v<long double>);
+  long double const fall = body ? 0 : setting.damping * std::fabs(exact_angle(setting, body, time));
+  long double const half = across / (1 + along) * std::exp(-fall);  // tan(theta / 2)
+  long double const s = 2 * half / (1 + half * half), c = (1 - half * half) / (1 + half * half);
+  return {static_cast<double>(s * std::cos(angle)), static_cast<double>(s * std::sin(angle)),
+          static_cast<double>(c)};
+}
+
+}  // namespace cayspin::extremes

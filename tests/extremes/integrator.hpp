@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "simulation/choice.hpp"
+#include "simulation/variant.hpp"
+
+#include <string>
+#include <vector>
+
+namespace cayspin::extremes {
+
+using namespace simulation;
+
+/// One integrator as a scene can ask for it.
+struct Integrator : Choice {
+  bool of_rigid_bodies = false;
+
+  /// Neighbours count as they were, or as they are predicted, while a spin moves.
+  bool takes_neighbors_apart() const { return method->neighbors != io::Neighbors::of_the_stage; }
+
+  /// The method with its isotropy, and with its chart.
+  std::string name() const;
+  /// Generator and rotation, where the method takes some.
+  std::string variant() const;
+};
+
+/// Every method of the program that takes steps of dt, with every generator and rotation it takes.
+std::vector<Integrator> with_equal_steps();
+
+/// The same of those that choose their steps.
+std::vector<Integrator> with_adaptive_steps();
+
+}  // namespace cayspin::extremes

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "setting_scene.hpp"
+
+#include "exact.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace cayspin::extremes {
+namespace {
+
+// With every digit, and infinity in TOML's word.
+std::string decimal(double number) {
+  return std::isfinite(number) ? fmt::format("{:.17e}", number) : "inf";
+}
+
+std::string lines_of(Choice const& choice) {
+  auto keys = choice.keys();
+  std::ranges::replace(keys, ',', '\n');
+  return keys;
+}
+
+std::string scene_text(Integrator const& integrator, Setting const& setting) {
+  bool const body = integrator.of_rigid_bodies;
+  auto const& n = setting.shape;
+  auto const system = body
+                          ? fmt::format("kind = \"rigid_body\"\ninertia = [{0}, {0}, {1}]\n",
+                                        decimal(1 / setting.field), decimal(0.5 / setting.field))
+                          : fmt::format("kind = \"llg\"\ndamping = {}\n", decimal(setting.damping));
+  auto const strength =
+      setting.switched_on_at > 0
+          ? fmt::format("\"t < {} ? 0 : {}\"", setting.switched_on_at, setting.field)
+          : decimal(setting.field);
+  auto const field = body
+                         ? std::string()
+                         : fmt::format("[field]\nexchange = 1.0\napplied = [0, 0, {}]\n", strength);
+  return fmt::format(
+      "[system]\n{}[lattice]\nshape = [{}]\n{}[initial]\nuniform = [{}, 0, {}]\n"
+      "[integrator]\n{}\n{}dt = {}\nsteps = {}\n",
+      system,
+      body ? fmt::format("{}", n[0] * n[1] * n[2]) : fmt::format("{}, {}, {}", n[0], n[1], n[2]),
+      field, setting.along_field ? 0 : across, setting.along_field ? 1 : along,
+      lines_of(integrator),
+      integrator.method->adaptive ? fmt::format("tolerance = {}\nmin_dt = {}\n",
+                                                decimal(setting.tolerance), decimal(setting.min_dt))
+                                  : std::string(),
+      decimal(setting.dt), setting.steps);
+}
+
+}  // namespace
+
+io::Scene scene_of(Integrator const& integrator, Setting const& setting) {
+  struct File {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / fmt::format("cayspin-extremes-{}.toml", getpid());
+    ~File() {
+      std::error_code ignored;
+      std::filesystem::remove(path, ignored);
+    }
+  } const file;
+  std::ofstream(file.path) << scene_text(integrator, setting);
+  return io::read_scene(file.path);
+}
+
+}  // namespace cayspin::extremes

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "integrator.hpp"
+#include "situation.hpp"
+
+namespace cayspin::extremes {
+
+/// The scene of a setting, typed into a file and read like any other. Throws io::SceneError.
+io::Scene scene_of(Integrator const& integrator, Setting const& setting);
+
+}  // namespace cayspin::extremes
