@@ -12,9 +12,8 @@
 #include <cayspin/io/scene.hpp>
 #include <cayspin/io/trajectory.hpp>
 #include <cayspin/observer/record.hpp>
-#include <cayspin/stepper/classical.hpp>
-#include <cayspin/stepper/lie_euler.hpp>
-#include <cayspin/stepper/rkmk4.hpp>
+#include <cayspin/stepper/corrected_euler.hpp>
+#include <cayspin/stepper/methods.hpp>
 #include <cayspin/version.hpp>
 
 #include <cctype>

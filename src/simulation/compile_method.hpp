@@ -8,8 +8,8 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/stability.hpp>
-#include <cayspin/stepper/compensated.hpp>
 #include <cayspin/stepper/energy_projection.hpp>
+#include <cayspin/stepper/methods.hpp>
 
 #include <limits>
 

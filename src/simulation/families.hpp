@@ -4,17 +4,14 @@
 #include "method_list.hpp"
 
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>
-#include <cayspin/stepper/classical.hpp>
-#include <cayspin/stepper/commutator_free4.hpp>
+#include <cayspin/stepper/corrected_euler.hpp>
 #include <cayspin/stepper/field_extrapolation.hpp>
 #include <cayspin/stepper/implicit.hpp>
-#include <cayspin/stepper/lie_adams_bashforth2.hpp>
-#include <cayspin/stepper/lie_euler.hpp>
-#include <cayspin/stepper/lie_heun.hpp>
+#include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/red_black.hpp>
-#include <cayspin/stepper/rkmk.hpp>
-#include <cayspin/stepper/rkmk4.hpp>
 #include <cayspin/stepper/series4.hpp>
+#include <cayspin/stepper/two_point.hpp>
+#include <cayspin_paper/rkmk4_as_printed.hpp>
 
 // The types behind the rows of the list of methods: Stepper for spins, an isotropy and a rotation,
 // as far as these are the stepper's choice; Chart where the method takes the generator "tangent".
@@ -52,12 +49,12 @@ struct Group<tableau::Classical4> {
 template <class Tableau>
 struct Classical {
   template <class Spins, class, class>
-  using Stepper = ClassicalRungeKutta<Spins, Tableau, false>;
+  using Stepper = ClassicalRungeKutta<Spins, Tableau>;
 };
 template <class Tableau>
 struct Projected {
   template <class Spins, class, class>
-  using Stepper = ClassicalRungeKutta<Spins, Tableau, true>;
+  using Stepper = ProjectedRungeKutta<Spins, Tableau>;
 };
 
 template <class Tableau>
