@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "interrupt.hpp"
+#include "progress.hpp"
 
 #include <csignal>
 

@@ -26,12 +26,11 @@ std::string generators(Variant const& variant) {
 }
 
 std::string rotations(Variant const& variant) {
-  if (variant.method->is_baseline()) return "-";
   std::string text;
   for (auto const& [name, rotation] : io::words<io::Rotation>())
     if (variant.rotations.contains(rotation))
       text += fmt::format("{}{}", text.empty() ? "" : ", ", name);
-  return text;
+  return text.empty() ? "-" : text;
 }
 
 std::string evaluations(Variant const& variant) {

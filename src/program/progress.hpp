@@ -9,6 +9,13 @@
 
 namespace cayspin::program {
 
+/// From here on SIGINT and SIGTERM ask a run to end after its step instead of killing it, and a
+/// write past the limit of a file's size is an error like any other.
+void catch_signals();
+
+/// True once one of them came.
+bool interrupt_requested();
+
 /// Tells on standard output how far a run is: a bar on a terminal, otherwise now and then a line.
 class Progress {
  public:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "interrupt.hpp"
 #include "progress.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/simulate.hpp"

@@ -75,6 +75,7 @@ class Compiled {
   using Stepper = typename decltype(whole_stepper<Spins, Rotation>())::type;
 
   static constexpr io::SetOf<io::Rotation> rotations() {
+    if (method.is_baseline()) return {};
     if (Key.in_chart || Key.compensated || Key.isotropy == io::Isotropy::energy)
       return {method.usual_rotation()};
     return method.rotations;

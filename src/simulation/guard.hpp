@@ -10,9 +10,6 @@
 
 namespace cayspin::simulation {
 
-/// Up to so many sites a look costs little and is taken at every step. Beyond, at every tenth.
-inline std::int64_t guard_period(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
-
 inline bool energy_must_fall(io::Scene const& scene) {
   return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
          !io::depends_on_time(scene) && scene.integrator.energy_guard &&
@@ -25,12 +22,12 @@ inline bool energy_must_fall(io::Scene const& scene) {
 /// epsilon times the sum of its terms' absolute values.
 class Guard {
  public:
-  /// `epsilon`: of the run's precision.
+  /// `epsilon`: of the run's precision. Few sites are looked at in every step, many in every tenth.
   Guard(io::Scene const& scene, double epsilon)
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
         epsilon_(epsilon),
-        period_(guard_period(io::sites(scene))) {}
+        period_(io::sites(scene) <= 4096 ? 1 : 10) {}
 
   bool due(Step const& step) const { return step.number % period_ == 0; }
 

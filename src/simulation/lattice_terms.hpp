@@ -5,7 +5,6 @@
 #include <cayspin/io/field.hpp>
 
 #include <tuple>
-#include <type_traits>
 
 namespace cayspin::simulation {
 
@@ -55,17 +54,28 @@ struct LatticeTerms {
   TermsIfThere<Others...> others;
   double magnitude;  // of the energy of a site: what round-off is proportional to
 
+  // Where there are no others the first is returned as it is: g++ copies what has a name through
+  // memory.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto field(Stencil const& stencil) const {
-    return others.add_field(stencil, first.field(stencil));
+    if constexpr (sizeof...(Others) == 0)
+      return first.field(stencil);
+    else
+      return others.add_field(stencil, first.field(stencil));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto neighbor_field(Stencil const& stencil) const {
-    return others.add_neighbor_field(stencil, first.neighbor_field(stencil));
+    if constexpr (sizeof...(Others) == 0)
+      return first.neighbor_field(stencil);
+    else
+      return others.add_neighbor_field(stencil, first.neighbor_field(stencil));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto energy_density(Stencil const& stencil) const {
-    return others.add_energy_density(stencil, first.energy_density(stencil));
+    if constexpr (sizeof...(Others) == 0)
+      return first.energy_density(stencil);
+    else
+      return others.add_energy_density(stencil, first.energy_density(stencil));
   }
 };
 
