@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
@@ -33,13 +34,13 @@ struct Lattice {
   }
 
   std::int64_t sites() const { return shape[0] * shape[1] * shape[2]; }
-  bool has_neighbors(int axis) const { return shape[axis] > 1; }
+  bool has_neighbors(int axis) const { return shape[static_cast<std::size_t>(axis)] > 1; }
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
   /// Throws std::invalid_argument naming the first extent or spacing that no lattice can have.
   void validate() const {
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       std::string const which(1, "xyz"[axis]);
       if (shape[axis] < 1 || shape[axis] > std::numeric_limits<std::int32_t>::max() / 4)
         throw std::invalid_argument("cayspin::Lattice: the extent along " + which + " is " +

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -118,7 +119,7 @@ template <class Tableau, class Update>
 Complex mode_growth(Complex z, double q) {
   using Linear = LinearUpdate<Update>;
   constexpr int stages = Tableau::stages;
-  std::array<NearAxis, stages> increments;
+  std::array<NearAxis, std::size_t{stages}> increments;
   for (int stage = 0; stage < stages; ++stage) {
     NearAxis argument;
     for (int j = 0; j < stage; ++j) argument = argument + Tableau::a[stage][j] * increments[j];
@@ -200,9 +201,9 @@ double first_amplifying_step(Grows const& grows, double unit, double limit, doub
 /// The largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field bound.
 inline double exchange_bound(Lattice const& lattice, double constant) {
   double bound = 0;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     auto const n = static_cast<double>(lattice.shape[axis]);
-    if (!lattice.has_neighbors(axis)) continue;
+    if (lattice.shape[axis] <= 1) continue;
     double share = 1;
     if (lattice.boundary[axis] == Boundary::open)
       share = std::pow(std::sin(std::numbers::pi * (n - 1) / (2 * n)), 2);

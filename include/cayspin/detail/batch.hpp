@@ -45,9 +45,9 @@ struct RepeatedRowLoop {
   void operator()(std::int64_t task) const { loop(task); }
 
   struct Task {
-    RepeatedRowLoop const& of;
+    RepeatedRowLoop const& rows;
     std::int64_t task;
-    void operator()() const { of(task); }
+    void operator()() const { rows(task); }
   };
   Task task_at(std::int64_t task) const { return {*this, task}; }
 };

@@ -3,6 +3,7 @@
 
 #include <cayspin/detail/memory.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
 // Packs of numbers that lie two apart.
@@ -62,7 +63,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int
         _mm512_maskz_loadu_ps(static_cast<__mmask16>(wanted >> 16), from + 16)));
   }
 #endif
-  scalar_t<Value> numbers[lanes];
+  scalar_t<Value> numbers[std::size_t{lanes}];
   for (std::int32_t lane = 0; lane < lanes; ++lane) {
     std::int32_t const index = 2 * lane;
     numbers[lane] = first <= index && index <= last ? static_cast<scalar_t<Value>>(from[index]) : 0;
@@ -98,7 +99,8 @@ KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<
     return;
   }
 #endif
-  for (std::int32_t lane = 0; lane < count; ++lane) to[2 * lane] = value[lane];
+  for (std::int32_t lane = 0; lane < count; ++lane) 
+    to[2 * lane] = value[static_cast<std::size_t>(lane)];
 }
 
 }  // namespace cayspin::detail

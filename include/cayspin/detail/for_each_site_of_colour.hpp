@@ -79,13 +79,13 @@ struct ColourRowLoop {
     void add(Row const& row, std::int32_t x) {
       if (x < row.nx) places[count++] = Place{row, x};
     }
-    CAYSPIN_DETAIL_NOINLINE void serve(Functor const& functor) {
+    CAYSPIN_DETAIL_NOINLINE void serve(Functor const& kernel) {
       Place const first = *places[--count];
       if constexpr (takes_pairs<Functor>) {
         Place const second = count > 0 ? *places[--count] : first;
-        functor(Edge(first.row, first.x), Edge(second.row, second.x));
+        kernel(Edge(first.row, first.x), Edge(second.row, second.x));
       } else {
-        functor(Edge(first.row, first.x));
+        kernel(Edge(first.row, first.x));
       }
     }
   };

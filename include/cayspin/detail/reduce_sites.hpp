@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -17,7 +18,7 @@ namespace cayspin::detail {
 
 struct Sum {
   template <int>
-  using of = Sum;
+  using combine_at = Sum;
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value combine(Value const& a, Value const& b) {
     return a + b;
@@ -27,7 +28,7 @@ struct Sum {
 /// The larger one, but at least 0; NaN once there is a NaN.
 struct Maximum {
   template <int>
-  using of = Maximum;
+  using combine_at = Maximum;
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value combine(Value const& a, Value const& b) {
     return select<Value>(b == b, select<Value>(a < b, b, a), b);
@@ -38,14 +39,14 @@ struct Maximum {
 template <int Sums>
 struct SumsThenMaxima {
   template <int Index>
-  using of = std::conditional_t<(Index < Sums), Sum, Maximum>;
+  using combine_at = std::conditional_t<(Index < Sums), Sum, Maximum>;
 };
 
 /// total <- total and value, combined one by one.
 template <class Combine, int Count, class Value>
 KOKKOS_FORCEINLINE_FUNCTION void combine_values(Value* total, Value const* value) {
   unrolled<Count>([&](auto i) {
-    using One = typename Combine::template of<i()>;
+    using One = typename Combine::template combine_at<i()>;
     total[i()] = One::combine(total[i()], value[i()]);
   });
 }
@@ -56,7 +57,7 @@ KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
   if constexpr (lanes == 1) {
     return value;
   } else {
-    double lane[lanes];
+    double lane[std::size_t{lanes}];
     store(value, lane);
     for (int half = lanes / 2; half > 0; half /= 2)
       for (int i = 0; i < half; ++i) lane[i] = Combine::combine(lane[i], lane[i + half]);
@@ -68,11 +69,11 @@ KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
 template <class Combine, int Count, class Functor, class Value>
 struct Collect {
   Functor const& functor;
-  Value total[Count];
+  Value total[std::size_t{Count}];
 
   template <bool AtEdge>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site<Value, AtEdge> const& site) {
-    Value value[Count];
+    Value value[std::size_t{Count}];
     functor(site, value);
     if constexpr (AtEdge) {
       auto const is_site = Value(0.5) < site.inside();
@@ -102,7 +103,7 @@ struct ReduceBlock {
     for (std::int64_t task = tasks * block / blocks; task < end; ++task)
       for_each_pack<Value>(layout, task, per_row, collect);
     unrolled<Count>([&](auto i) {
-      using One = typename Combine::template of<i()>;
+      using One = typename Combine::template combine_at<i()>;
       partial[block * Count + i()] = combine_lanes<One>(collect.total[i()]);
     });
   }
@@ -112,37 +113,37 @@ struct ReduceBlock {
 template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
   struct value_type {
-    double of[Count];
+    double values[std::size_t{Count}];
   };
   Functor functor;
   RowLayout layout;
 
   KOKKOS_FUNCTION void operator()(std::int64_t index, value_type& total) const {
     Row const row(layout, index / layout.nx);
-    double value[Count];
+    double value[std::size_t{Count}];
     functor(Site<double, true>(row, static_cast<std::int32_t>(index % layout.nx)), value);
-    combine_values<Combine, Count>(total.of, value);
+    combine_values<Combine, Count>(total.values, value);
   }
   KOKKOS_FUNCTION void init(value_type& total) const {
-    for (int i = 0; i < Count; ++i) total.of[i] = 0;
+    for (int i = 0; i < Count; ++i) total.values[i] = 0;
   }
   KOKKOS_FUNCTION void join(value_type& total, value_type const& other) const {
-    combine_values<Combine, Count>(total.of, other.of);
+    combine_values<Combine, Count>(total.values, other.values);
   }
 };
 
 /// Combines what functor(site, values) puts into values[0 .. Count) over all sites; waits. Takes no
 /// memory from the heap on host spaces, and may run in several instances at once.
 template <class Combine, int Count, class Exec, class Functor>
-std::array<double, Count> reduce_sites(Exec const& exec, std::string const& label,
+std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                        RowLayout const& layout, Functor const& functor) {
-  std::array<double, Count> total{};
+  std::array<double, std::size_t{Count}> total{};
   if constexpr (is_host_execution<Exec>) {
     std::int32_t const per_row = tasks_per_row(layout);
     std::int64_t const tasks = layout.rows() * per_row;
     std::int64_t const blocks =
         std::min({tasks, largest_blocks, layout.sites() / calling_thread_sites + 1});
-    double partial[largest_blocks * Count];
+    double partial[std::size_t{largest_blocks * Count}];
     using Body = ReduceBlock<Combine, Count, Functor>;
     for_each_task(exec, label, blocks, layout.sites(),
                   Body{functor, layout, per_row, tasks, blocks, partial});
@@ -154,7 +155,7 @@ std::array<double, Count> reduce_sites(Exec const& exec, std::string const& labe
     using Body = ReduceOnDevice<Combine, Count, Functor>;
     typename Body::value_type result;
     Kokkos::parallel_reduce(label, Policy(exec, 0, layout.sites()), Body{functor, layout}, result);
-    std::copy(result.of, result.of + Count, total.begin());
+    std::copy(result.values, result.values + Count, total.begin());
   }
   return total;
 }

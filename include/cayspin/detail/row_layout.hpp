@@ -32,7 +32,7 @@ struct RowLayout {
     layout.nx = static_cast<std::int32_t>(lattice.shape[0]);
     layout.ny = static_cast<std::int32_t>(lattice.shape[1]);
     layout.nz = static_cast<std::int32_t>(lattice.shape[2]);
-    for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis)
       layout.periodic[axis] = lattice.boundary[axis] == Boundary::periodic;
     std::ptrdiff_t const rows = std::ptrdiff_t(layout.ny) * layout.nz;
     layout.pitch =

@@ -73,8 +73,8 @@ struct SweepPlan {
     for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b);
     std::size_t const bytes = static_cast<std::size_t>(planes * plan.row) * sizeof(Real);
     std::int32_t const least = 2 * plan.stages;
-    plan.block =
-        std::max(least, static_cast<std::int32_t>(std::min<std::size_t>(cache / bytes, layout.ny)));
+    auto const all_rows = static_cast<std::size_t>(layout.ny);
+    plan.block = std::max(least, static_cast<std::int32_t>(std::min(cache / bytes, all_rows)));
     std::int32_t const longest = (layout.ny + plan.parts_y - 1) / plan.parts_y;
     plan.ring_rows = std::min(2 * plan.block, longest) + 2 * plan.stages;
     plan.seam_planes = (layout.nz + plan.parts_z - 1) / plan.parts_z + 2 * plan.stages;
@@ -142,12 +142,12 @@ struct SweepPart {
   Real* memory;
   std::int32_t blocks, block = 0;
 
-  SweepPart(SweepPlan const& of, Real* buffers, std::int64_t part)
-      : plan(of),
-        y(of.range_y(part)),
-        z(of.range_z(part)),
-        memory(buffers + part * of.part_size),
-        blocks(of.blocks(y.end - y.begin)) {}
+  SweepPart(SweepPlan const& whole, Real* buffers, std::int64_t part)
+      : plan(whole),
+        y(whole.range_y(part)),
+        z(whole.range_z(part)),
+        memory(buffers + part * whole.part_size),
+        blocks(whole.blocks(y.end - y.begin)) {}
 
   /// Rows low .. high - 1 are those that a stage works on: behind the stage before it by one.
   std::int32_t low(int stage) const { return block == 0 ? y.low(stage) : bound(block) - stage; }

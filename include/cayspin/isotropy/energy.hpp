@@ -16,7 +16,7 @@ struct Energy {};
 
 namespace cayspin::detail {
 
-/// The invariants of B = I^-1 and m that the corrections are made of.
+/// The invariants of B = I^-1 and m that the corrections are made body.
 template <class Value>
 struct BodyInvariants {
   Vec3<Value> bm, v;                 // B m, m x B m
@@ -51,11 +51,11 @@ struct HeunCorrection {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
                                                  Vec3<Value> const& m, bool orthogonal) {
-    BodyInvariants<Value> const of(matrix, m);
+    BodyInvariants<Value> const body(matrix, m);
     if (orthogonal)
-      return Value(0.25) * (Value(3) * of.v2 + of.second_c) * (of.trace_c - of.cubic_c);
-    Vec3<Value> const bv = matrix * of.v;
-    return guarded_quotient(Value(Value(0.25) * dot(bv, of.trace * bv - matrix * bv)), of.v2);
+      return Value(0.25) * (Value(3) * body.v2 + body.second_c) * (body.trace_c - body.cubic_c);
+    Vec3<Value> const bv = matrix * body.v;
+    return guarded_quotient(Value(Value(0.25) * dot(bv, body.trace * bv - matrix * bv)), body.v2);
   }
 };
 
@@ -64,11 +64,11 @@ struct Rkmk4Correction {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
                                                  Vec3<Value> const& m, bool orthogonal) {
-    BodyInvariants<Value> const of(matrix, m);
-    if (orthogonal) return Value(-1. / 16) * of.mixed * (of.trace_c - of.cubic_c);
-    Value const form = Value(3) * of.second * of.b + Value(5) * of.b * of.b2 - of.det -
-                       Value(4) * of.trace * of.b * of.b;
-    return guarded_quotient(Value(Value(1. / 48) * of.mixed * form), of.v2);
+    BodyInvariants<Value> const body(matrix, m);
+    if (orthogonal) return Value(-1. / 16) * body.mixed * (body.trace_c - body.cubic_c);
+    Value const form = Value(3) * body.second * body.b + Value(5) * body.b * body.b2 - body.det -
+                       Value(4) * body.trace * body.b * body.b;
+    return guarded_quotient(Value(Value(1. / 48) * body.mixed * form), body.v2);
   }
 };
 
@@ -77,11 +77,11 @@ struct Series4Correction {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
                                                  Vec3<Value> const& m, bool orthogonal) {
-    BodyInvariants<Value> const of(matrix, m);
-    if (orthogonal) return Value(-1. / 24) * of.mixed * (of.trace_c - of.cubic_c);
-    Value const form = of.det + Value(3) * of.trace * of.b * of.b - Value(2) * of.second * of.b -
-                       Value(3) * of.b * of.b2;
-    return guarded_quotient(Value(Value(1. / 24) * of.mixed * form), of.v2);
+    BodyInvariants<Value> const body(matrix, m);
+    if (orthogonal) return Value(-1. / 24) * body.mixed * (body.trace_c - body.cubic_c);
+    Value const form = body.det + Value(3) * body.trace * body.b * body.b -
+                       Value(2) * body.second * body.b - Value(3) * body.b * body.b2;
+    return guarded_quotient(Value(Value(1. / 24) * body.mixed * form), body.v2);
   }
 };
 
@@ -90,8 +90,8 @@ struct Series4PaperCorrection {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
                                                  Vec3<Value> const& m, bool) {
-    BodyInvariants<Value> const of(matrix, m);
-    return Value(-0.125) * of.mixed * (of.trace_c - of.cubic_c);
+    BodyInvariants<Value> const body(matrix, m);
+    return Value(-0.125) * body.mixed * (body.trace_c - body.cubic_c);
   }
 };
 

@@ -3,6 +3,8 @@
 
 #include <cayspin/vec3.hpp>
 
+#include <cstddef>
+
 namespace cayspin::detail {
 
 /// Taylor polynomial 1 + x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd), the series
@@ -11,7 +13,7 @@ namespace cayspin::detail {
 template <int Odd, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   constexpr int terms = sizeof(scalar_t<Value>) == sizeof(double) ? 10 : 6;
-  double coefficient[terms + 1] = {1};
+  double coefficient[std::size_t{terms + 1}] = {1};
   for (int k = 1; k <= terms; ++k)
     coefficient[k] = -coefficient[k - 1] / ((2 * k + Odd) * (2 * k - 1 + Odd));
   Value sum(static_cast<scalar_t<Value>>(coefficient[terms]));

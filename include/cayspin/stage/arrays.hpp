@@ -16,11 +16,12 @@ namespace cayspin::detail {
 /// Kind says what an array is: WholeFields, Planes or Rows.
 template <class Kind, int Stages>
 struct StageArrays {
-  static constexpr int most_carried = 1;
+  static constexpr std::size_t most_increments = Stages > 1 ? Stages - 1 : 1;
+  static constexpr std::size_t most_carried = 1;
 
   typename Kind::Input start;                                    // spins at the begin of the step
   typename Kind::Spins level;                                    // spins of this stage
-  typename Kind::Input increments[Stages > 1 ? Stages - 1 : 1];  // of earlier stages, or spins
+  typename Kind::Input increments[most_increments];  // of earlier stages, or spins
   typename Kind::Input sum_before;                               // of weighted increments
   typename Kind::Output sum;
   typename Kind::Output increment;  // of this stage
@@ -52,7 +53,8 @@ KOKKOS_FORCEINLINE_FUNCTION void find_arrays(Step const& step,
   if constexpr (Flow::stores_increment) arrays.increment = step.template new_increment<stage>();
   arrays.next = step.template next<stage>();
   if constexpr (Flow::carried > 0) {
-    for (int i = 0; i < Flow::carried; ++i) {
+    constexpr std::size_t carried = Flow::carried;
+    for (std::size_t i = 0; i < carried; ++i) {
       arrays.carried_before[i] = step.carried_before(i);
       arrays.carried[i] = step.carried(i);
     }

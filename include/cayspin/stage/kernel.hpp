@@ -8,6 +8,7 @@
 #include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/update.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 namespace cayspin::detail {
@@ -100,7 +101,7 @@ struct RungeKuttaStage {
     }
     Vec3<Value> const a = Value(dt) * xi;
 
-    Vec3<Value> f[stages];
+    Vec3<Value> f[std::size_t{stages}];
     unrolled<StageIndex>([&](auto j) {
       if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
     });
@@ -207,7 +208,7 @@ struct RungeKuttaStage {
       constexpr double factor = Tableau::a[StageIndex + 1][StageIndex];
       return Update::advance(Value(static_cast<Real>(factor) * dt), a, m, m0);
     } else {
-      Vec3<Value> spins[StageIndex];
+      Vec3<Value> spins[std::size_t{StageIndex}];
       unrolled<StageIndex - 1>([&](auto j) { spins[j()] = site.load(rows.increments[j()]); });
       spins[StageIndex - 1] = m;
       return Update::template arrive<ChartWeights<Tableau>, StageIndex>(Value(dt), a, spins, m0);

@@ -23,16 +23,17 @@ class StageMemory {
 
   void allocate_fields(std::string const& name, Lattice const& lattice) {
     *this = {};
-    for (int i = 0; i < level_count; ++i)
+    for (std::size_t i = 0; i < levels_.size(); ++i)
       levels_[i] = Spins(name + "::level_" + std::to_string(i + 1), lattice);
     if constexpr (keeps_sum<Tableau, Update>) {
       sum_ = Spins(name + "::sum", lattice);
       Spins const last_increment(name + "::increment", lattice);
-      for (int i = 0; i + 1 < stages; ++i) increments_[i] = last_increment;
+      for (std::size_t i = 0; i + 1 < increments_.size(); ++i) increments_[i] = last_increment;
     } else {
       for (int i = 0; i + 1 < stages; ++i)
         if (detail::stores_increment<Tableau, Update>(i))
-          increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), lattice);
+          increments_[static_cast<std::size_t>(i)] =
+              Spins(name + "::increment_" + std::to_string(i + 1), lattice);
     }
     allocate_carried(name, lattice);
     if constexpr (on_host) streaming_ = levels_[0].bytes() + bytes() > last_level_cache_bytes();
@@ -58,8 +59,8 @@ class StageMemory {
     std::size_t sum = sum_.bytes() + buffers_.size() * sizeof(Real);
     for (auto const& field : carried_) sum += field.bytes();
     for (auto const& level : levels_) sum += level.bytes();
-    constexpr int distinct = keeps_sum<Tableau, Update> ? 1 : stages;
-    for (int i = 0; i < distinct; ++i) sum += increments_[i].bytes();
+    constexpr std::size_t distinct = keeps_sum<Tableau, Update> ? 1 : stages;
+    for (std::size_t i = 0; i < distinct; ++i) sum += increments_[i].bytes();
     return sum;
   }
 
@@ -138,8 +139,8 @@ class StageMemory {
       Spins const& field = in_place ? first : memory.levels_[Stage % level_count];
       return field.output(memory.streaming_ && !in_place);
     }
-    auto carried_before(int i) const { return memory.carried_[i].array(); }
-    auto carried(int i) const { return memory.carried_[i].output(false); }
+    auto carried_before(std::size_t i) const { return memory.carried_[i].array(); }
+    auto carried(std::size_t i) const { return memory.carried_[i].output(false); }
   };
 
   void allocate_carried(std::string const& name, Lattice const& lattice) {
@@ -148,8 +149,8 @@ class StageMemory {
         carried_[i] = Carried(name + "::" + Update::carried[i], lattice);
   }
 
-  std::array<Spins, level_count> levels_;  // the first one only, in a sweep
-  std::array<Spins, stages> increments_;   // one field in all places where keeps_sum
+  std::array<Spins, std::size_t{level_count}> levels_;  // the first one only, in a sweep
+  std::array<Spins, std::size_t{stages}> increments_;   // one field in all places where keeps_sum
   Spins sum_;
   std::array<Carried, carried_fields<Update>()> carried_;
   Buffers buffers_;

@@ -6,6 +6,7 @@
 #include <cayspin/stage/pass.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <tuple>
 
@@ -119,10 +120,10 @@ struct SweepLoop {
       else
         return {plane_rows<Real>(loop.next, loop.plan.layout, here), loop.next.streaming};
     }
-    PlaneRows<Real> carried_before(int i) const {
+    PlaneRows<Real> carried_before(std::size_t i) const {
       return plane_rows(loop.carried[i], loop.plan.layout, here);
     }
-    typename Planes<Real>::Output carried(int i) const { return {carried_before(i)}; }
+    typename Planes<Real>::Output carried(std::size_t i) const { return {carried_before(i)}; }
 
    private:
     template <int Stage>

@@ -5,6 +5,7 @@
 #include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 // The geometry of a Runge-Kutta method: how an increment moves a spin, and which increment a
@@ -158,8 +159,9 @@ struct Stereographic {
                                                         Vec3<Value> const& m0) {
     using Scalar = detail::scalar_t<Value>;
     constexpr int own = Count - 1;
-    Vec3<Value> d[Count];
-    Value square[Count], rest[Count];  // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
+    Vec3<Value> d[std::size_t{Count}];
+    Value square[std::size_t{Count}], rest[std::size_t{Count}];
+    // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
     Value others(1);                   // all rests but that of m
     detail::unrolled<Count>([&](auto j) {
       if constexpr (j() < own && Weights::spin(j()) == 0) return;

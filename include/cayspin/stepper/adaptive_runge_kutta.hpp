@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -57,7 +58,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
         first_(name + "::first_generator", like.lattice()),
         last_(name + "::last_generator", like.lattice()),
         square_(name + "::squared_error", like.lattice()) {
-    for (int i = 0; i + 1 < stages; ++i) {
+    for (std::size_t i = 0; i < increments_.size(); ++i) {
       increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), like.lattice());
       labels_[i] = this->label("::stage_") + std::to_string(i + 1);
     }
@@ -265,7 +266,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
 
   detail::StepIncrements<Tableau, Real> increments() const {
     detail::StepIncrements<Tableau, Real> all;
-    for (int i = 0; i + 1 < stages; ++i) all.array[i] = increments_[i].array();
+    for (std::size_t i = 0; i < increments_.size(); ++i) all.array[i] = increments_[i].array();
     return all;
   }
 
@@ -287,12 +288,12 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
               dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
               step_label_ = this->label("::all_stages");
-  std::array<std::string, stages> labels_;
+  std::array<std::string, std::size_t{stages}> labels_;
   Isotropy isotropy_;
   StepOptions options_;
   detail::StepController controller_;
   Spins begin_, end_, level_, first_, last_;
-  std::array<Spins, stages - 1> increments_;
+  std::array<Spins, std::size_t{stages - 1}> increments_;
   Scalars square_;
   bool streaming_ = false, running_ = false;
   double begin_time_ = 0, end_time_ = 0, dt_ = 0, next_dt_ = 0;

@@ -6,6 +6,8 @@
 #include <cayspin/stencil.hpp>
 #include <cayspin/stage/kernel.hpp>
 
+#include <cstddef>
+
 // What an adaptive Runge-Kutta step does besides its stages. Tableau is a FirstSameAsLast.
 namespace cayspin::detail {
 
@@ -49,7 +51,7 @@ struct ErrorWeights {
 template <class Tableau, class Real>
 struct StepIncrements {
   static constexpr int stages = Tableau::stages;
-  SiteArray<Real, 3> array[stages - 1];
+  SiteArray<Real, 3> array[std::size_t{stages - 1}];
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void load(Site const& site, Vec3<Value>* f) const {
@@ -80,7 +82,7 @@ struct EndStage {
     Vec3<Value> const& m = stencil.center();
     Vec3<Value> const m0 = site.load(start);
     Vec3<Value> const xi = isotropy(m, evaluate(generator, stencil));
-    Vec3<Value> f[stages];
+    Vec3<Value> f[std::size_t{stages}];
     increments.load(site, f);
     Vec3<Value> const total = weighted_sum<StageWeights<Tableau, stages - 1>, stages - 1>(f);
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
@@ -103,7 +105,7 @@ struct DenseOutput {
   StepIncrements<Tableau, Real> increments;
   OutputArray<Real, 3> spins;
   Real dt;
-  Real weights[stages];
+  Real weights[std::size_t{stages}];
 
   /// At fraction s of a step of dt.
   DenseOutput(SiteArray<Real, 3> start_spins, SiteArray<Real, 3> end_spins,
@@ -126,7 +128,7 @@ struct DenseOutput {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     Vec3<Value> const m0 = site.load(start);
-    Vec3<Value> f[stages];
+    Vec3<Value> f[std::size_t{stages}];
     increments.load(site, f);
     f[stages - 1] =
         Update::increment(weighted_sum<StageWeights<Tableau, stages - 1>, stages - 1>(f),

@@ -4,6 +4,8 @@
 #include <cayspin/rotation/half_angle.hpp>
 #include <cayspin/vec3.hpp>
 
+#include <cstddef>
+
 namespace cayspin::detail {
 
 /// exp(-x) and 1 - exp(-x), each to a few ulp, for 0 <= x < 700 (double), 80 (float).
@@ -25,7 +27,7 @@ KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
   Value r = multiply_add(minus, Value(is_double ? Scalar(high) : Scalar(high_f)), x);
   r = multiply_add(minus, Value(is_double ? Scalar(low) : Scalar(low_f)), r);
 
-  double coefficient[terms + 1] = {1};  // of (1 - exp(-r)) / r, |r| < 0.35
+  double coefficient[std::size_t{terms + 1}] = {1};  // of (1 - exp(-r)) / r, |r| < 0.35
   for (int k = 1; k <= terms; ++k) coefficient[k] = -coefficient[k - 1] / (k + 1);
   Value sum(static_cast<Scalar>(coefficient[terms]));
   for (int k = terms - 1; k >= 0; --k)
@@ -73,18 +75,18 @@ struct ExactFlow {
   /// chain of operations is half as long.
   template <int Odd, int Terms>
   KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
-    double coefficient[Terms] = {first};
+    double coefficient[std::size_t{Terms}] = {first};
     for (int k = 1; k < Terms; ++k)
       coefficient[k] = coefficient[k - 1] / ((2 * k + Odd) * (2 * k - 1 + Odd));
-    auto const of = [&](int k) { return Value(static_cast<Scalar>(coefficient[k])); };
+    auto const term = [&](int k) { return Value(static_cast<Scalar>(coefficient[k])); };
     Value const square = x * x;
-    Value upper = of(Terms - 1), lower = of(Terms - 2);
+    Value upper = term(Terms - 1), lower = term(Terms - 2);
     for (int k = Terms - 3; k > 0; k -= 2) {
-      upper = multiply_add(upper, square, of(k));
-      lower = multiply_add(lower, square, of(k - 1));
+      upper = multiply_add(upper, square, term(k));
+      lower = multiply_add(lower, square, term(k - 1));
     }
     if constexpr (Terms % 2 == 0) return multiply_add(upper, x, lower);
-    return multiply_add(lower, x, multiply_add(upper, square, of(0)));
+    return multiply_add(lower, x, multiply_add(upper, square, term(0)));
   }
 
   /// By entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The relaxation

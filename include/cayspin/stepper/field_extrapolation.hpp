@@ -46,8 +46,8 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   using typename Base::Real;
   static constexpr int order = Order;
   static constexpr int evaluations = 1;  // of the generator, per step after the first ones
-  static constexpr int past_fields = Estimates ? Order : Order - 1;
-  static constexpr int work_fields = past_fields + 1 + Start::work_fields;
+  static constexpr std::size_t past_fields = Estimates ? Order : Order - 1;
+  static constexpr int work_fields = static_cast<int>(past_fields) + 1 + Start::work_fields;
 
   explicit FieldExtrapolation(std::string const& name, Spins const& like,
                               FieldExtrapolationOptions const& options = {})

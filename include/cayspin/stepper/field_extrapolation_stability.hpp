@@ -16,13 +16,13 @@ namespace cayspin::detail {
 
 /// The amplitude after a step from those now and before, newest first. z = dt (a + b) (-damping +
 /// i); `own` = a / (a + b); q = dt times the part of A along the spin.
-template <int Order>
+template <std::size_t Order>
 Complex extrapolated_mode(std::array<Complex, Order> const& amplitudes, Complex z, double own,
                           double q) {
   using Linear = LinearUpdate<update::Lie<Cayley>>;
   using Tableau = tableau::Classical4;
   std::array<double, Order> nodes;
-  for (int j = 0; j < Order; ++j) nodes[static_cast<std::size_t>(j)] = -j;
+  for (std::size_t j = 0; j < Order; ++j) nodes[j] = 0.0 - static_cast<double>(j);
   auto const others = [&](double x) {
     auto const weights = interpolation_weights(nodes, x);
     Complex sum = 0;
@@ -60,7 +60,7 @@ bool recursion_grows(std::array<Complex, Order> const& coefficients) {
   return false;
 }
 
-template <int Order>
+template <std::size_t Order>
 bool extrapolated_mode_grows(Complex z, double own, double q) {
   std::array<Complex, Order> coefficients;
   for (std::size_t j = 0; j < Order; ++j) {
@@ -74,7 +74,7 @@ bool extrapolated_mode_grows(Complex z, double own, double q) {
 /// The largest dt at which no mode grows, never above the linear limit of either generator, for
 /// fields whose part from other spins is exchange between neighbours: of the stiffest mode's rate,
 /// half is then due to the others. It is the mode in which neighbours are opposite.
-template <int Order>
+template <std::size_t Order>
 double largest_stable_extrapolation(double field_bound, double damping, bool precession) {
   double const never = std::numeric_limits<double>::infinity();
   Complex const rate(-damping, precession ? 1 : 0);

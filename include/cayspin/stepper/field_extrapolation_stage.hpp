@@ -8,6 +8,8 @@
 #include <cayspin/stage/update.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <cstddef>
+
 namespace cayspin::detail {
 
 /// The neighbour field of every spin.
@@ -30,7 +32,8 @@ template <int Order, class Real>
 struct ErrorOfExtrapolation {
   static constexpr bool is_known = true;
   static constexpr int older = Order;
-  double weights[Order], scale;  // of the fields before; dt of the step and what is left of it
+  double weights[std::size_t{Order}];  // of the fields before
+  double scale;                        // dt of the step and what is left of it
   OutputArray<Real, 1> angles;
 };
 
@@ -45,11 +48,13 @@ struct NoErrorOfExtrapolation {
 template <int Order, class Error, class Generator, class Local, class Real>
 struct FieldExtrapolationStage {
   Generator generator;
-  Local local[3];                    // at the begin, the middle and the end
-  double middle[Order], end[Order];  // weights of the polynomial, newest first
+  Local local[3];  // at the begin, the middle and the end
+  /// Weights of the polynomial, newest first.
+  double middle[std::size_t{Order}], end[std::size_t{Order}];
   SiteArray<Real, 3> spins;
-  SiteArray<Real, 3> older[Error::older];  // neighbour fields of the steps before, newest first
-  OutputArray<Real, 3> newest, next;       // the field's array may be that of the oldest
+  /// Neighbour fields of the steps before, newest first.
+  SiteArray<Real, 3> older[std::size_t{Error::older}];
+  OutputArray<Real, 3> newest, next;  // the field's array may be that of the oldest
   Error error;
   Real dt;
 

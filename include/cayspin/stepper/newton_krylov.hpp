@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ namespace cayspin::detail {
 template <class Spins>
 class NewtonKrylov {
   using Real = typename Spins::value_type;
-  static constexpr int krylov_dimension = 12;
+  static constexpr std::size_t krylov_dimension = 12;
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
  public:
@@ -55,7 +56,7 @@ class NewtonKrylov {
  private:
   void allocate(Lattice const& lattice) {
     if (!basis_.empty()) return;
-    for (int i = 0; i <= krylov_dimension; ++i)
+    for (std::size_t i = 0; i <= krylov_dimension; ++i)
       basis_.emplace_back("NewtonKrylov::basis_" + std::to_string(i), lattice);
     correction_ = Spins("NewtonKrylov::correction", lattice);
     point_ = Spins("NewtonKrylov::point", lattice);
@@ -72,13 +73,13 @@ class NewtonKrylov {
   template <class Exec, class Map>
   void solve_linear(Exec const& exec, Map const& g, Spins const& v, Spins const& image,
                     double norm) {
-    constexpr int m = krylov_dimension;
+    constexpr std::size_t m = krylov_dimension;
     std::array<std::array<double, m + 1>, m> h{};  // columns
     std::array<double, m> cosine{}, sine{};
     std::array<double, m + 1> rest{norm};
     double const small = std::sqrt(epsilon * static_cast<double>(v.sites()));
     combine(exec, 1 / norm, basis_[0], 0, basis_[0], basis_[0]);
-    int size = 0;
+    std::size_t size = 0;
     while (size < m && std::abs(rest[size]) > 1e-3 * norm) {
       auto& column = h[size];
       auto const &q = basis_[size], &next = basis_[size + 1];
@@ -86,13 +87,14 @@ class NewtonKrylov {
       g(point_, image_);
       combine(exec, 1, image, -1, image_, image_);
       combine(exec, 1, q, 1 / small, image_, next);
-      for (int i = 0; i <= size; ++i) {
+      for (std::size_t i = 0; i <= size; ++i) {
         column[i] = inner_product(exec, basis_[i], next);
         combine(exec, -column[i], basis_[i], 1, next, next);
       }
       double const left = length(exec, next);
       if (left > 0) combine(exec, 1 / left, next, 0, next, next);
-      for (int i = 0; i < size; ++i) rotate(cosine[i], sine[i], column[i], column[i + 1]);
+      for (std::size_t i = 0; i < size; ++i)
+        rotate(cosine[i], sine[i], column[i], column[i + 1]);
       double const radius = std::hypot(column[size], left);
       cosine[size] = radius > 0 ? column[size] / radius : 1;
       sine[size] = radius > 0 ? left / radius : 0;
@@ -103,8 +105,8 @@ class NewtonKrylov {
       if (!(left > epsilon * radius)) break;
     }
     Kokkos::deep_copy(exec, correction_.allocation(), Real(0));
-    for (int i = size - 1; i >= 0; --i) {
-      for (int j = i + 1; j < size; ++j) rest[i] -= h[j][i] * rest[j];
+    for (std::size_t i = size; i-- > 0;) {
+      for (std::size_t j = i + 1; j < size; ++j) rest[i] -= h[j][i] * rest[j];
       rest[i] = h[i][i] != 0 ? rest[i] / h[i][i] : 0;
       combine(exec, rest[i], basis_[i], 1, correction_, correction_);
     }

@@ -41,7 +41,7 @@ class RedBlack : public detail::StepperBase<Spins> {
       : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice()),
         pass_label_(this->label("::colour_pass")),
         batch_label_(this->label("::batch")) {
-    for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis)
       if (this->lattice_.boundary[axis] == Boundary::periodic && this->lattice_.shape[axis] > 1 &&
           this->lattice_.shape[axis] % 2 != 0)
         throw std::invalid_argument(

@@ -31,11 +31,11 @@ struct ColourPass {
 /// cancel within a step of its own.
 template <int Order>
 constexpr auto colour_passes() {
-  constexpr int steps = Order == 2 ? 1 : 5;
+  constexpr std::size_t steps = Order == 2 ? 1 : 5;
   constexpr double a = 0.41449077179437573714;
   std::array<ColourPass, 2 * steps + 1> passes{};
   double begin = 0;
-  for (int k = 0; k < steps; ++k) {
+  for (std::size_t k = 0; k < steps; ++k) {
     double const length = Order == 2 ? 1 : k == 2 ? 1 - 4 * a : a;
     ColourPass& first = passes[2 * k];
     int const flow = k == 0 ? 0 : 1;
@@ -98,18 +98,19 @@ struct RedBlackStage {
   template <class Site, class... Second>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     Moving<Site> of_site(*this, site);
-    auto const move = [&](auto&... of) {
-      bool const at_once = flows == 2 && joined && !(of.varies(*this) || ...);
+    auto const move = [&](auto&... moving) {
+      bool const at_once = flows == 2 && joined && !(moving.varies(*this) || ...);
       for (std::int32_t which = 0; which < (at_once ? 1 : flows); ++which) {
         Real const step = at_once ? dt[0] + dt[1] : dt[which];
-        (of.begin(*this, which, step), ...);
-        bool const varies = (of.varies(*this) || ...);
-        (of.turn(), ...);
-        for (int i = 0; varies && !(of.settles() & ...) && i < most_iterations; ++i)
-          (of.turn(), ...);
-        (of.arrive(), ...);
+        (moving.begin(*this, which, step), ...);
+        bool const varies = (moving.varies(*this) || ...);
+        (moving.turn(), ...);
+        // & without short cut: each pack has to take its own next iterate.
+        for (int i = 0; varies && !(int{moving.settles()} & ...) && i < most_iterations; ++i)
+          (moving.turn(), ...);
+        (moving.arrive(), ...);
       }
-      (of.store(*this), ...);
+      (moving.store(*this), ...);
     };
     if constexpr (sizeof...(Second) == 0) {
       move(of_site);

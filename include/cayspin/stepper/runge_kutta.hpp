@@ -51,7 +51,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
         name_(name),
         isotropy_(isotropy),
         plan_(sweep_plan(like.layout(), DefaultExec().concurrency())) {
-    for (int i = 0; i < stages; ++i)
+    for (std::size_t i = 0; i < labels_.size(); ++i)
       labels_[i] = this->label("::stage_") + std::to_string(i + 1);
     use(sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep : Path::pass);
   }
@@ -187,8 +187,10 @@ class RungeKutta : public detail::StepperBase<Spins> {
         return kernel<S>(detail::prepare_term(generator, exec, spins, t + Tableau::c[S] * dt), dt);
       };
       std::tuple const kernels{kernel_at(std::integral_constant<int, Stage>{})...};
-      detail::SweepLoop<Tableau, Update, Real, std::tuple_element_t<Stage, decltype(kernels)>...>
-          loop{kernels, plan_, spins.array(), {}, {}, nullptr};
+      using Loop =
+          detail::SweepLoop<Tableau, Update, Real,
+                            std::tuple_element_t<std::size_t{Stage}, decltype(kernels)>...>;
+      Loop loop{kernels, plan_, spins.array(), {}, {}, nullptr};
       memory_.set(loop);
       detail::for_each_task(exec, sweep_label_, plan_.parts(), spins.sites(), loop);
     }
@@ -219,7 +221,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   }
 
   std::string name_, sweep_label_ = this->label("::sweep"), batch_label_ = this->label("::batch");
-  std::array<std::string, stages> labels_;
+  std::array<std::string, std::size_t{stages}> labels_;
   Isotropy isotropy_;
   detail::SweepPlan plan_;
   Path path_ = Path::pass;

@@ -8,6 +8,7 @@
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <array>
+#include <cstddef>
 
 namespace cayspin {
 
@@ -62,20 +63,30 @@ class Series4 : public detail::StepperBase<Spins> {
  private:
   void allocate(Lattice const& lattice) {
     if (derivatives_[0].sites() != 0) return;
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < derivatives_.size(); ++k) {
       derivatives_[k] = Spins("Series4::spins_" + std::to_string(k + 1), lattice);
       sources_[k] = Spins("Series4::source_" + std::to_string(k), lattice);
     }
   }
 
+  template <int K>
+  Spins const& derivative(Spins const& spins) const {
+    if constexpr (K == 0)
+      return spins;
+    else
+      return derivatives_[K - 1];
+  }
+
   template <int K, class Exec, class Generator>
   void stage(Exec const& exec, Generator const& generator, Spins const& spins, double t,
              double dt) {
-    auto prepared = detail::prepare_term(generator, exec, K == 0 ? spins : derivatives_[K - 1], t);
+    auto prepared = detail::prepare_term(generator, exec, derivative<K>(spins), t);
     detail::SeriesStage<Series, K, decltype(prepared), Real> kernel{
         std::move(prepared), {}, {}, next_.output(false), static_cast<Real>(dt)};
-    for (int k = 0; k <= K; ++k) kernel.spins[k] = (k == 0 ? spins : derivatives_[k - 1]).array();
-    for (int k = 0; k <= K && k < 3; ++k) kernel.sources[k] = sources_[k].output(false);
+    detail::unrolled<K + 1>([&](auto k) {
+      kernel.spins[k()] = derivative<k()>(spins).array();
+      if constexpr (k() < 3) kernel.sources[k()] = sources_[k()].output(false);
+    });
     if constexpr (K < 3) kernel.next = derivatives_[K].output(false);
     detail::for_each_site<Real>(exec, labels_[K], spins.layout(), kernel);
     if constexpr (K < 3) stage<K + 1>(exec, generator, spins, t, dt);

@@ -9,6 +9,7 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 namespace cayspin::detail {
@@ -70,7 +71,7 @@ template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generator,
                                                         Vec3<Value> const* m,
                                                         Vec3<Value> const* source) {
-  Vec3<Value> a[K + 1];
+  Vec3<Value> a[std::size_t{K + 1}];
   unrolled<K + 1>(
       [&](auto order) { a[order] = generator.template derivative<order()>(m, source); });
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
@@ -124,8 +125,8 @@ struct LocalSeriesStage {
 template <class Series, int K, class Generator, class Real>
 struct SeriesStage {
   Generator generator;
-  SiteArray<Real, 3> spins[K + 1];  // derivatives 0 .. K
-  OutputArray<Real, 3> sources[K == 3 ? 3 : K + 1];
+  SiteArray<Real, 3> spins[std::size_t{K + 1}];  // derivatives 0 .. K
+  OutputArray<Real, 3> sources[std::size_t{K == 3 ? 3 : K + 1}];
   OutputArray<Real, 3> next;
   Real dt;
 
@@ -133,7 +134,7 @@ struct SeriesStage {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     Stencil<Site, Real> const stencil(site, spins[K]);
-    Vec3<Value> m[K + 1], source[K + 1];
+    Vec3<Value> m[std::size_t{K + 1}], source[std::size_t{K + 1}];
     unrolled<K>([&](auto k) {
       m[k] = site.load(spins[k]);
       source[k] = site.load(sources[k]);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cstddef>
+
 // Explicit Butcher tableaux, as data: a new Runge-Kutta method is a struct like these.
 // a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
 // Embedded ones also say how to choose dt and to look between steps. They take the generator at the
@@ -136,7 +138,8 @@ struct FirstSameAsLast {
 
  private:
   struct Numbers {
-    double a[stages][stages] = {}, b[stages] = {}, c[stages] = {};
+    static constexpr std::size_t size = stages;
+    double a[size][size] = {}, b[size] = {}, c[size] = {};
   };
   static constexpr Numbers numbers = [] {
     Numbers all;
