@@ -99,7 +99,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<
     return;
   }
 #endif
-  for (std::int32_t lane = 0; lane < count; ++lane) 
+  for (std::int32_t lane = 0; lane < count; ++lane)
     to[2 * lane] = value[static_cast<std::size_t>(lane)];
 }
 

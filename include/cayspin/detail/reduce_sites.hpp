@@ -136,7 +136,8 @@ struct ReduceOnDevice {
 /// memory from the heap on host spaces, and may run in several instances at once.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
-                                       RowLayout const& layout, Functor const& functor) {
+                                                    RowLayout const& layout,
+                                                    Functor const& functor) {
   std::array<double, std::size_t{Count}> total{};
   if constexpr (is_host_execution<Exec>) {
     std::int32_t const per_row = tasks_per_row(layout);

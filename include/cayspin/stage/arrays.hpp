@@ -21,7 +21,7 @@ struct StageArrays {
 
   typename Kind::Input start;                                    // spins at the begin of the step
   typename Kind::Spins level;                                    // spins of this stage
-  typename Kind::Input increments[most_increments];  // of earlier stages, or spins
+  typename Kind::Input increments[most_increments];              // of earlier stages, or spins
   typename Kind::Input sum_before;                               // of weighted increments
   typename Kind::Output sum;
   typename Kind::Output increment;  // of this stage

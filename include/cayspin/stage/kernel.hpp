@@ -4,9 +4,9 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/isotropy/energy.hpp>
-#include <cayspin/stencil.hpp>
 #include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/update.hpp>
+#include <cayspin/stencil.hpp>
 
 #include <cstddef>
 #include <type_traits>

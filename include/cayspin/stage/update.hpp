@@ -160,9 +160,9 @@ struct Stereographic {
     using Scalar = detail::scalar_t<Value>;
     constexpr int own = Count - 1;
     Vec3<Value> d[std::size_t{Count}];
-    Value square[std::size_t{Count}], rest[std::size_t{Count}];
     // |d|^2 and 4 - |d|^2: f_j = (2 d + |d|^2 m0) / rest
-    Value others(1);                   // all rests but that of m
+    Value square[std::size_t{Count}], rest[std::size_t{Count}];
+    Value others(1);  // all rests but that of m
     detail::unrolled<Count>([&](auto j) {
       if constexpr (j() < own && Weights::spin(j()) == 0) return;
       d[j()] = spins[j()] - m0;

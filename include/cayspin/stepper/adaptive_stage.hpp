@@ -3,8 +3,8 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/site.hpp>
-#include <cayspin/stencil.hpp>
 #include <cayspin/stage/kernel.hpp>
+#include <cayspin/stencil.hpp>
 
 #include <cstddef>
 

@@ -93,8 +93,7 @@ class NewtonKrylov {
       }
       double const left = length(exec, next);
       if (left > 0) combine(exec, 1 / left, next, 0, next, next);
-      for (std::size_t i = 0; i < size; ++i)
-        rotate(cosine[i], sine[i], column[i], column[i + 1]);
+      for (std::size_t i = 0; i < size; ++i) rotate(cosine[i], sine[i], column[i], column[i + 1]);
       double const radius = std::hypot(column[size], left);
       cosine[size] = radius > 0 ? column[size] / radius : 1;
       sine[size] = radius > 0 ? left / radius : 0;
