@@ -16,7 +16,7 @@ struct Energy {};
 
 namespace cayspin::detail {
 
-/// The invariants of B = I^-1 and m that the corrections are made body.
+/// The invariants of B = I^-1 and m that the corrections are made of.
 template <class Value>
 struct BodyInvariants {
   Vec3<Value> bm, v;                 // B m, m x B m

@@ -56,6 +56,7 @@ struct TurnAboutAxes {
 
 }  // namespace detail
 
+/// Options of EnergyControl. Its constructor throws std::invalid_argument when one is out of range.
 struct EnergyControlOptions {
   std::int64_t period = 1;  // steps from one correction to the next
   /// A correction turns no spin by more than this fraction of the angle that a step turns it by.

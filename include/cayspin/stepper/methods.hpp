@@ -93,31 +93,43 @@ class ProjectedRungeKutta : public RungeKutta<Spins, Tableau, update::Projected,
 };
 
 // Classes rather than aliases, so that compilers deduce Spins: ProjectedRk4 stepper(spins).
+
+/// Euler's method in space, order 1, one evaluation per step. |m| drifts.
 template <class Spins>
 class ClassicalEuler : public ClassicalRungeKutta<Spins, tableau::Euler> {
  public:
   explicit ClassicalEuler(Spins const& like) : ClassicalEuler::ClassicalRungeKutta(like) {}
 };
+
+/// Heun's method in space, order 2, two evaluations per step. |m| drifts.
 template <class Spins>
 class ClassicalHeun : public ClassicalRungeKutta<Spins, tableau::Heun> {
  public:
   explicit ClassicalHeun(Spins const& like) : ClassicalHeun::ClassicalRungeKutta(like) {}
 };
+
+/// The classical Runge-Kutta method in space, order 4, four evaluations per step. |m| drifts.
 template <class Spins>
 class ClassicalRk4 : public ClassicalRungeKutta<Spins, tableau::Classical4> {
  public:
   explicit ClassicalRk4(Spins const& like) : ClassicalRk4::ClassicalRungeKutta(like) {}
 };
+
+/// Euler's method in space, order 1, each step divided by its length at the end.
 template <class Spins>
 class ProjectedEuler : public ProjectedRungeKutta<Spins, tableau::Euler> {
  public:
   explicit ProjectedEuler(Spins const& like) : ProjectedEuler::ProjectedRungeKutta(like) {}
 };
+
+/// Heun's method in space, order 2, each step divided by its length at the end.
 template <class Spins>
 class ProjectedHeun : public ProjectedRungeKutta<Spins, tableau::Heun> {
  public:
   explicit ProjectedHeun(Spins const& like) : ProjectedHeun::ProjectedRungeKutta(like) {}
 };
+
+/// The classical Runge-Kutta method in space, order 4, each step divided by its length at the end.
 template <class Spins>
 class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
  public:

@@ -139,12 +139,14 @@ class RedBlack : public detail::StepperBase<Spins> {
   std::int64_t passes_done_ = 0;
 };
 
+/// Red-black splitting of order 2 (RedBlack): two passes over half of the spins per step.
 template <class Spins>
 class RedBlack2 : public RedBlack<Spins, 2> {
  public:
   explicit RedBlack2(Spins const& like) : RedBlack2::RedBlack(like) {}
 };
 
+/// Red-black splitting of order 4 (RedBlack): five steps of order 2, one of them backwards.
 template <class Spins>
 class RedBlack4 : public RedBlack<Spins, 4> {
  public:

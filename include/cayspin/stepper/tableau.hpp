@@ -12,6 +12,7 @@
 // t + s dt, of order dense_order.
 namespace cayspin::tableau {
 
+/// Euler's method: order 1, one stage.
 struct Euler {
   static constexpr int stages = 1, order = 1;
   static constexpr double a[1][1] = {{0}};
@@ -19,6 +20,7 @@ struct Euler {
   static constexpr double c[1] = {0};
 };
 
+/// Heun's method (the explicit trapezoidal rule): order 2, two stages.
 struct Heun {
   static constexpr int stages = 2, order = 2;
   static constexpr double a[2][2] = {{0, 0}, {1, 0}};
@@ -26,6 +28,7 @@ struct Heun {
   static constexpr double c[2] = {0, 1};
 };
 
+/// Kutta's method of order 3: three stages, at 0, 1/2 and 1. Kutta 1901.
 struct Kutta3 {
   static constexpr int stages = 3, order = 3;
   static constexpr double a[3][3] = {{0, 0, 0}, {0.5, 0, 0}, {-1, 2, 0}};
@@ -33,6 +36,7 @@ struct Kutta3 {
   static constexpr double c[3] = {0, 0.5, 1};
 };
 
+/// The classical Runge-Kutta method: order 4, four stages. Kutta 1901.
 struct Classical4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {{0, 0, 0, 0}, {0.5, 0, 0, 0}, {0, 0.5, 0, 0}, {0, 0, 1, 0}};
@@ -40,7 +44,7 @@ struct Classical4 {
   static constexpr double c[4] = {0, 0.5, 0.5, 1};
 };
 
-/// Kutta's 3/8 rule.
+/// Kutta's 3/8 rule: order 4, four stages. Kutta 1901.
 struct ThreeEighths4 {
   static constexpr int stages = 4, order = 4;
   static constexpr double a[4][4] = {
