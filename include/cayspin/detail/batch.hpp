@@ -36,7 +36,7 @@ struct RepeatLoops {
   }
 };
 
-/// The loop of for_each_site as one of them.
+/// The loop of for_each_site, as a loop of RepeatLoops.
 template <class Real, class Functor>
 struct RepeatedRowLoop {
   RowLoop<Real, Functor> loop;
@@ -57,7 +57,7 @@ RepeatedRowLoop<Real, Functor> repeated_row_loop(RowLayout const& layout, Functo
   return {{functor, layout, RowBlocks(layout, pack_count<Real>(layout))}};
 }
 
-/// Launches them once, on the calling thread.
+/// Runs the loops `count` times in one launch, on the calling thread.
 template <class... Loops>
 void repeat_on_calling_thread(std::string const& label, std::int64_t count,
                               std::tuple<Loops...> const& loops) {

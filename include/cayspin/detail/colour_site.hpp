@@ -8,8 +8,8 @@
 namespace cayspin::detail {
 
 /// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x,
-/// x + 2, ... What is loaded lies between the first lane's neighbour before and the last one's
-/// behind, in the row's own memory, and is of the other colour but for the sites themselves.
+/// x + 2, ... Loads stay in the row's memory, between the neighbour before the first lane and the
+/// neighbour after the last one. They read these sites and sites of the other colour.
 template <class Value, bool AtEdge>
 class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   using Base = SitesOfRow<Value, AtEdge, 2>;
@@ -20,7 +20,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   using mask_type = typename ValueTraits<Value>::mask;
   using Base::Base, Base::lanes;
 
-  /// x + the lane's number is not where the lane is.
+  /// Deleted: the lanes are two apart, so x plus the lane's number would be wrong.
   std::int32_t x() const = delete;
 
   /// The lanes that are sites.
@@ -48,13 +48,13 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
                                          int component) const {
     return at(array.data + component * array.stride + row_.offset);
   }
-  /// Of an array along x.
+  /// Loads from an array along x.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
     return at(profile);
   }
 
-  /// Writes these sites, and touches none between them.
+  /// Writes these sites and leaves the sites between them alone.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
                                          SiteArray<Real, 3> const& array) const {
@@ -64,7 +64,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
     store_every_other(value.z, to + 2 * array.stride, count());
   }
 
-  /// As of Site.
+  /// The same as Site::neighbor.
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
                                                    Vec3<Value> const& center) const {

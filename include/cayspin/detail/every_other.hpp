@@ -72,7 +72,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value load_every_other_of(Real const* from, std::int
 }
 
 /// to[0], to[2], ... of the first `count` lanes; touches nothing else. The masked stores end with
-/// the last of these: a load of what is behind would wait for one that reaches there.
+/// the last of these. A longer store would delay later loads of the memory after it.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<Value>* to,
                                                    std::int32_t count) {

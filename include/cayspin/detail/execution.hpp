@@ -32,7 +32,7 @@ inline constexpr bool is_synchronous =
 #endif
     false;
 
-/// Such a space, with so little to do that the calling thread does it.
+/// Does a kernel over so many sites run on the calling thread?
 template <class Exec>
 bool runs_on_calling_thread(std::int64_t sites) {
 #if defined(KOKKOS_ENABLE_SERIAL)
@@ -42,7 +42,7 @@ bool runs_on_calling_thread(std::int64_t sites) {
 #endif
 }
 
-/// Any body, by its address: what Kokkos compiles for a launch it compiles once for all kernels.
+/// A body by its address. So Kokkos compiles its launch code once for all kernels.
 struct HostTask {
   void const* body;
   void (*run)(void const* body, std::int64_t task);
@@ -57,8 +57,8 @@ struct HostTask {
   }
 };
 
-/// Runs body(0) .. body(count - 1) on a host space: on its threads, or, when there is little to do
-/// for spaces that finish a kernel before they return, on the calling thread.
+/// Runs body(0) .. body(count - 1) on the threads of a host space. Small kernels run on the calling
+/// thread, when the space finishes a kernel before the launch returns.
 template <class Exec, class Body>
 void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
                    std::int64_t sites, Body const& body) {

@@ -12,7 +12,7 @@
 
 namespace cayspin::detail {
 
-/// Rows are cut into pieces this many sites long, so that one long row is shared too.
+/// Rows are cut into pieces of this many sites, so that threads can share one long row.
 inline constexpr std::int32_t sites_per_task = 4096;
 
 inline std::int32_t tasks_per_row(RowLayout const& layout) {
@@ -24,8 +24,8 @@ std::int32_t pack_count(RowLayout const& layout) {
   return (layout.nx + host_lanes<Real> - 1) / host_lanes<Real>;
 }
 
-/// Said by a functor that can be called with two sites, to keep the processor busy where one is a
-/// long chain of operations that wait for each other.
+/// Can the functor be called with two sites? Two independent sites keep the processor busy when
+/// each of them is a long chain of dependent operations.
 template <class Functor>
 inline constexpr bool takes_pairs = requires {
   requires Functor::takes_pairs;
@@ -41,7 +41,7 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(Row const& row, std::int32_t begi
   constexpr std::int32_t at_once = takes_pairs<std::remove_cvref_t<Functor>> ? 2 : 1;
   std::int32_t const inner_end = Kokkos::min(end, last);
   std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1);
-  // One that is left over goes with the ends.
+  // A pack that is left over is handled with the ends.
   std::int32_t const odd =
       at_once == 2 && pack < inner_end && (inner_end - pack) % 2 == 1 ? pack++ : last;
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
@@ -63,8 +63,8 @@ struct RowBlock {
   std::int32_t z, y_begin, y_end, pack_begin, pack_end;
 };
 
-/// The blocks that host tasks are: several short rows of a plane, or a part of a long one. Enough
-/// of them for many threads, and large enough that what is done once per block does not count.
+/// The blocks that host tasks work on: several short rows of a plane, or a part of a long row.
+/// There are enough for many threads, and each is large enough to hide the cost of its start.
 class RowBlocks {
  public:
   explicit RowBlocks(RowLayout const& layout, std::int32_t packs)

@@ -12,9 +12,9 @@
 // Loops over the sites of one colour of a checkerboard, those with x + y + z of a parity. The
 // functor changes these in place and reads their neighbours, which are all of the other colour.
 //
-// A host pack loads what lies between its sites in their rows and in the neighbour rows, too. That
-// no task writes any of it meanwhile, rows of even and of odd y + z go one after the other: then
-// none writes to neighbour rows, and in a row all writes are to the sites of the packs themselves.
+// A host pack also loads the sites between its own, in its rows and in the neighbour rows. No other
+// task may write these at the same time. Rows of even y + z therefore run first, then rows of odd
+// y + z: no task writes to a neighbour row, and in its own row a pack writes its own sites only.
 namespace cayspin::detail {
 
 /// Rows whose y + z has a parity, or all.
@@ -24,8 +24,8 @@ template <class Value, bool AtEdge>
 using PackOfColour =
     std::conditional_t<lanes_of<Value> == 1, Site<Value, true>, ColourSite<Value, AtEdge>>;
 
-/// The host loop. A functor that takes pairs is called with two packs, of two rows perhaps, and
-/// with the same one twice where one is left over.
+/// The host loop. A functor that takes pairs is called with two packs, which may lie in different
+/// rows. A single pack that is left over is passed twice.
 template <class Real, class Functor>
 struct ColourRowLoop {
   Functor functor;
@@ -52,7 +52,7 @@ struct ColourRowLoop {
         else
           local(site);
       }
-      // The ends of the row, and an inner pack that is left over.
+      // The ends of the row, and an inner pack without a partner.
       bool const ends_block = at_once == 2 && y + (rows == RowsOf::both ? 1 : 2) >= block.y_end;
       waiting.add(row, block.pack_begin == 0 ? x : layout.nx);
       waiting.add(row, pack < inner_end ? x + pack * pack_sites : layout.nx);

@@ -76,11 +76,11 @@ inline void streaming_fence() {
 #endif
 }
 
-/// A last cache that is common, and used where none is reported.
+/// A common size of the last cache, taken when the system reports none.
 inline constexpr std::size_t usual_cache_bytes = std::size_t(32) << 20;
 
-/// What one process may hope to keep in the last cache: all of a small one, a third of a large
-/// one, which many cores share.
+/// Bytes of the last cache that one process can expect to keep: all of a small cache, a third of
+/// a large one, which many cores share.
 inline std::size_t last_level_cache_bytes() {
 #if defined(__linux__) && defined(_SC_LEVEL3_CACHE_SIZE)
   static std::size_t const bytes = [] {
@@ -95,7 +95,7 @@ inline std::size_t last_level_cache_bytes() {
 #endif
 }
 
-/// What one thread may count on of the cache next to its core.
+/// Bytes that one thread can expect of the cache next to its core.
 inline std::size_t core_cache_bytes() {
   static constexpr std::size_t usual = std::size_t(1) << 20;
 #if defined(__linux__) && defined(_SC_LEVEL2_CACHE_SIZE)
@@ -109,7 +109,7 @@ inline std::size_t core_cache_bytes() {
 #endif
 }
 
-/// Should what is written around the caches, of a method that has so many bytes in hand?
+/// Should a method that works on so many bytes store around the caches?
 template <class Exec>
 bool exceeds_caches(std::size_t bytes) {
   if constexpr (std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>)

@@ -15,10 +15,10 @@
 #endif
 
 // A Pack is what one iteration of a host loop works on: a register of Kokkos' SIMD types where the
-// configured architecture has one, otherwise one number. Device loops work on plain numbers, and
-// the passes of a compiler that make device code see no other: nvcc takes no registers of the host
-// in functions for both. Packs are in no kernel's name or arguments, so the passes agree on those.
-// Every operation the kernels need is overloaded here for both: kernels are written once.
+// configured architecture has one, otherwise one number. Device loops work on plain
+// numbers. Compilation passes for devices see plain numbers only, because nvcc rejects host SIMD
+// types in `__host__ __device__` functions. No kernel has a pack in its name or arguments, so all
+// passes agree on these. The operations here take packs and numbers: kernels are written once.
 namespace cayspin::detail {
 
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)

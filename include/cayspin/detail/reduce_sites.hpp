@@ -25,7 +25,7 @@ struct Sum {
   }
 };
 
-/// The larger one, but at least 0; NaN once there is a NaN.
+/// The largest value, at least 0; NaN if any value is NaN.
 struct Maximum {
   template <int>
   using combine_at = Maximum;
@@ -35,7 +35,7 @@ struct Maximum {
   }
 };
 
-/// Of several values, the first ones are summed up, of the others the maxima are taken.
+/// Sums of the first `Sums` values, maxima of the others.
 template <int Sums>
 struct SumsThenMaxima {
   template <int Index>
@@ -83,7 +83,7 @@ struct Collect {
   }
 };
 
-/// A host reduction has at most this many partial results: they fit a stack.
+/// A host reduction has at most this many partial results, so that they fit on the stack.
 inline constexpr std::int64_t largest_blocks = 1024;
 
 template <class Combine, int Count, class Functor>
@@ -109,7 +109,7 @@ struct ReduceBlock {
   }
 };
 
-/// The device's reduction is Kokkos' own.
+/// The reduction on devices, by Kokkos.
 template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
   struct value_type {

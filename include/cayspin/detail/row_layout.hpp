@@ -52,7 +52,7 @@ struct RowLayout {
   }
 };
 
-/// What a kernel holds of a field: component c of the site at `offset` is data[c * stride +
+/// A field as a kernel sees it: component c of the site at `offset` is data[c * stride +
 /// offset].
 template <class Real, int Components>
 struct SiteArray {

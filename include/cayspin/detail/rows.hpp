@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// Rows of spins, wherever they lie: in a field, or in the buffers of a sweep. What a Runge-Kutta
-// stage works on.
+// Rows of spins, in a field or in the buffers of a sweep. A Runge-Kutta stage works on them.
 namespace cayspin::detail {
 
 /// The first site of a row: component c of site x is data[c * stride + x].
@@ -16,10 +15,10 @@ template <class Real>
 struct RowInput {
   Real const* data = nullptr;
   std::ptrdiff_t stride = 0;
-  std::ptrdiff_t ahead = 0;  // from a site to the one whose memory will be wanted soon
+  std::ptrdiff_t ahead = 0;  // from a site to the one to prefetch
 };
 
-/// A row and its neighbours along y and z; where there is none, the row itself.
+/// A row and its neighbours along y and z. A missing neighbour is the row itself.
 template <class Real>
 struct RowStencil : RowInput<Real> {
   Real const* neighbor[2][2] = {};  // [axis - 1][previous, next]
@@ -32,7 +31,7 @@ struct RowOutput {
   bool streaming = false;
 };
 
-/// Numbers of planes, or rows, along an axis; a period further up and down they come again.
+/// Numbers of planes or rows along an axis. On a periodic axis they repeat with its extent.
 struct Axis {
   std::int32_t extent = 1;
   bool wraps = false;
@@ -55,8 +54,8 @@ struct Axis {
   }
 };
 
-/// The rows of one plane: those in [first, last) from `middle` on, those before and behind them
-/// elsewhere.
+/// The rows of one plane. Rows in [first, last) start at `middle`; `low` holds the rows before
+/// them, and `high` the rows after.
 template <class Real>
 struct PlaneRows {
   Real *low = nullptr, *middle = nullptr, *high = nullptr;  // rows `first`, `first`, `last`
@@ -75,7 +74,7 @@ struct PlaneRows {
   }
 };
 
-/// Plane z of a field; rows one lattice further up and down are those a period away.
+/// Plane z of a field. `low` and `high` lead to the same rows one period away.
 template <class Real>
 PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array, RowLayout const& layout,
                            std::int32_t z) {

@@ -8,7 +8,7 @@
 
 namespace cayspin::detail {
 
-/// Sites one beside the other.
+/// Neighbouring sites of a row, as many as Value has lanes.
 template <class Value, bool AtEdge>
 class Site : public SitesOfRow<Value, AtEdge, 1> {
   using Base = SitesOfRow<Value, AtEdge, 1>;
@@ -41,7 +41,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
     return load_at(array.data + row_.offset, array.stride);
   }
   /// The same, of an array whose neighbours are read too: the next row to come from memory is in
-  /// the plane behind.
+  /// the next plane.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(SiteArray<Real, 3> const& array) const {
     prefetch(array, offset() + row_.to_neighbor[1][1] + row_.pitch);
@@ -64,7 +64,7 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
                                          int component) const {
     return detail::load<Value>(array.data + component * array.stride + offset());
   }
-  /// Of an array along x.
+  /// Loads from an array along x.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
     return detail::load<Value>(profile + x_);

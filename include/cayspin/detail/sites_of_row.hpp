@@ -31,7 +31,7 @@ struct Row {
     step(1, z, layout.nz, layout.pitch * layout.ny, layout.periodic[2]);
   }
 
-  /// Of the rows beside it: along x it depends on the site.
+  /// For the neighbour rows only: along x the answer depends on the site.
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
     return to_neighbor[Axis - 1][Direction] != 0;
@@ -78,12 +78,12 @@ class SitesOfRow {
     std::int32_t const way = to_end<Direction>();
     return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
   }
-  /// The lane without a neighbour beside it in the row, where it holds_end.
+  /// The lane at the end of the row, if these sites hold it.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION auto is_end() const {
     return lane_numbers<Value>() == Value(static_cast<scalar_type>(to_end<Direction>() / Spacing));
   }
-  /// What stands for the neighbour past the end of a row: the other end, or `center`.
+  /// The neighbour past the end of a row: the site at the other end, or `center`.
   template <int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value past_end(Real const* row, Value const& center) const {
     return row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;

@@ -8,12 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 
-// How a sweep through a lattice is cut: into one part per thread, along z and y; each part into
-// blocks of rows whose buffers fit the cache; between blocks, seams.
+// How a sweep divides a lattice: into one part per thread, along z and y, and each part into blocks
+// of rows whose buffers fit the cache. Seams hold the planes that two blocks share.
 namespace cayspin::detail {
 
-/// The planes, or rows, of one part. Where a part ends inside the lattice or at a periodic end,
-/// earlier stages go further, by one per stage: what the next part does too is done twice.
+/// The planes or rows of one part. At an end inside the lattice, or at a periodic end, each earlier
+/// stage goes one plane or row further. The next part computes these sites, too.
 struct SweepRange {
   std::int32_t begin, end, stages;
   Axis axis;
@@ -26,8 +26,8 @@ struct SweepRange {
   std::int32_t ahead(int stage) const { return stages - 1 - stage; }
 };
 
-/// One buffer: `planes` planes of rows that turn round, and a seam of planes - 1 rows for each
-/// plane of the part.
+/// One buffer: a ring of `planes` planes of rows, and a seam of planes - 1 rows for each plane of
+/// the part.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0;
   std::ptrdiff_t ring = 0, seam = 0;  // offsets
@@ -55,7 +55,7 @@ struct SweepPlan {
     return range(static_cast<std::int32_t>(part / parts_y), parts_z, Axis(layout, 2));
   }
 
-  /// Of rows, so many that their buffers take up `cache` bytes, for so many threads.
+  /// A plan for so many threads, with blocks of rows whose buffers take up `cache` bytes.
   template <class Real, class Buffers>
   static SweepPlan of(RowLayout const& layout, int threads, std::size_t cache) {
     static_assert(Buffers::stages <= most_stages);
@@ -69,7 +69,7 @@ struct SweepPlan {
     plan.row = 3 * plan.pitch;
     plan.cut(threads);
 
-    std::int32_t planes = plan.stages + 2;  // of the state that are alive
+    std::int32_t planes = plan.stages + 2;  // of the state that are in use
     for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b);
     std::size_t const bytes = static_cast<std::size_t>(planes * plan.row) * sizeof(Real);
     std::int32_t const least = 2 * plan.stages;
@@ -105,8 +105,8 @@ struct SweepPlan {
     return {bound(part), bound(part + 1), stages, axis};
   }
 
-  // The cut into `threads` parts, or fewer, that repeats least; rather along z, where parts are far
-  // from each other in memory.
+  // The division into at most `threads` parts that repeats least work. It prefers z, along which
+  // parts are far from each other in memory.
   void cut(int threads) {
     double least = -1;
     for (std::int32_t z = threads; z >= 1; --z) {
@@ -122,8 +122,8 @@ struct SweepPlan {
   }
 };
 
-/// Buffers hold a few numbers that belong to no site; they must not trap or be denormal. A task is
-/// a part's: its thread is the first to touch them.
+/// Fills the buffers: the few numbers that belong to no site must not trap or be denormal. One task
+/// per part, so that the thread of a part is the first to touch its memory.
 template <class Real>
 struct FillSweepBuffers {
   Real* data;
@@ -149,7 +149,7 @@ struct SweepPart {
         memory(buffers + part * whole.part_size),
         blocks(whole.blocks(y.end - y.begin)) {}
 
-  /// Rows low .. high - 1 are those that a stage works on: behind the stage before it by one.
+  /// A stage works on rows low .. high - 1, one row later than the stage before it.
   std::int32_t low(int stage) const { return block == 0 ? y.low(stage) : bound(block) - stage; }
   std::int32_t high(int stage) const {
     return block + 1 == blocks ? y.high(stage) : bound(block + 1) - stage;
@@ -163,8 +163,8 @@ struct SweepPart {
     std::int32_t const last = high(buffer.producer) - (block + 1 == blocks ? 0 : seam_rows);
     Real* const ring =
         memory + buffer.ring + from_begin % buffer.planes * plan.ring_rows * plan.row;
-    // A seam's planes move on by `planes` from block to block, so that those still needed of the
-    // block before are not written over.
+    // A seam's planes move on by `planes` from block to block. So planes of the block before are
+    // not overwritten while they are still needed.
     auto const seam = [&](std::int32_t of_block) {
       std::int32_t const slots = plan.seam_planes + buffer.planes;
       std::int32_t slot = (from_begin - of_block * buffer.planes) % slots;

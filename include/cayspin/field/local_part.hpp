@@ -101,7 +101,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field_of
   if constexpr (requires { generator.neighbor_field(stencil); })
     return generator.neighbor_field(stencil);
   else
-    return zero<typename Stencil::value_type>();  // generator_at says what is amiss
+    return zero<typename Stencil::value_type>();  // generator_at says what is wrong
 }
 
 }  // namespace cayspin::detail

@@ -26,8 +26,8 @@ struct StageArrays {
   typename Kind::Output sum;
   typename Kind::Output increment;  // of this stage
   typename Kind::Output next;       // spins of the next stage, or of the end
-  typename Kind::Input carried_before[most_carried];  // what the step before left
-  typename Kind::Output carried[most_carried];        // what this step leaves
+  typename Kind::Input carried_before[most_carried];  // left by the step before
+  typename Kind::Output carried[most_carried];        // left by this step
 };
 
 /// Finds the arrays of the stage that Flow describes. `step` knows where each of them lies.
@@ -151,7 +151,7 @@ struct ToRow {
     rows.neighbor[0][1] = planes.here.row(y.next(row));
     rows.neighbor[1][0] = planes.previous.row(row);
     rows.neighbor[1][1] = planes.next.row(row);
-    // Of the planes of neighbours, the next one comes from memory first.
+    // Of the neighbour planes, the next one is read from memory first.
     rows.ahead = level_from_memory ? rows.neighbor[1][1] - rows.data + planes.next.pitch : 0;
     return rows;
   }

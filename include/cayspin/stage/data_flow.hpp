@@ -22,7 +22,7 @@ inline constexpr bool is_first_same_as_last = requires {
   Tableau::first_same_as_last;
 };
 
-/// Weights of the rotation that follows the first one, where a tableau has such. Row `stages` is
+/// Weights of the rotation that follows the first one, if the tableau has any. Row `stages` is
 /// the end of the step.
 template <class Tableau>
 constexpr double second_weight(int row, int column) {

@@ -72,8 +72,8 @@ template <class Tableau, class Update>
 using EnergyCorrectionOf = typename EnergyCorrection<Tableau, Update>::type;
 
 /// One stage of an explicit Runge-Kutta step on every site: evaluate the generator at the stage's
-/// spins, form the increment, and move the step's first spins to where the next stage looks, or to
-/// the end of the step.
+/// spins, form the increment, and move the spins of the step's begin to the next stage, or to the
+/// end of the step.
 template <class Tableau, class Update, class Isotropy, int StageIndex, class Generator, class Real>
 struct RungeKuttaStage {
   using Flow = StageDataFlow<Tableau, Update, StageIndex>;
@@ -116,7 +116,7 @@ struct RungeKuttaStage {
     }
 
     if constexpr (last) {
-      // Nested, since g++ copies what has a name through memory.
+      // Nested, because g++ copies named values through memory.
       if constexpr (Flow::carried > 0)
         store_compensated(site, rows, f, completed(site, total(site, rows, f), m0), m0);
       else
@@ -152,7 +152,7 @@ struct RungeKuttaStage {
     return Value(static_cast<scalar_t<Value>>(b));
   }
 
-  // By the second rotation to the next stage, or the end, where the tableau has one.
+  // Moves by the tableau's second rotation, if it has one, to the next stage or the end.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_again(Vec3<Value> const* f,
                                                               Vec3<Value> const& m) {
@@ -215,7 +215,7 @@ struct RungeKuttaStage {
     }
   }
 
-  // The stored sum, the increment before this one where an even stage left it out, and this one.
+  // The stored sum plus this increment, and the one before it if an even stage left it out.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, RowArrays const& rows,
                                                          Vec3<Value> const* f) const {

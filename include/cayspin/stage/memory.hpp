@@ -49,8 +49,8 @@ class StageMemory {
     for_each_task(DefaultExec(), "cayspin::" + name + "::fill_buffers", plan.parts(),
                   lattice.sites(), FillSweepBuffers<Real>{buffers_.data(), plan});
     allocate_carried(name, lattice);
-    // A sweep comes back to what it has written a whole step later. By then not much of a shared
-    // cache is left.
+    // A sweep reads its output again only one step later. By then other processes may have taken
+    // most of a shared cache.
     streaming_ =
         levels_[0].bytes() + bytes() > std::min(last_level_cache_bytes(), usual_cache_bytes);
   }
@@ -64,17 +64,17 @@ class StageMemory {
     return sum;
   }
 
-  /// Fills what the step before left with zeros.
+  /// Sets the fields that the step before left to zero.
   void forget(std::string const& label) {
     DefaultExec const exec;
     for (auto const& field : carried_) Kokkos::deep_copy(exec, field.allocation(), Real(0));
     exec.fence(label);
   }
 
-  /// Spins that a step ends in, where it does not end in place.
+  /// The spins at the end of a step that does not end in place.
   Spins& end() { return levels_[0]; }
 
-  /// The spins that stage `Stage` looks at.
+  /// The spins at which stage `Stage` evaluates the generator.
   template <int Stage>
   Spins const& level(Spins const& spins) const {
     return Stage == 0 ? spins : levels_[(Stage + level_count - 1) % level_count];
@@ -102,7 +102,7 @@ class StageMemory {
   using Carried = SiteField<Real, 3, typename Spins::memory_space>;
   static constexpr bool on_host = is_host_execution<DefaultExec>;
 
-  /// Where the arrays of a stage lie. Stores go around the caches where the fields exceed those.
+  /// Where the arrays of a stage lie. Stores go around the caches if the fields exceed them.
   struct FieldsOfStep {
     StageMemory const& memory;
     Spins const& first;
@@ -150,7 +150,7 @@ class StageMemory {
   }
 
   std::array<Spins, std::size_t{level_count}> levels_;  // the first one only, in a sweep
-  std::array<Spins, std::size_t{stages}> increments_;   // one field in all places where keeps_sum
+  std::array<Spins, std::size_t{stages}> increments_;   // the same field in all places if keeps_sum
   Spins sum_;
   std::array<Carried, carried_fields<Update>()> carried_;
   Buffers buffers_;

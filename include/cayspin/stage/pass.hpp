@@ -22,7 +22,7 @@ struct StagePlanes {
 
   StageArrays<Planes<Real>, Kernel::stages> arrays;
   Axis y;
-  std::ptrdiff_t ahead = 0;        // rows that come from memory are asked for so much earlier
+  std::ptrdiff_t ahead = 0;        // how much earlier rows from memory are prefetched
   bool level_from_memory = false;  // not from a cache
 
   KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
@@ -44,7 +44,7 @@ struct StageOnRows {
   }
 };
 
-/// The one compiled body of a stage on host spaces: the bits do not depend on who calls it.
+/// The one compiled body of a stage on host spaces: every caller gets the same bits.
 template <class Kernel>
 CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, StagePlanes<Kernel> const& planes,
                                        RowLayout const& layout, RowBlock const& block) {
@@ -98,7 +98,7 @@ struct StageRowLoop {
   }
 };
 
-/// The device's share: one site.
+/// One site, on a device.
 template <class Kernel>
 struct StageOnSite {
   using Real = typename Kernel::value_type;

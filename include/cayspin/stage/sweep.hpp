@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <tuple>
 
-// All stages of a Runge-Kutta step in one journey through the lattice. Each stage follows the stage
+// All stages of a Runge-Kutta step in one pass through the lattice. Each stage follows the stage
 // before it at a distance of one plane and one row, on numbers that are still in the cache.
 namespace cayspin::detail {
 
@@ -28,7 +28,7 @@ struct StageBuffers {
 
   static constexpr int producer(int buffer) { return buffer % per_kind; }
 
-  /// The last stage that reads the buffer; the producer where none does.
+  /// The last stage that reads the buffer, or its producer if no stage reads it.
   static constexpr int last_reader(int buffer) {
     int const from = producer(buffer);
     int last = from;
@@ -36,7 +36,7 @@ struct StageBuffers {
       if (reads(stage, buffer)) last = stage;
     return last;
   }
-  /// Planes that are alive at a time: neighbours are read in three.
+  /// Planes in use at a time: a stage that reads neighbours needs three.
   static constexpr int planes(int buffer) {
     int const lag = last_reader(buffer) - producer(buffer);
     if (lag == 0) return 0;

@@ -82,7 +82,7 @@ struct Classical {
   }
 };
 
-/// The same with each step divided by its length at the end, as most spin codes do.
+/// Classical, with each spin divided by its length at the end of the step, as in most spin codes.
 struct Projected : Classical {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
@@ -101,11 +101,11 @@ struct Projected : Classical {
 };
 
 /// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
-/// rotation cay(2 m0 x f), every stage's coordinates staying orthogonal to m0. Not in the paper.
-/// Breaks down only where a stage's spin reaches -m0.
+/// rotation cay(2 m0 x f). The coordinates of every stage stay orthogonal to m0. Not in the paper.
+/// Breaks down only if the spin of a stage reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
-  static constexpr bool has_chart = true;  // f can be had back from the spin it moves m0 to
+  static constexpr bool has_chart = true;  // f can be computed again from the spin it moves m0 to
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -151,8 +151,8 @@ struct Stereographic {
   }
 
   /// move(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m, m0),
-  /// where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. Made of
-  /// differences from m0, it loses nothing where these are small.
+  /// where f_j moves m0 to spins[j] and m is the last of Count spins; with one division. It works
+  /// on differences from m0, so small ones keep their relative precision.
   template <class Weights, int Count, class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
                                                         Vec3<Value> const* spins,

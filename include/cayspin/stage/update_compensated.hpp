@@ -9,11 +9,11 @@ namespace cayspin {
 
 namespace update {
 
-/// As Update. What rounding takes off the spins at the end of a step is added to the next one.
+/// Update with compensated sums: the rounding error of a step is added to the next step.
 template <class Update>
 struct Compensated : Update {
-  static constexpr char const* carried[] = {"residual"};  // names of what a step leaves
-  static constexpr bool has_chart = false;  // rounded spins give increments that are too rough
+  static constexpr char const* carried[] = {"residual"};  // names of the fields that a step leaves
+  static constexpr bool has_chart = false;  // increments from rounded spins are too inexact
 };
 
 }  // namespace update
@@ -28,7 +28,7 @@ constexpr int carried_fields() {
   return 0;
 }
 
-/// What stages before the last one may use instead.
+/// The update of the stages before the last one: without compensation.
 template <class Update>
 struct PlainUpdate {
   using type = Update;
