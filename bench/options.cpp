@@ -28,7 +28,7 @@ void on_sizes(std::string const& name, Run run) {
   on(scene::cube(128), "128");
 }
 
-/// `words`: see scene::words_moved; 0 where nothing is foretold.
+/// `words`: see scene::words_moved; 0 if there is no prediction.
 template <class Stepper, class System = Default>
 void add(std::string const& name, double words) {
   on_sizes(name, [=](benchmark::State& state, Lattice const& lattice) {

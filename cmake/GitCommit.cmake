@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Target cayspin_git_commit: <cayspin_git_commit.hpp> defines CAYSPIN_GIT_COMMIT, the full commit
-# with "-dirty" behind it when tracked files differ from it, or "unknown" outside a repository.
+# followed by "-dirty" when tracked files differ from it, or "unknown" outside a repository.
 # Looked up at every build; the header is written only when the answer changed.
 # Run as a script (cmake -P) it is the look-up itself.
 if(CMAKE_SCRIPT_MODE_FILE)

@@ -87,7 +87,7 @@ def draw_path(axis, view, path, color, linewidth=1.4, fade=True):
 
 
 def draw_ends(axis, view, path, color):
-    """An open circle where the path begins, a full one where it ends."""
+    """An open circle at the begin of the path, a full one at its end."""
     page, _ = view.project(path[[0, -1]])
     axis.plot(*page[0], "o", markersize=6, markerfacecolor="white", markeredgecolor=INK, zorder=5)
     axis.plot(*page[1], "o", markersize=7, color=color, markeredgecolor="white", zorder=5)
