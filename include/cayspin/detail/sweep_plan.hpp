@@ -9,7 +9,7 @@
 #include <cstdint>
 
 // How a sweep divides a lattice: into one part per thread, along z and y, and each part into blocks
-// of rows whose buffers fit the cache. Seams hold the planes that two blocks share.
+// of rows whose buffers fit the cache. Seams hold the rows that two blocks share.
 namespace cayspin::detail {
 
 /// The planes or rows of one part. At an end inside the lattice, or at a periodic end, each earlier

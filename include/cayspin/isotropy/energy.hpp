@@ -7,16 +7,16 @@
 
 namespace cayspin::isotropy {
 
-/// Rigid bodies: adds dt^p s m to a step's coordinates F, with the s that cancels the leading
-/// energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4). Lewis and Nigam 2002, Sec. 5.2,
-/// coordinate free and for any symmetric inertia. Zero where the body rests.
+/// For rigid bodies: adds dt^p s m to a step's coordinates F. The number s cancels the leading
+/// energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4). It is zero for a body at rest.
+/// Lewis and Nigam 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
 struct Energy {};
 
 }  // namespace cayspin::isotropy
 
 namespace cayspin::detail {
 
-/// The invariants of B = I^-1 and m that the corrections are made of.
+/// The invariants of B = I^-1 and m from which the corrections are computed.
 template <class Value>
 struct BodyInvariants {
   Vec3<Value> bm, v;                 // B m, m x B m

@@ -5,8 +5,8 @@
 
 #include <limits>
 
-// An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. Every sigma moves m
-// alike in the exact flow; methods of finite order differ.
+// An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. The exact flow does
+// not depend on sigma. Methods of finite order do.
 namespace cayspin::isotropy {
 
 /// sigma = 0: the generator as it is.
@@ -32,7 +32,7 @@ struct Constant {
 /// sigma from A' along the flow: xi = A_o + sigma m with sigma = (m.A) - <A', X> / |X|^2,
 /// X = A x m. The derivative of the field is its linear part at X. For LieEuler, and with the
 /// opposite sign for ImplicitLieEuler. Lewis and Nigam 2002, Sec. 4.1 and 4.2, with the sign and
-/// the norm corrected. Zero where X is.
+/// the norm corrected. Zero if X is zero.
 struct Analytic {};
 
 /// The same number as the geodesic curvature of the orbit times its speed,
@@ -41,15 +41,15 @@ struct Analytic {};
 struct Connection {};
 
 /// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with
-/// sigma = -<w', w x m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. For
-/// LieEuler, whose energy error it makes one order smaller. Lewis and Nigam 2002, Sec. 4.1, with
-/// the sign and the norm corrected. Zero where A_o is.
+/// sigma = -<w', w x m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. It
+/// makes the energy error of LieEuler one order smaller. Lewis and Nigam 2002, Sec. 4.1, with
+/// the sign and the norm corrected. Zero if A_o is zero.
 struct FiniteDifference {
   double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
 };
 
-/// The same with w' = (w_n - w_(n-1)) / dt: one evaluation a step, and a field that keeps w. The
-/// first step takes the forward difference.
+/// FiniteDifference with w' = (w_n - w_(n-1)) / dt: one evaluation per step, and a field that keeps
+/// w. The first step takes the forward difference.
 struct FiniteDifferenceBackward {
   double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
 };

@@ -7,7 +7,7 @@
 
 namespace cayspin::detail {
 
-/// Squares below this are no longer resolved: what is divided by them is taken as zero.
+/// Squares below this are not resolved: a quotient with such a divisor is taken as zero.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
   using Scalar = scalar_t<Value>;
@@ -15,7 +15,7 @@ KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
                                           : static_cast<Scalar>(0x1p-103);
 }
 
-/// numerator / square; zero where the square is.
+/// numerator / square; zero if the square is not resolved.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value guarded_quotient(Value const& numerator, Value const& square) {
   auto const large_enough = Value(smallest_square<Value>()) < square;
@@ -23,7 +23,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value guarded_quotient(Value const& numerator, Value
          select<Value>(large_enough, square, Value(1));
 }
 
-/// Within [-cap, cap]; NaN stays.
+/// Limits a to [-cap, cap]; NaN stays NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value clamp(Value const& a, Value const& cap) {
   Value const below = select<Value>(cap < a, cap, a);

@@ -6,10 +6,10 @@
 
 namespace cayspin {
 
-/// The Cayley map of so(3), in coordinates f whose rotation is about f by 2 atan(|f|/2).
+/// The Cayley map of so(3). Coordinates f rotate about f, by the angle 2 atan(|f|/2).
 /// Lewis and Nigam 2002, Sec. 2; right-trivialised differential.
 struct Cayley {
-  /// cay(f) m. Right to a few ulp up to |f| about 1e150 (double), 1e18 (float).
+  /// cay(f) m, to a few ulp, for |f| up to about 1e150 (double) or 1e18 (float).
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,
                                                         Vec3<Value> const& m) {
@@ -43,7 +43,7 @@ struct Cayley {
   }
 };
 
-/// The same map for any finite f: nothing overflows on the way to the result. Somewhat slower.
+/// The Cayley map for any finite f, without overflow of intermediate results. Somewhat slower.
 struct OverflowSafeCayley : Cayley {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> rotate(Vec3<Value> const& f,

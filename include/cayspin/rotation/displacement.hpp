@@ -5,7 +5,7 @@
 
 namespace cayspin {
 
-/// How far a spin is moved, scale * direction, in full relative precision however short the way.
+/// The displacement of a spin, scale * direction, in full relative precision even when it is small.
 template <class Value>
 struct Displacement {
   Value scale;

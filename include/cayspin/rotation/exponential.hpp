@@ -7,9 +7,9 @@
 
 namespace cayspin {
 
-/// The exponential map of so(3) (Rodrigues' rotation): about f by |f|. Vectorises: no library sine.
-/// On the sphere for every finite f; the angle itself is known to about eps |f|, so beyond
-/// |f| = 1/eps the result is some point on the circle.
+/// The exponential map of so(3) (Rodrigues' rotation): about f, by the angle |f|. It calls no
+/// library sine, so it vectorises. The result is on the sphere for every finite f. The angle has an
+/// error of about eps |f|: beyond |f| = 1/eps the result is some point on the circle.
 struct Exponential {
   /// exp(f) m
   template <class Value>

@@ -8,8 +8,8 @@
 namespace cayspin::detail {
 
 /// Taylor polynomial 1 + x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd), the series
-/// of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. Terms are enough for |a| <= pi/2: the
-/// first one left out is below a quarter of the precision's epsilon.
+/// of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. For |a| <= pi/2 the
+/// first term left out is below a quarter of the precision's epsilon.
 template <int Odd, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   constexpr int terms = sizeof(scalar_t<Value>) == sizeof(double) ? 10 : 6;
@@ -22,15 +22,15 @@ KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
   return sum;
 }
 
-/// sine * direction and cosine of half the rotation angle |f|, up to a common sign (which the
-/// rotation does not see).
+/// sine * direction and cosine of half the rotation angle |f|, up to a common sign, which
+/// does not change the rotation.
 template <class Value>
 struct HalfAngle {
   Value sine, cosine;
   Vec3<Value> direction;
 };
 
-/// |f| without overflow: f is brought down by a power of two first where its square would not fit.
+/// |f| without overflow: f is first scaled down by a power of two if its square would overflow.
 template <class Value>
 struct ScaledNorm {
   Vec3<Value> scaled;
@@ -66,8 +66,8 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   Value const a = Value(Scalar(0.5)) * angle;
 
-  // Reduce by multiples of pi, given as a sum of three numbers. The clamp bites only where |f| eps
-  // is no longer small; it keeps the result on the sphere.
+  // Reduce by multiples of pi, given as a sum of three numbers. The clamp acts only if |f| eps is
+  // not small. It keeps the result on the sphere.
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317636e-16,
                    pi_lowest = -2.99476980971833966592e-33;
   constexpr float pi_f = 3.14159274101257324f, pi_low_f = -8.74227800037247e-08f,
@@ -91,7 +91,7 @@ KOKKOS_FORCEINLINE_FUNCTION HalfAngle<Value> half_angle(Vec3<Value> const& f) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   auto const [scaled, scaled_length, length] = scaled_norm(f);
   auto const [r, sine_over_r, cosine] = half_turn(length);
-  // Below the smallest normal square, |f| itself is not resolved: there sin(a) f/|f| = f/2.
+  // If |f|^2 is below the smallest normal number, |f| is not resolved: then sin(a) f/|f| = f/2.
   auto const tiny = scaled_length < Value(is_double ? Scalar(0x1p-500) : Scalar(0x1p-60f));
   Value const safe = select<Value>(tiny, Value(Scalar(1)), scaled_length);
   return {select<Value>(tiny, Value(Scalar(0.5)), Value(r * sine_over_r / safe)), cosine, scaled};
@@ -102,8 +102,8 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value inverse_tangent_coefficient(Vec3<Value> const& f) {
   using Scalar = scalar_t<Value>;
   Value const square = dot(f, f);
-  // The series sum of |B_2k| n^(2k-2) / (2k)! where the closed form would cancel; up to n = 1/2 the
-  // first term left out is below 1e-18.
+  // For n < 1/2 the closed form would cancel. There the series of |B_2k| n^(2k-2) / (2k)! is used,
+  // whose first term left out is below 1e-18.
   constexpr double series[] = {1. / 12,           1. / 720,
                                1. / 30240,        1. / 1209600,
                                1. / 47900160,     691. / 1307674368000,

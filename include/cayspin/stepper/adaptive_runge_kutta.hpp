@@ -27,11 +27,11 @@
 
 namespace cayspin {
 
-/// An embedded Runge-Kutta method that chooses its own steps: each one's error, the largest angle
-/// of any spin between the two solutions, is held to the tolerance. `step(.., t, dt)` delivers the
-/// spins at t + dt, by the tableau's polynomial in the coordinates of the group; the method's own
-/// steps go on from where they are, whatever dt is. It remembers: `spins` must be what the step
-/// before delivered, and t where that ended, or `reset` be called.
+/// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
+/// angle of any spin between the two solutions, and is kept below the tolerance.
+/// `step(.., t, dt)` returns the spins at t + dt, by the tableau's polynomial in the coordinates of
+/// the group. The method's own steps do not depend on dt. It remembers its state: `spins` and t
+/// must be those at the end of the step before. Otherwise call `reset`.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
 class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -43,8 +43,8 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   static constexpr int order = Embedded::order;
   static constexpr int work_fields = stages + 4;  // and a number per site
 
-  /// Throws std::invalid_argument for options that cannot be, a tolerance below 32 epsilon of the
-  /// precision among them.
+  /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
+  /// the precision.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
       : Base(name, like.lattice()),
@@ -72,11 +72,11 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     return (work_fields * layout.allocation(3) + layout.allocation(1)) * sizeof(Real);
   }
 
-  /// Evaluations of the generator so far, and own steps taken and thrown away.
+  /// Evaluations of the generator so far, and own steps accepted and rejected.
   std::int64_t evaluations_done() const { return evaluations_done_; }
   std::int64_t accepted_steps() const { return accepted_; }
   std::int64_t rejected_steps() const { return rejected_; }
-  /// The next own step.
+  /// The dt of the next own step.
   double next_dt() const { return next_dt_; }
 
   /// Forgets the run so far: the next step begins at its own t and spins.
@@ -118,7 +118,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     running_ = true;
   }
 
-  /// From end_, the state at end_time_, on.
+  /// The next own step, from end_ at time end_time_.
   template <class Exec, class Generator>
   void take_step(Exec const& exec, Generator const& generator) {
     swap(begin_, end_);
@@ -126,7 +126,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     double const t = end_time_;
     while (true) {
       double const dt = within_end(t, next_dt_);
-      if (!(t + dt > t)) give_up(t, dt);  // time would stand still
+      if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
       double const error = try_step(exec, generator, t, dt);
       double const on = controller_.next_dt(dt, error);
       if (controller_.accepts(error)) {
@@ -164,7 +164,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
-  /// Spins that stage `stage` looks at; the last one looks at end_.
+  /// The spins at which stage `stage` evaluates the generator: end_ for the last stage.
   Spins const& level(int stage) const { return (stages - 1 - stage) % 2 == 0 ? end_ : level_; }
 
   template <class Prepared>
@@ -175,7 +175,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
         increments(),          last_.output(streaming_),
         square_.output(false), static_cast<Real>(dt)};
   }
-  /// Stage `Stage`, with a generator that is ready; the first one's is known.
+  /// Stage `Stage` with a prepared generator. That of the first stage is known.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
     return detail::RungeKuttaStage<Tableau, Update, Isotropy, Stage, Prepared, Real>{
@@ -270,7 +270,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     return all;
   }
 
-  /// Ends on the end, and leaves no crumb before it.
+  /// A step that reaches the end exactly, without a very short last step.
   double within_end(double t, double dt) const {
     double const left = options_.end - t;
     if (dt >= left * (1 - 1e-9)) return left;
@@ -311,7 +311,7 @@ class AdaptiveRkmk : public AdaptiveRungeKutta<Spins, Embedded, update::Lie<Rota
       : AdaptiveRkmk::AdaptiveRungeKutta("AdaptiveRkmk", like, options, isotropy) {}
 };
 
-/// The same in the stereographic chart at each step's first spin.
+/// Adaptive Runge-Kutta in the stereographic chart at each step's first spin.
 template <class Spins, class Embedded = tableau::Tsitouras5>
 class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update::Stereographic> {
  public:
@@ -319,7 +319,7 @@ class AdaptiveStereographic : public AdaptiveRungeKutta<Spins, Embedded, update:
       : AdaptiveStereographic::AdaptiveRungeKutta("AdaptiveStereographic", like, options) {}
 };
 
-/// The baseline: the same steps in space, each divided by the length.
+/// The adaptive baseline: steps in space, with each spin divided by its length at the end.
 template <class Spins, class Embedded = tableau::DormandPrince5>
 class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Projected> {
  public:

@@ -30,7 +30,7 @@ struct FirstGeneratorStage {
   }
 };
 
-/// The generator that the step before ended with, as the first stage's.
+/// The first stage, with the generator from the end of the step before.
 template <class Real>
 struct KnownGenerator {
   SiteArray<Real, 3> generators;
@@ -88,7 +88,7 @@ struct EndStage {
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
     Vec3<Value> const difference = m - Update::finish(Vec3<Value>(total - error), m0);
-    // Rotations of large coordinates hardly differ where these do.
+    // Large coordinates may differ although their rotations hardly do: take the larger error.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
     site.store(xi, last);
@@ -97,7 +97,7 @@ struct EndStage {
   }
 };
 
-/// The spins within a step that has been taken.
+/// The spins at a time within a step that has been taken.
 template <class Tableau, class Update, class Real>
 struct DenseOutput {
   static constexpr int stages = Tableau::stages;

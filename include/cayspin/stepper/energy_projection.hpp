@@ -53,7 +53,7 @@ struct ProjectStage {
     Vec3<Value> const m0 = site.load(begin), m1 = site.load(end);
     Vec3<Value> const f = coordinates_between(m0, m1);
     Vec3<Value> const projected = Cayley::rotate(multiply_add(Value(epsilon), m0, f), m0);
-    // Where there is no f the step stays as it is.
+    // Without such an f the step stays as it is.
     auto const none = dot(f, f) == Value(0);
     site.store(select<Value>(none, m1, projected), next);
   }
@@ -61,10 +61,10 @@ struct ProjectStage {
 
 }  // namespace detail
 
-/// A stepper whose steps end on the energy they began with: m1 <- cay(f + epsilon m0) m0, f the
-/// coordinates orthogonal to m0 of the stepper's own step, with one epsilon for all spins:
-/// sigma as an energy correction for any conservative generator that has an energy and no t.
-/// Keeps the stepper's order; the energy is held to round-off as far as `corrections` go.
+/// A stepper whose steps keep the energy: m1 <- cay(f + epsilon m0) m0. Here f are the coordinates
+/// orthogonal to m0 of the inner stepper's step. One epsilon for all spins corrects the energy.
+/// The generator must be conservative, have an energy and not depend on t.
+/// Keeps the stepper's order. Enough `corrections` keep the energy to round-off.
 /// Not in the paper. Work memory: two fields beside the stepper's.
 template <class Stepper>
 class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type> {

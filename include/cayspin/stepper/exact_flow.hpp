@@ -19,7 +19,7 @@ KOKKOS_FORCEINLINE_FUNCTION Decay<Value> decay(Value const& x) {
   using Scalar = scalar_t<Value>;
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   constexpr int terms = is_double ? 13 : 7;
-  // ln 2 as a sum; the first has so few bits that its product with a number of halvings is exact.
+  // ln 2 as a sum. The first number has few bits: its product with the halvings is exact.
   constexpr double high = 0x1.62e42fefp-1, low = 0x1.473de6af278edp-34;
   constexpr float high_f = 0x1.62ep-1f, low_f = 0x1.0bfbe8p-15f;
   Value const halvings = nearest<Value>(Value(x * Value(Scalar(1.4426950408889634))));
@@ -49,7 +49,7 @@ struct ExactFlow {
   Scalar dt;
   bool precession, damped;
 
-  /// Nobody looks at lanes of `others`.
+  /// The results in lanes of `others` are arbitrary.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> operator()(Vec3<Value> const& h, Vec3<Value> const& q,
                                                      Mask const& others) const {
     Vec3<Value> const f = Value(dt) * h;
@@ -61,7 +61,7 @@ struct ExactFlow {
     return select<Value>(near, end, far);
   }
 
-  /// Where q is after dt/2, to first order; q itself where that is far off.
+  /// q after dt/2, to first order; q itself if that is too far away.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> middle(Vec3<Value> const& h, Vec3<Value> const& q) const {
     Vec3<Value> const relaxing = damping * cross(q, h);
     Vec3<Value> const a = precession ? h + relaxing : relaxing;
@@ -71,8 +71,8 @@ struct ExactFlow {
   }
 
  private:
-  /// sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1, even and odd k apart: the
-  /// chain of operations is half as long.
+  /// sum of first * x^k / ((Odd + 1) .. (Odd + 2 k)) up to k = Terms - 1, with even and odd k
+  /// apart. This halves the chain of dependent operations.
   template <int Odd, int Terms>
   KOKKOS_FORCEINLINE_FUNCTION static Value series(Value const& x, double first) {
     double coefficient[std::size_t{Terms}] = {first};
@@ -90,22 +90,24 @@ struct ExactFlow {
   }
 
   /// By entire functions of |f|^2, without a root: |f| < 3/2 and damping |f| < 1/2. The relaxation
-  /// is the aberration of light along f.
+  /// has the form of the aberration of light along f.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> small(Vec3<Value> const& f, Value const& turn2,
                                                 Vec3<Value> const& q) const {
     constexpr bool is_double = sizeof(Scalar) == sizeof(double);
     Vec3<Value> turned = q;
     if (precession) {
       Value const x = Value(Scalar(-0.25)) * turn2;
-      Value const cosine = series < 0, is_double ? 9 : 6 > (x, 1);
-      Vec3<Value> const v = series < 1, is_double ? 9 : 5 > (x, 0.5) * f;
+      constexpr int cosine_terms = is_double ? 9 : 6, sine_terms = is_double ? 9 : 5;
+      Value const cosine = series<0, cosine_terms>(x, 1);
+      Vec3<Value> const v = series<1, sine_terms>(x, 0.5) * f;
       Vec3<Value> const c = cross(v, q);
       turned = multiply_add(Value(Scalar(2)), multiply_add(cosine, c, cross(v, c)), q);
     }
     if (!damped) return turned;
     Value const y = damping * damping * turn2;
-    Value const sine = damping * series < 1, is_double ? 8 : 4 > (y, 1);  // sinh(y^1/2) / |f|
-    Value const rise = series < 2, is_double ? 7 : 4 > (y, 0.5);          // (cosh(y^1/2) - 1) / y
+    constexpr int sine_terms = is_double ? 8 : 4, rise_terms = is_double ? 7 : 4;
+    Value const sine = damping * series<1, sine_terms>(y, 1);  // sinh(y^1/2) / |f|
+    Value const rise = series<2, rise_terms>(y, 0.5);          // (cosh(y^1/2) - 1) / y
     Value const along = dot(f, q);
     Value const growth = multiply_add(y, rise, Value(sine * along));
     Value const pull = multiply_add(Value(damping * damping * rise), along, sine);
@@ -122,7 +124,7 @@ struct ExactFlow {
     auto const norm = scaled_norm(h);
     Value const divisor =
         select<Value>(norm.scaled_norm == Value(Scalar(0)), Value(Scalar(1)), norm.scaled_norm);
-    // Backwards in time is forwards in the opposite field.
+    // A step backwards in time is a step forwards in the opposite field.
     Vec3<Value> const e = Value(Value(dt < 0 ? Scalar(-1) : Scalar(1)) / divisor) * norm.scaled;
     Value angle = Value(dt < 0 ? -dt : dt) * norm.norm;
     angle = select<Value>(angle < Value(largest), angle, Value(largest));
@@ -139,8 +141,8 @@ struct ExactFlow {
   }
 
   /// With p = exp(-damping angle), a = 1 + c and b = 1 - c: q + (1 - p) (a (e - q) + p b (e + q)) /
-  /// (a + p^2 b), the smaller of a and b from what q has across e, so that a spin that is nearly
-  /// opposite to the field leaves it at the right time.
+  /// (a + p^2 b). The smaller of a and b comes from the part of q normal to e. So a spin nearly
+  /// opposite to the field leaves that direction at the right time.
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> relax(Value const& angle, Vec3<Value> const& e,
                                                 Vec3<Value> const& q) const {
     constexpr Scalar longest = sizeof(Scalar) == sizeof(double) ? Scalar(340) : Scalar(40);
@@ -160,8 +162,8 @@ struct ExactFlow {
         x == zero);
   }
 
-  /// One step of Newton's iteration for the length: next to the opposite of the field, round-off in
-  /// it would grow as the angle does. What rests stays to the bit.
+  /// One Newton step towards length 1. For spins nearly opposite to the field, an error in the
+  /// length would grow like the angle. Spins at rest keep their bits.
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> kept_on_sphere(Vec3<Value> const& q,
                                                                 Mask const& rests) {
     Value const factor = multiply_add(Value(Scalar(-0.5)), dot(q, q), Value(Scalar(1.5)));

@@ -70,19 +70,19 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     return numbers * sizeof(Real) + Start::work_bytes(lattice, by_time_alone, threads);
   }
 
-  /// What cayspin::largest_stable_step says, for fields whose part from other spins is exchange
-  /// between neighbours. A field that is extrapolated altogether takes 0.5 to 0.75 of it.
+  /// The result of cayspin::largest_stable_step, if the field of the other spins is exchange
+  /// between neighbours. If the whole field is extrapolated, the limit is 0.5 to 0.75 of it.
   static double largest_stable_step(double field_bound, double damping, bool precession) {
     return detail::largest_stable_extrapolation<Order>(field_bound, damping, precession);
   }
 
   /// Evaluations of the generator so far; those of the first steps count 5 each.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  /// Starts so far, the first one among them.
+  /// Starts so far, the first one included.
   std::int64_t starts() const { return starts_; }
 
-  /// Forgets the steps before, as is needed when spins or generator were changed from outside: the
-  /// next steps are those of a start. cayspin::integrate does it for each run.
+  /// Forgets the steps before, so that the next steps are a start. Call it when something else has
+  /// changed the spins or the generator. cayspin::integrate calls it for each run.
   void reset() { past_.forget(); }
 
   /// The largest error estimated for the step before the last one, as an angle in radians; NaN
@@ -94,8 +94,9 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
         exec, error_label_, angles_.layout(), detail::LargestOfSites<Real>{angles_.array()})[0];
   }
 
-  /// Advances `spins` from t to t + dt under `generator`; takes `spins` for where the step before
-  /// ended, and exchanges their memory with its own, so take arrays of `spins` again after a step.
+  /// Advances `spins` from t to t + dt under `generator`. `spins` must be those at the end of the
+  /// step before. The step exchanges their memory with its own: take arrays of `spins` again after
+  /// it.
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
@@ -133,7 +134,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     ++evaluations_done_;
   }
 
-  /// A first step, its neighbour field being stored.
+  /// A step of the start, which stores its neighbour field.
   template <class Exec, class Generator>
   void begin(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     if (past_.known() == 0) {
@@ -177,8 +178,8 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     ++evaluations_done_;
   }
 
-  /// Of the polynomial that the step before was taken with: what it predicted for the step's end,
-  /// and the mean of its error over the step, by the local solve's weights, over that at the end.
+  /// For the polynomial of the step before: its weights at the end of that step, and the ratio of
+  /// its mean error over the step (with the local solve's weights) to its error at the end.
   Error error_of_step_before(double dt) const requires Estimates {
     Error error{{}, 0, angles_.output(false)};
     if (!past_.is_full()) return error;
@@ -197,7 +198,8 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
       if (!has_error_ || (options_.restart_angle == never && options_.restart_growth == never))
         return false;
       double const error = last_error(exec);
-      double const floor = 100 * std::numeric_limits<Real>::epsilon();  // round-off grows freely
+      // Growth of round-off errors is no failure.
+      double const floor = 100 * std::numeric_limits<Real>::epsilon();
       if (options_.restart_angle < error ||
           (largest_of_late_ > 0 &&
            options_.restart_growth * std::max(largest_of_late_, floor) < error))

@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <limits>
 
-// The largest stable time step of field extrapolation: its step acts on one transverse mode of a
-// nearly uniform state, u' = (-damping + i) (a u + b v), where a u is what a spin's own place in
-// the field of the others and its local field do, and b v what the others' extrapolated v does.
+// The largest stable time step of field extrapolation, for one transverse mode of a nearly uniform
+// state: u' = (-damping + i) (a u + b v). The term a u comes from the spin itself, in the field of
+// the others and in its local field. The term b v comes from the extrapolated field of the others.
 namespace cayspin::detail {
 
 /// The amplitude after a step from those now and before, newest first. z = dt (a + b) (-damping +
@@ -71,9 +71,9 @@ bool extrapolated_mode_grows(Complex z, double own, double q) {
   return recursion_grows(coefficients);
 }
 
-/// The largest dt at which no mode grows, never above the linear limit of either generator, for
-/// fields whose part from other spins is exchange between neighbours: of the stiffest mode's rate,
-/// half is then due to the others. It is the mode in which neighbours are opposite.
+/// The largest dt at which no mode grows, at most the linear limit of either generator. It holds
+/// for fields whose part from other spins is exchange between neighbours. The stiffest mode is then
+/// the one with opposite neighbours, and half of its rate comes from the other spins.
 template <std::size_t Order>
 double largest_stable_extrapolation(double field_bound, double damping, bool precession) {
   double const never = std::numeric_limits<double>::infinity();

@@ -26,8 +26,8 @@ struct NeighborFieldStage {
   }
 };
 
-/// What a step says about the one before it: the angle by which it missed, from the neighbour field
-/// that the Order fields before predicted for its end.
+/// The error of the step before, as an angle: from the difference between the neighbour field at
+/// its end and the one that the Order fields before predicted.
 template <int Order, class Real>
 struct ErrorOfExtrapolation {
   static constexpr bool is_known = true;
@@ -43,8 +43,8 @@ struct NoErrorOfExtrapolation {
   static constexpr int older = Order - 1;
 };
 
-/// One step of every spin in its neighbour field, the polynomial through the Order last ones: one
-/// step of Rkmk4, which needs the field at the begin, the middle and the end.
+/// One step of Rkmk4 of every spin, with its neighbour field at the begin, the middle and the end.
+/// The field is the polynomial through the last Order fields.
 template <int Order, class Error, class Generator, class Local, class Real>
 struct FieldExtrapolationStage {
   Generator generator;
@@ -60,7 +60,7 @@ struct FieldExtrapolationStage {
 
   static constexpr bool takes_pairs = true;
 
-  /// The stages of one site, or by turns those of two.
+  /// The stages of one site, or alternately those of two.
   template <class Site, class... Second>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     using Value = typename Site::value_type;

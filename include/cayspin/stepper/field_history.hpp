@@ -10,7 +10,7 @@
 
 namespace cayspin::detail {
 
-/// Of Count fields known at times `nodes`, the weights of their polynomial at time x.
+/// The weights at time x of the polynomial through Count fields at times `nodes`.
 template <std::size_t Count>
 std::array<double, Count> interpolation_weights(std::array<double, Count> const& nodes, double x) {
   std::array<double, Count> weights;
@@ -40,10 +40,10 @@ class FieldHistory {
 
   /// The field `back` steps before the last one that was stored.
   Field const& operator[](std::size_t back) const { return fields_[(newest_ + back) % Count]; }
-  /// Where the next one goes: the oldest.
+  /// The place of the next field: that of the oldest.
   Field const& following() const { return (*this)[Count - 1]; }
 
-  /// The next field is stored, and a step of dt taken from it.
+  /// Notes that the next field is stored, and that a step of dt starts from it.
   void remember(double dt) {
     newest_ = (newest_ + Count - 1) % Count;
     known_ = std::min(known_ + 1, Count);

@@ -28,7 +28,7 @@ struct ImplicitOptions {
 
 namespace detail {
 
-/// m1 = R(dt xi(p)) m0 with p = m1, or half way between both.
+/// m1 = R(dt xi(p)) m0 with p = m1, or with p half way between m0 and m1.
 template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
 class Implicit : public StepperBase<Spins> {
  public:
@@ -45,7 +45,7 @@ class Implicit : public StepperBase<Spins> {
     if constexpr (is_corrected) rates_ = Rates<Spins>(name, like.lattice());
   }
 
-  /// Without what Newton's method takes when it is first needed: 16 fields.
+  /// Bytes of work memory, without the 16 fields that Newton's method allocates at its first use.
   std::size_t work_bytes() const {
     return level_.bytes() + next_.bytes() + (is_corrected ? rates_.bytes() : 0);
   }
@@ -81,7 +81,7 @@ class Implicit : public StepperBase<Spins> {
   }
 
  private:
-  // Leaves the solution in next_, and what it was made from in level_.
+  // Leaves the solution in next_, and the spins it was computed from in level_.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& map, Spins const& spins) {
     double const epsilon = std::numeric_limits<Real>::epsilon();
@@ -92,7 +92,7 @@ class Implicit : public StepperBase<Spins> {
       map(i == 0 ? spins : level_, next_);
       change = largest_difference(exec, i == 0 ? spins : level_, next_);
       if (change <= tolerance) return true;
-      // At a few hundred epsilons a change that falls no more is round-off.
+      // Below a few hundred epsilons, a change that no longer falls is round-off.
       stalled = change < smallest ? 0 : stalled + 1;
       if (change <= 512 * tolerance && stalled == 4) return true;
       if (!(change < 100 * smallest)) break;

@@ -7,13 +7,13 @@
 
 namespace cayspin::detail {
 
-/// One iterate of an implicit step: from A at `level`, where it is thought to end, or half way.
+/// One iterate of an implicit step, from A at `level`: the estimate of the end or of the middle.
 template <class Isotropy, class Rotation, class Generator, class Real>
 struct ImplicitStage {
   Generator generator;
   Isotropy isotropy;
   SiteArray<Real, 3> start, level;
-  SiteArray<Real, 1> sigma;  // added to A along start; nowhere where data is null
+  SiteArray<Real, 1> sigma;  // added to A along start, unless data is null
   OutputArray<Real, 3> next;
   Real dt;
   bool to_middle;

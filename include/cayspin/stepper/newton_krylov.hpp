@@ -12,8 +12,8 @@
 
 namespace cayspin::detail {
 
-/// Solves v = g(v) on a field by Newton's method with halved steps; the linear systems by GMRES,
-/// with g' times a vector from a difference of g. Work memory, 16 fields, is taken when first used.
+/// Solves v = g(v) on a field by Newton's method with halved steps. GMRES solves the linear
+/// systems, with g' times a vector from a difference of g. Allocates 16 fields at its first use.
 template <class Spins>
 class NewtonKrylov {
   using Real = typename Spins::value_type;
@@ -21,7 +21,7 @@ class NewtonKrylov {
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
  public:
-  /// `g(v, to)` fills `to`. From `v`, which moves to the solution; `image` then holds g(v).
+  /// `g(v, to)` fills `to`. `v` is the first guess and becomes the solution; `image` becomes g(v).
   /// Returns whether |g(v) - v| came below `tolerance` within `iterations`.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& g, Spins const& v, Spins const& image, double tolerance,
@@ -37,7 +37,7 @@ class NewtonKrylov {
       double scale = 1, before = norm;
       for (;; scale /= 2) {
         bool const is_last = scale < 1e-3;
-        // Round-off is all that is left.
+        // What is left is round-off.
         if (scale < 1 && largest <= (is_last ? 512 : 8) * tolerance) {
           g(v, image);
           return true;

@@ -34,7 +34,7 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Analytic, Vec3<Value> const& rate,
                                                    Vec3<Value> const& x, Vec3<Value> const&,
                                                    Value const& along) {
-  // Where nothing moves, no part along m: F = 0 keeps m to the bit.
+  // A spin at rest gets no part along m, because F = 0 keeps the bits of m.
   return guarded_quotient(multiply_subtract(along, dot(x, x), dot(rate, x)), dot(x, x));
 }
 
@@ -48,8 +48,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value sigma_along_flow(isotropy::Connection, Vec3<Va
   return guarded_quotient(dot(second, cross(m, x)), dot(x, x));
 }
 
-/// The prepared generator whose derivative is taken: sigma completes A_o, whatever part along m it
-/// has.
+/// The prepared generator whose derivative is taken. sigma replaces any part along m that it has.
 template <class Generator>
 auto bare(Generator const& prepared) {
   if constexpr (requires { prepared.bare(); })
@@ -70,7 +69,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate_of(Generator const& generator, Vec3
   return generator.rate(m, rates);
 }
 
-/// Rates of spins, and m.A: what sigma is made of.
+/// The rates of the spins, and m.A: the inputs of sigma.
 template <class Spins>
 class Rates {
   using Real = typename Spins::value_type;

@@ -14,16 +14,16 @@
 namespace cayspin {
 
 /// Splitting by the two colours of a checkerboard, of order 2 or 4, for the Landau-Lifshitz
-/// equation with couplings of nearest neighbours: while the spins of one colour move, their
-/// neighbours stay, and each moves by the exact flow of one spin in a fixed field, precession and
-/// damping together. In place: no work memory. Terms of the spin itself (anisotropy, a local
-/// demagnetising field) are taken at the mean of the spin's begin and end, by iteration; the field
-/// terms are therefore also evaluated at spins shorter than one, and at zero. Symmetric: without
-/// damping, a step of -dt undoes one of dt. Where the energy is quadratic in the spins and does not
-/// depend on t, order 2 conserves it to round-off without damping, and with damping never raises
-/// it; order 4 has a step backwards in it and conserves it likewise, but may raise it under
-/// damping. Both hold for any dt at which the iteration settles: |dt| (1 + damping) times the
-/// on-site terms' strength below about 1/2.
+/// equation with couplings of nearest neighbours. While the spins of one colour move, their
+/// neighbours stay. Each moves by the exact flow of one spin in a fixed field, with precession and
+/// damping together. In place: no work memory.
+/// Terms of the spin itself (anisotropy, a local demagnetising field) are taken at the mean of the
+/// spin's begin and end, by iteration. Field terms are therefore also evaluated at spins shorter
+/// than one, and at zero. Without damping, a step of -dt undoes a step of dt.
+/// Energies that are quadratic in the spins and do not depend on t: without damping both orders
+/// conserve them to round-off. With damping order 2 never raises them. Order 4 may, because one of
+/// its steps goes backwards. This holds for any dt at which the iteration converges: |dt|
+/// (1 + damping) times the strength of the on-site terms below about 1/2.
 template <class Spins, int Order>
 class RedBlack : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "RedBlack is of order 2 or 4.");
@@ -36,7 +36,7 @@ class RedBlack : public detail::StepperBase<Spins> {
   static constexpr int evaluations = Order == 2 ? 1 : 5;
   static constexpr int work_fields = 0;
 
-  /// Throws std::invalid_argument when a periodic axis has an odd number of sites, more than one.
+  /// Throws std::invalid_argument when a periodic axis has an odd number of sites above one.
   explicit RedBlack(Spins const& like)
       : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice()),
         pass_label_(this->label("::colour_pass")),
@@ -52,12 +52,12 @@ class RedBlack : public detail::StepperBase<Spins> {
 
   std::size_t work_bytes() const { return 0; }
 
-  /// Rounded up to whole evaluations, of all steps taken.
+  /// Evaluations of the generator so far, rounded up to whole ones.
   std::int64_t evaluations_done() const { return (passes_done_ + 1) / 2; }
 
-  /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or what has
-  /// a prepare that returns one. Throws std::invalid_argument when `spins` is not of the lattice
-  /// given at construction, and when the field needs all spins beforehand.
+  /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or a
+  /// generator whose prepare returns one. Throws std::invalid_argument when `spins` is not of the
+  /// lattice given at construction, and when the field needs all spins beforehand.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -106,7 +106,7 @@ class RedBlack : public detail::StepperBase<Spins> {
         {std::move(first), std::move(second)}, spins.array(), changes, {}, 1, 0, false};
   }
 
-  /// Under a generator that stays.
+  /// Steps under a generator that is the same at each of them.
   template <class Exec, class Generator>
   void take_steps(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                   double dt, std::int64_t count) {

@@ -17,8 +17,8 @@
 
 namespace cayspin::detail {
 
-/// One pass over a colour, over parts of a step's length: one flow of every spin, or one after the
-/// other of two steps that meet there. `middle`: of each flow, in steps from the step's begin.
+/// One pass over a colour, for parts of a step's length: one flow of every spin, or two flows where
+/// two steps meet. `length` and `middle` of each flow are in steps, from the begin of the step.
 struct ColourPass {
   std::int32_t colour = 0, flows = 1;
   bool of_one_step = true;
@@ -26,9 +26,9 @@ struct ColourPass {
 };
 
 /// Half of colour 0, colour 1, half of colour 0; for order 4 five times, over a, a, 1 - 4 a, a, a
-/// of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Halves that meet share a pass and stay two
-/// flows where the field changes with the spin itself: then a flow is of order 2, and its errors
-/// cancel within a step of its own.
+/// of the step with a = 1/(4 - 4^(1/3)) (Suzuki 1990). Halves that meet share a pass. They stay
+/// two flows if the field changes with the spin itself. Such a flow is of order 2, and its errors
+/// cancel within its own step.
 template <int Order>
 constexpr auto colour_passes() {
   constexpr std::size_t steps = Order == 2 ? 1 : 5;
@@ -71,11 +71,11 @@ KOKKOS_FORCEINLINE_FUNCTION Value largest_component(Vec3<Value> const& v) {
 
 /// The spins of one colour move in the fields of their neighbours.
 ///
-/// H at a site is N + D(q): the neighbours' field, and what depends on the spin itself, up to
-/// multiples of the spin, which do not move it. The spin moves by the exact flow in the fixed field
-/// N + D(mean), mean = (q + q')/2 of its own begin and end q'; solved by iteration. Then
-/// (q' - q).(N + D(mean)) is zero without damping and positive with it, and where the energy is
-/// quadratic in the spins that is what it loses, in any step.
+/// H at a site is N + D(q): the field of the neighbours, and the part that depends on the spin
+/// itself. Multiples of the spin are left out, because they do not move it. The spin moves by the
+/// exact flow in the fixed field N + D(mean), mean = (q + q')/2 of its own begin q and end q';
+/// solved by iteration. Then (q' - q).(N + D(mean)) is zero without damping and positive with
+/// damping. An energy that is quadratic in the spins falls by exactly this number in every step.
 template <class Generator, class Real>
 struct RedBlackStage {
   Generator generators[2];  // prepared for the middles of the flows
@@ -94,7 +94,7 @@ struct RedBlackStage {
 
   static constexpr bool takes_pairs = true;
 
-  /// The motions of one pack of spins, or by turns those of two.
+  /// Moves one pack of spins, or alternately two.
   template <class Site, class... Second>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     Moving<Site> of_site(*this, site);
@@ -124,7 +124,7 @@ struct RedBlackStage {
   static constexpr int most_iterations = 60;
   using Field = std::remove_cvref_t<decltype(std::declval<Generator const&>().field())>;
 
-  /// A pack of spins on its way.
+  /// A pack of spins while it moves.
   template <class Site>
   class Moving {
     using Value = typename Site::value_type;
@@ -159,7 +159,7 @@ struct RedBlackStage {
       d_ = own(q_);
       if (!varies(stage)) return;
 
-      // Settled: what is left changes the spin less than the rounding of the field does.
+      // Converged: the remaining change moves the spin less than the rounding of the field does.
       constexpr Real epsilon = std::numeric_limits<Real>::epsilon();
       Value const rate = flow_.damping + Value(Real(flow_.precession ? 1 : 0));
       enough_ =
@@ -169,8 +169,8 @@ struct RedBlackStage {
     }
 
     KOKKOS_FORCEINLINE_FUNCTION void turn() { end_ = flow_(of_neighbors_ + d_, q_, outside()); }
-    /// Is the field at the mean what it was taken for? Each lane stops by itself, whatever the
-    /// spins beside it need.
+    /// Has the field at the mean converged? Each lane stops by itself, so that its result does not
+    /// depend on the other lanes.
     KOKKOS_FORCEINLINE_FUNCTION bool settles() {
       Vector const next = own(Value(Real(0.5)) * (q_ + end_));
       Mask const rests = largest_component(next - d_) < enough_;

@@ -42,7 +42,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   using isotropy_type = Isotropy;
   static constexpr int order = Tableau::order;
   static constexpr int evaluations = Tableau::stages;  // of the generator, per step
-  /// Fields of three numbers per site beside the spins, where stages go one by one.
+  /// Fields of three numbers per site beside the spins, when stages go one by one.
   static constexpr int work_fields = detail::work_fields<Tableau, Update>();
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
@@ -56,9 +56,9 @@ class RungeKutta : public detail::StepperBase<Spins> {
     use(sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep : Path::pass);
   }
 
-  /// Steps by this path from now on, whatever suits the lattice; allocates that path's memory.
+  /// Takes this path from now on instead of the automatic choice, and allocates its memory.
   /// A compensated method forgets its residual, as after `reset`.
-  /// Throws std::invalid_argument where the fields cannot be swept.
+  /// Throws std::invalid_argument when the fields cannot be swept.
   void use(Path path) {
     if (path == Path::sweep && !can_sweep(plan_.layout))
       throw std::invalid_argument(this->label("::use: a sweep needs two stages, a host space and, "
@@ -140,7 +140,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   static bool can_sweep(detail::RowLayout const& layout) {
     return has_sweep && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
   }
-  // Not while all fields stay in the caches of the cores.
+  // No sweep while all fields fit the caches of the cores.
   static bool sweeps_by_itself(detail::RowLayout const& layout, int threads) {
     return can_sweep(layout) && layout.rows() > 1 &&
            (work_fields + 1) * layout.allocation(3) * sizeof(Real) >
@@ -198,7 +198,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
     swap(spins, memory_.end());
   }
 
-  // The kernels of one step; of two where each step exchanges the memory of spins and level.
+  // The kernels of one step; those of two if each step exchanges the memory of spins and level.
   template <class Prepared>
   auto loops_of_steps(Prepared const& prepared, Spins& spins, double dt) {
     auto const loop = [&]<int Stage>(std::integral_constant<int, Stage>) {

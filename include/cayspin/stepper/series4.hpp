@@ -15,8 +15,9 @@ namespace cayspin {
 /// The symbolic series of order 4 in Cayley coordinates:
 /// F = dt a + dt^2 a_1/2 + dt^3 (2 a_2 + |a|^2 a + a_1 x a)/12
 ///   + dt^4 (a_3 + |a|^2 a_1 + a_2 x a + 2 <a_1, a> a)/24, a_k = d^k A / dt^k on the exact flow,
-/// by recurrence: rigid bodies in one kernel, Landau-Lifshitz with a field affine in the spins and
-/// without t in four. isotropy::Energy for rigid bodies. Lewis and Nigam 2002, Sec. 4.4 and 5.3.
+/// by recurrence. Rigid bodies take one kernel. Landau-Lifshitz takes four, with a field that is
+/// affine in the spins and does not depend on t. isotropy::Energy is for rigid bodies only.
+/// Lewis and Nigam 2002, Sec. 4.4 and 5.3.
 template <class Spins, class Isotropy = isotropy::Zero, class Series = detail::DirectSeries>
 class Series4 : public detail::StepperBase<Spins> {
   static_assert(std::is_same_v<Isotropy, isotropy::Zero> ||
@@ -99,8 +100,8 @@ class Series4 : public detail::StepperBase<Spins> {
   std::array<Spins, 3> derivatives_, sources_;
 };
 
-/// The orthogonal series as the paper prints it, from the derivatives of A_o whatever part along m
-/// the generator has. Another valid member of the family, of larger error in the energy.
+/// The orthogonal series as the paper prints it, from the derivatives of A_o. It drops the part of
+/// the generator along m. Also valid and of order 4, with a larger energy error than Series4.
 template <class Spins, class Isotropy = isotropy::Zero>
 class Series4Paper : public Series4<Spins, Isotropy, detail::PaperSeries> {
  public:

@@ -40,7 +40,7 @@ struct DirectSeries {
 };
 
 /// The orthogonal series as the paper prints it, from the derivatives of A_o: of the same order,
-/// three times the direct one's error in the energy.
+/// with three times the energy error of the direct series.
 struct PaperSeries : DirectSeries {
   using Correction = Series4PaperCorrection;
   template <class Value>
@@ -54,7 +54,7 @@ struct PaperSeries : DirectSeries {
   }
 };
 
-/// Where a stencil of other spins would be: one of a field's sites with a vector of the kernel's.
+/// A stencil without neighbours: a site, with a vector of the kernel as its centre.
 template <class Site>
 struct PointStencil {
   using value_type = typename Site::value_type;
@@ -81,7 +81,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generat
   return sum;
 }
 
-/// The step's end from derivatives 0 .. 3 of m and of the series' source.
+/// The end of the step from derivatives 0 .. 3 of m and of the series' source.
 template <class Series, class Isotropy, class Generator, class Site, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator, Site const& site,
                                                       Vec3<Value> const* m,
@@ -99,7 +99,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator
   return Cayley::rotate(f, m[0]);
 }
 
-/// A whole step where A at a site depends on the spin there alone, and linearly.
+/// A whole step, if A at a site depends on the spin of that site only, and linearly.
 template <class Series, class Isotropy, class Generator, class Real>
 struct LocalSeriesStage {
   Generator generator;
@@ -120,8 +120,8 @@ struct LocalSeriesStage {
   }
 };
 
-/// One of four kernels of a step on coupled spins: the K-th derivative of the source from that of
-/// the spins, and from both the next derivative of the spins, or after the last one the step's end.
+/// Kernel K of the four of a step on coupled spins. It computes the K-th derivative of the source,
+/// then the next derivative of the spins, or after the last one the end of the step.
 template <class Series, int K, class Generator, class Real>
 struct SeriesStage {
   Generator generator;

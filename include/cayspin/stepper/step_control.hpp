@@ -10,8 +10,8 @@
 
 namespace cayspin {
 
-/// An adaptive step that would have to be shorter than allowed, or than time can tell: the numbers
-/// are not finite, or the field is not smooth on any scale. The spins are those before the step.
+/// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
+/// The numbers are not finite, or the field is not smooth. The spins are those before the step.
 class StepTooSmall : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,11 +21,11 @@ class StepTooSmall : public std::runtime_error {
 struct StepOptions {
   double tolerance = 1e-6;  ///< of the error of a run: the largest angle of any spin, in radians
   double first_dt = 0;      ///< 0: chosen from the largest rate and the tolerance
-  double min_dt = 0;        ///< a step that needs less throws StepTooSmall
+  double min_dt = 0;        ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage looks beyond this time
 
-  /// Below it, round-off hides the error of a step.
+  /// The smallest tolerance: below it, round-off hides the error of a step.
   template <class Real>
   static constexpr double least_tolerance() {
     return 32 * static_cast<double>(std::numeric_limits<Real>::epsilon());
@@ -39,7 +39,7 @@ namespace detail {
 /// the sequence of steps is the same on every host space.
 class StepController {
  public:
-  /// `error_order`: the power of dt that the estimate goes with.
+  /// `error_order`: the error estimate is proportional to this power of dt.
   StepController(StepOptions const& options, int error_order, double least_tolerance,
                  std::string const& region)
       : options_(options), exponent_(1.0 / error_order) {
@@ -51,13 +51,13 @@ class StepController {
     if (!(options.first_dt >= 0)) refuse(": first_dt must not be negative");
   }
 
-  /// Errors of single steps add up on the way: a step may make this much of one. Calibrated on
-  /// switching, films and Heisenberg lattices (docs/trade.md): low orders take more steps.
+  /// The largest error of one step, in radians, because errors of steps add up. Calibrated on
+  /// switching, films and Heisenberg lattices (docs/reports/trade.md): low orders take more steps.
   double step_tolerance() const {
     return options_.tolerance * (exponent_ < 0.25 ? 1.0 / 12 : 1.0 / 160);
   }
 
-  /// For spins that turn by at most `rate` per unit of time; `asked`: where nothing turns.
+  /// The first dt for spins that turn by at most `rate` per unit of time; `asked` if none turns.
   double first_dt(double rate, double asked) const {
     double const angle = 0.5 * std::pow(step_tolerance(), exponent_);
     bool const turns = rate > 0 && std::isfinite(rate);
@@ -75,7 +75,7 @@ class StepController {
       double const factor = safety * std::pow(ratio, -exponent_);
       return dt * (factor > smallest ? factor : smallest);
     }
-    double const least = 1e-8;  // an error of nothing: as good as this
+    double const least = 1e-8;  // smaller ratios count as this one
     double const now = std::max(ratio, least);
     double factor = safety * std::pow(now, -0.7 * exponent_) * std::pow(before_, 0.4 * exponent_);
     factor = std::clamp(factor, smallest, rejected_ ? 1.0 : largest);

@@ -5,8 +5,8 @@
 
 // Explicit Butcher tableaux, as data: a new Runge-Kutta method is a struct like these.
 // a: stages x stages, strictly lower triangular; b: weights; c: stage times in units of dt.
-// Embedded ones also say how to choose dt and to look between steps. They take the generator at the
-// step's end, which is the next step's first, for one more stage:
+// Embedded tableaux also have an error estimate and interpolate between steps. They use one more
+// stage: the generator at the end of the step, which is the first one of the next step.
 // error: weights of all stages and that one, of the step less the embedded solution of order
 // embedded_order; dense: of each stage, the coefficients of s, s^2, ... s^5 in its weight at
 // t + s dt, of order dense_order.

@@ -12,8 +12,8 @@
 
 namespace cayspin {
 
-/// A step that keeps A between its two evaluations, or from one step to the next. Method says what
-/// it does with both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
+/// A step that keeps A between its two evaluations, or from one step to the next. Method says how
+/// the step uses both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
 template <class Spins, class Method, class Isotropy, class Rotation>
 class TwoPoint : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
@@ -36,8 +36,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
   /// Advances `spins` from t to t + dt under `generator`. A method that remembers the step before
-  /// takes `spins` for where that step ended; it exchanges the memory of `spins` with its own, so
-  /// take arrays of `spins` again after a step.
+  /// needs the `spins` at its end. It exchanges the memory of `spins` with its own: take arrays of
+  /// `spins` again after a step.
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {

@@ -6,13 +6,13 @@
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/stencil.hpp>
 
-// Steps that are made of the generator at two points, one of them kept in a field: finite
-// differences of A_o, and the two-step method of Adams and Bashforth.
+// Steps from the generator at two points, one of which is kept in a field: finite differences of
+// A_o, and the two-step method of Adams and Bashforth.
 namespace cayspin::detail {
 
-/// What a rule is told at a site: the spin m that A belongs to, the spin m0 of the step's begin, A
+/// The inputs of a rule at a site: the spin m that A belongs to, the spin m0 of the step's begin, A
 /// there with its isotropy added, the kept vector, and dt. It returns the step's coordinates F and
-/// says what is to be kept.
+/// sets `kept` to the vector to keep.
 template <class Value>
 struct TwoPoints {
   Vec3<Value> m, m0, a, kept;
