@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/rows.hpp>
+#include <cayspin/detail/sites_of_row.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/stage/data_flow.hpp>
 
