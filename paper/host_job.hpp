@@ -13,7 +13,7 @@ using namespace simulation;
 
 using HostSpace = Kokkos::DefaultHostExecutionSpace;
 using HostSpins = Simulation<double, HostSpace>::Spins;
-using HostObserver = Observer<HostSpace, HostSpins>;
+using HostObserver = RunObserver<HostSpace, HostSpins>;
 
 /// Runs a chain, spacing 1, as `cayspin run` does, but from a start and inverse inertias in memory
 /// and without files. Returns the state at the end. `starts`: sites x 3 unit vectors.

@@ -27,7 +27,7 @@ inline io::Scalars as_scalars(Sample const& sample) {
 /// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
 /// ends before the end, the progress.
 template <class Real, class Space>
-class Watch : public Observer<Space, SpinField<Real, typename Space::memory_space>> {
+class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
   using Frame = Kokkos::View<Real* [3], Kokkos::LayoutRight, typename Space::memory_space>;
 
@@ -117,7 +117,7 @@ class Watch : public Observer<Space, SpinField<Real, typename Space::memory_spac
 
 /// A watch, and after it the control that holds the run's energy.
 template <class Real, class Space>
-class ControlledWatch : public Observer<Space, SpinField<Real, typename Space::memory_space>> {
+class ControlledWatch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
 
  public:

@@ -10,7 +10,7 @@ namespace cayspin::simulation {
 
 template <class Real, class Space>
 Ending Simulation<Real, Space>::advance(Variant const& variant, MethodOptions const& options,
-                                        Observer<Exec, Spins>& observed_by) {
+                                        RunObserver<Exec, Spins>& observed_by) {
   observer = &observed_by;
   Ending ending;
   try {

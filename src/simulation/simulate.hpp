@@ -23,9 +23,9 @@ struct MethodOptions;
 
 /// Called while a simulation advances.
 template <class Exec, class Spins>
-class Observer {
+class RunObserver {
  public:
-  virtual ~Observer() = default;
+  virtual ~RunObserver() = default;
   virtual bool due(Step const& step) const = 0;
   virtual Next operator()(Exec const& exec, Step const& step, Spins const& spins) = 0;
 };
@@ -46,7 +46,7 @@ struct Simulation {
   Spins spins;
   SceneGenerator<Spins> generator;
   Times times;
-  Observer<Exec, Spins>* observer = nullptr;
+  RunObserver<Exec, Spins>* observer = nullptr;
 
   /// `start`: unit vectors, sites x 3.
   Simulation(Lattice const& lattice, Times const& times_of_run, std::vector<double> const& start,
@@ -60,7 +60,7 @@ struct Simulation {
 
   /// Runs to the end of the times, or as far as the numbers or `observed_by` let it.
   Ending advance(Variant const& variant, MethodOptions const& options,
-                 Observer<Exec, Spins>& observed_by);
+                 RunObserver<Exec, Spins>& observed_by);
 };
 
 /// The spaces compiled in, behind a first type that is none.

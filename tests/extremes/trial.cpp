@@ -25,7 +25,7 @@ constexpr auto plan_precision = sizeof(Real) == 8 ? Precision::double_precision
 
 /// The guard of a run, and what is done to it on its way.
 template <class Spins>
-class Look : public Observer<HostSpace, Spins> {
+class Look : public RunObserver<HostSpace, Spins> {
   using Real = typename Spins::value_type;
 
  public:

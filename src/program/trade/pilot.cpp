@@ -11,7 +11,7 @@ namespace cayspin::program::trade {
 namespace {
 
 template <class Real, class Space>
-class KeepStates : public Observer<Space, SpinField<Real, typename Space::memory_space>> {
+class KeepStates : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
 
  public:
