@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Pictures of cayspin's trajectory files (docs/file_format.md)."""
+"""Pictures of cayspin's trajectory files (docs/reference/file_format.md)."""

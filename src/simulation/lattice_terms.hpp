@@ -79,10 +79,11 @@ struct LatticeTerms {
   }
 };
 
-/// The library's term of a scene's term; a scene without it has one of default numbers.
+/// What kernels hold of a scene's term; a scene without it has one of default numbers. A lattice
+/// term is prepared alike for all spaces, spins and times.
 template <class OfScene>
 auto library_term(std::optional<OfScene> const& term, Lattice const& lattice) {
-  return term.value_or(OfScene{}).term(lattice);
+  return term.value_or(OfScene{}).term(lattice).prepare(nullptr, nullptr, 0);
 }
 
 inline TermsIfThere<> terms_if_there(Lattice const&) { return {}; }

@@ -159,8 +159,8 @@ class SceneField {
     auto now = prepare_local(exec, spins, t);
     now.has_layers = layers_.has_value();
     now.has_stored = stored_.has_value();
-    if (layers_) now.layers = layers_->prepare(exec, spins, t);
-    if (stored_) now.stored = stored_->prepare(exec, spins, t);
+    if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
+    if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     return now;
   }
   /// Looks at no spin: without the terms that do.

@@ -60,6 +60,7 @@ struct Exchange {
   }
 };
 
+/// H = constant (m.axis) axis.
 struct Anisotropy {
   double constant = 0;  ///< K in H = K (m.e) e
   Triple axis = {};     ///< unit vector e
@@ -69,6 +70,7 @@ struct Anisotropy {
                                          Parameter<Anisotropy>{"axis", &Anisotropy::axis}};
 };
 
+/// H = -strength (m.normal) normal, per spin or averaged over layers.
 struct SlabDemagnetization {
   Triple normal = {};  ///< unit vector n in H = -strength (m.n) n
   double strength = 1;

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-/// A scene file as plain data. docs/scene.md describes every key.
+/// A scene file as plain data. docs/reference/scene.md describes every key.
 namespace cayspin::io {
 
 /// what() is one line: `FILE:LINE: key: what is wrong; accepted: ...`, or
@@ -29,10 +29,12 @@ class SceneError : public std::runtime_error {
 
 using PrincipalMoments = Triple;
 using InertiaTensor = std::array<double, 9>;  ///< symmetric 3x3, row by row
+/// An inertia tensor for each body, from an HDF5 file.
 struct InertiaFile {
   std::filesystem::path path;  ///< dataset /inertia (count, 3, 3)
 };
 
+/// The table [system].
 struct System {
   SystemKind kind = SystemKind::llg;
   double damping = 0;      ///< llg: lambda >= 0
@@ -40,21 +42,26 @@ struct System {
   std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
 };
 
+/// The table [lattice].
 struct Lattice {
   std::array<std::int64_t, 3> shape = {1, 1, 1};  ///< nx, ny, nz; rigid bodies: count, 1, 1
   Triple spacing = {1, 1, 1};
   std::array<BoundaryKind, 3> boundary = {};
 };
 
+/// All spins along one direction.
 struct UniformStart {
   Triple direction = {};  ///< unit vector
 };
+/// A start by expressions, normalised per spin.
 struct ExpressionStart {
   std::array<std::string, 3> components;  ///< in x, y, z, i, j, k
 };
+/// Spins that are uniform on the sphere.
 struct RandomStart {
   std::int64_t seed = 0;
 };
+/// A start from the last frame of an HDF5 file, normalised per spin.
 struct FileStart {
   std::filesystem::path path;  ///< dataset /spins
 };
@@ -67,6 +74,7 @@ struct Flag {
   bool Section::*member;
 };
 
+/// The table [integrator]: method, coordinates and steps.
 struct Integrator {
   Method const* method = nullptr;
   Generator generator = Generator::standard;
@@ -91,6 +99,7 @@ struct Integrator {
   }
 };
 
+/// The table [output].
 struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
   std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
@@ -99,6 +108,7 @@ struct Output {
   static constexpr std::array<Flag<Output>, 0> flags() { return {}; }
 };
 
+/// A scene: one member for each table, and where each key stands.
 struct Scene {
   System system;
   Lattice lattice;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// The trajectory file of a run (HDF5, laid out as docs/file_format.md says).
+/// The trajectory file of a run (HDF5, laid out as docs/reference/file_format.md says).
 ///
 /// Every failure of the file system or of HDF5 throws std::runtime_error whose message is one line:
 /// the file, what could not be done, and why. HDF5 itself prints nothing. Not thread-safe.

@@ -35,14 +35,19 @@ struct Word {
 template <class Value>
 std::span<Word<Value> const> words();
 
+/// The kinds of system.
 template <>
 std::span<Word<SystemKind> const> words();
+/// The boundaries of an axis.
 template <>
 std::span<Word<BoundaryKind> const> words();
+/// The generators.
 template <>
 std::span<Word<Generator> const> words();
+/// The isotropies.
 template <>
 std::span<Word<Isotropy> const> words();
+/// The rotations.
 template <>
 std::span<Word<Rotation> const> words();
 

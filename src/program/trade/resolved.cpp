@@ -34,8 +34,11 @@ std::string integrator_table(io::Integrator const& of_scene, Advice const& advic
   auto keys = candidate.keys();
   if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
   keys += fmt::format(",dt={:#},steps={}", dt, steps);
-  if (!of_scene.energy_guard) keys += ",energy_guard=false";
-  if (of_scene.energy_control && !candidate.method->adaptive) keys += ",energy_control=true";
+  for (auto const& [key, member] : io::Integrator::flags()) {
+    bool const belongs_to_method = key == "compensated" || (key == "energy_control" && candidate.method->adaptive);
+    if (!belongs_to_method && of_scene.*member != io::Integrator{}.*member)
+      keys += fmt::format(",{}={}", key, of_scene.*member);
+  }
   if (of_scene.until_torque) keys += fmt::format(",until_torque={:#}", *of_scene.until_torque);
   return fmt::format("integrator={{{}}}", keys);
 }
