@@ -3,6 +3,7 @@
 
 // scene -> lattice + field -> generator -> stepper (rotation, isotropy) -> observer -> files
 #include <cayspin/concepts.hpp>
+#include <cayspin/evaluate.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>
@@ -22,12 +23,11 @@
 #include <cayspin/isotropy/policies.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/observer/energy_control.hpp>
-#include <cayspin/evaluate.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>
-#include <cayspin/scalars.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
+#include <cayspin/scalars.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>

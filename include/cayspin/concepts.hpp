@@ -132,12 +132,12 @@ concept Generator =
 /// | `static int work_fields` | fields of three numbers per site | not known |
 /// | `size_t work_bytes()` | bytes of work memory | not known |
 template <class Type>
-concept Stepper = requires(Type& stepper,
-                           detail::ExecutionOf<typename Type::spins_type> const& exec,
-                           typename Type::spins_type& spins) {
-  stepper.step(exec, detail::AnyGenerator(), spins, 0.0, 0.0);
-  requires detail::has_evaluations<Type> || detail::counts_evaluations<Type>;
-};
+concept Stepper =
+    requires(Type& stepper, detail::ExecutionOf<typename Type::spins_type> const& exec,
+             typename Type::spins_type& spins) {
+      stepper.step(exec, detail::AnyGenerator(), spins, 0.0, 0.0);
+      requires detail::has_evaluations<Type> || detail::counts_evaluations<Type>;
+    };
 
 /// A Stepper that chooses its own steps and delivers spins at the times that are asked for. It goes
 /// on from a state of its own: what is written into the spins between two steps has no effect.
@@ -150,11 +150,11 @@ concept Stepper = requires(Type& stepper,
 /// | `reset()` | the next step begins at its own t and spins | required |
 template <class Type>
 concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
-    requires(Type& stepper, Type const& constant) {
-  { constant.accepted_steps() } -> std::convertible_to<std::int64_t>;
-  { constant.rejected_steps() } -> std::convertible_to<std::int64_t>;
-  stepper.reset();
-};
+                          requires(Type& stepper, Type const& constant) {
+                            { constant.accepted_steps() } -> std::convertible_to<std::int64_t>;
+                            { constant.rejected_steps() } -> std::convertible_to<std::int64_t>;
+                            stepper.reset();
+                          };
 
 /// What integrate() calls with the state before the first step and after each step.
 ///
@@ -168,7 +168,7 @@ concept Observer = requires(Type& observer, detail::ExecutionOf<Spins> const& ex
                             Step const& step, Spins const& spins) {
   observer(exec, step, spins);
   requires std::is_void_v<decltype(observer(exec, step, spins))> ||
-      std::is_same_v<decltype(observer(exec, step, spins)), Next>;
+               std::is_same_v<decltype(observer(exec, step, spins)), Next>;
 };
 
 /// Evaluations of the generator in each step; none where their number depends on the spins.

@@ -63,9 +63,7 @@ namespace detail {
 /// A stepper that can take several steps of few spins in one launch.
 template <class Stepper, class Exec, class Generator, class Spins>
 concept has_batches = requires(Stepper& stepper, Exec const& exec, Generator const& generator,
-                               Spins& spins) {
-  stepper.takes_batches(exec, generator, spins);
-};
+                               Spins& spins) { stepper.takes_batches(exec, generator, spins); };
 
 /// Steps from `number` to the next one that an observer, or the end, waits for; at most 1000, so
 /// that what an observer asks the world outside is asked again soon.

@@ -29,7 +29,7 @@ template <class Term, class Stencil>
 concept has_field_rate = requires(Term const& term, Stencil const& stencil) {
   {
     term.field_rate(stencil.center(), stencil)
-    } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+  } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
 };
 
 template <class Generator, class Stencil>

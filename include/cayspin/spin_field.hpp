@@ -115,12 +115,14 @@ class SiteField {
 
   /// The numbers of one site, for host code on fields in host memory.
   Vec3<Real> get(std::int64_t site) const
-      requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
+    requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>)
+  {
     Real const* const from = data_.data() + layout_.origin + layout_.offset(site);
     return {from[0], from[layout_.component_stride], from[2 * layout_.component_stride]};
   }
   void set(std::int64_t site, Vec3<Real> const& value) const
-      requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>) {
+    requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>)
+  {
     Real* const to = data_.data() + layout_.origin + layout_.offset(site);
     to[0] = value.x;
     to[layout_.component_stride] = value.y;

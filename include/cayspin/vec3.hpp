@@ -30,13 +30,15 @@ struct Vec3 {
   }
   friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Vec3 const& a, Value const& s) { return s * a; }
   template <class Number>
-  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Number s, Vec3 const& a) requires(
-      std::is_arithmetic_v<Number> && !std::is_same_v<Number, Value>) {
+  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Number s, Vec3 const& a)
+    requires(std::is_arithmetic_v<Number> && !std::is_same_v<Number, Value>)
+  {
     return Value(static_cast<detail::scalar_t<Value>>(s)) * a;
   }
   template <class Number>
-  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Vec3 const& a, Number s) requires(
-      std::is_arithmetic_v<Number> && !std::is_same_v<Number, Value>) {
+  friend KOKKOS_FORCEINLINE_FUNCTION Vec3 operator*(Vec3 const& a, Number s)
+    requires(std::is_arithmetic_v<Number> && !std::is_same_v<Number, Value>)
+  {
     return Value(static_cast<detail::scalar_t<Value>>(s)) * a;
   }
 

@@ -233,8 +233,7 @@ std::vector<Variant> compile_shard() {
       all.insert(all.end(), some.begin(), some.end());
     };
     (add(compile_method<Shard + I * Shards>()), ...);
-  }
-  (std::make_index_sequence<(rows - Shard + Shards - 1) / Shards>{});
+  }(std::make_index_sequence<(rows - Shard + Shards - 1) / Shards>{});
   return all;
 }
 

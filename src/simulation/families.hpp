@@ -11,6 +11,7 @@
 #include <cayspin/stepper/red_black.hpp>
 #include <cayspin/stepper/series4.hpp>
 #include <cayspin/stepper/two_point.hpp>
+
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
 // The types behind the rows of the list of methods: Stepper for spins, an isotropy and a rotation,

@@ -87,8 +87,9 @@ class SceneBodies {
 
   template <class Exec>
   SceneBodiesNow<Many> prepare(Exec const& exec, Spins const& spins, double t) const {
-    return SceneBodiesNow<Many>(one_, each_ ? cayspin::detail::prepare_term(*each_, exec, spins, t) : Many{},
-                                each_.has_value());
+    return SceneBodiesNow<Many>(
+        one_, each_ ? cayspin::detail::prepare_term(*each_, exec, spins, t) : Many{},
+        each_.has_value());
   }
 
  private:

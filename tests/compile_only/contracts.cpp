@@ -41,9 +41,10 @@ static_assert(!FieldTerm<OnlyAField> && !FieldTerm<RigidBody> && !FieldTerm<int>
 template <class Real>
 using Llg = LandauLifshitz<EffectiveField<Exchange, TimeDependentZeeman<Rotating>>, Scalars<Real>>;
 template <class Real>
-inline constexpr bool generators_of_cayspin = Generator<Llg<Real>, Spins<Real>>&&
-    Generator<Orthogonal<Llg<Real>>, Spins<Real>>&& Generator<RigidBody, Spins<Real>>&&
-        Generator<RigidBodyEnsemble<Real, Kokkos::HostSpace>, Spins<Real>>;
+inline constexpr bool generators_of_cayspin =
+    Generator<Llg<Real>, Spins<Real>> && Generator<Orthogonal<Llg<Real>>, Spins<Real>> &&
+    Generator<RigidBody, Spins<Real>> &&
+    Generator<RigidBodyEnsemble<Real, Kokkos::HostSpace>, Spins<Real>>;
 static_assert(generators_of_cayspin<float> && generators_of_cayspin<double>);
 static_assert(!Generator<EffectiveField<Zeeman>> && !Generator<int>);
 

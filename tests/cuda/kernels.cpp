@@ -2,6 +2,7 @@
 // The kernels of every stepper, isotropy policy, generator, field term and scalar, compiled in both
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
+
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
 #include <tuple>

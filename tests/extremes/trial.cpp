@@ -20,8 +20,8 @@ using cayspin::detail::Maximum;  // of NaN and a number: NaN
 using HostSpace = Kokkos::DefaultHostExecutionSpace;
 
 template <class Real>
-constexpr auto plan_precision = sizeof(Real) == 8 ? Precision::double_precision
-                                                  : Precision::single_precision;
+constexpr auto plan_precision =
+    sizeof(Real) == 8 ? Precision::double_precision : Precision::single_precision;
 
 /// The guard of a run, and what is done to it on its way.
 template <class Spins>

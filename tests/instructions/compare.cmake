@@ -10,9 +10,7 @@ file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder})
 execute_process(
   COMMAND ${VALGRIND} --tool=callgrind --collect-atstart=no --callgrind-out-file=${folder}/counts
-          ${PROGRAM}
-  RESULT_VARIABLE status
-  ERROR_VARIABLE log)
+          ${PROGRAM} RESULT_VARIABLE status ERROR_VARIABLE log)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "callgrind ended with ${status}:\n${log}")
 endif()

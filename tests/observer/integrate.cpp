@@ -3,6 +3,7 @@
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
+
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
 #include <limits>

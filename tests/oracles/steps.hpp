@@ -5,6 +5,7 @@
 #include "../support/oracles.hpp"
 
 #include <cayspin/cayspin.hpp>
+
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
 #include <stdexcept>
@@ -15,7 +16,7 @@ namespace cayspin::test {
 
 /// 1e-13 in double; as many epsilons, 450, in float.
 template <class Real>
-inline constexpr double step_tolerance = 1e-13 / epsilon<double>* epsilon<Real>;
+inline constexpr double step_tolerance = 1e-13 / epsilon<double> * epsilon<Real>;
 
 /// Of two ways to write the same sigma.
 inline void expect_same(std::vector<double> const& a, std::vector<double> const& b, double bound,

@@ -38,10 +38,12 @@ class Laws : public ::testing::Test {
   static void tangents_are_inverse() {
     sweep(1e6, [](auto const& f, auto const&, auto const& y) {
       long double const bound = 8 * eps * (1 + norm(widen(f)));
-      EXPECT_LE(largest(widen(Rotation::differential(f, Rotation::inverse_differential(f, y))) - widen(y)),
+      EXPECT_LE(largest(widen(Rotation::differential(f, Rotation::inverse_differential(f, y))) -
+                        widen(y)),
                 bound)
           << norm(widen(f));
-      EXPECT_LE(largest(widen(Rotation::inverse_differential(f, Rotation::differential(f, y))) - widen(y)),
+      EXPECT_LE(largest(widen(Rotation::inverse_differential(f, Rotation::differential(f, y))) -
+                        widen(y)),
                 bound)
           << norm(widen(f));
     });

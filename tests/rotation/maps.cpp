@@ -93,8 +93,9 @@ class Maps : public ::testing::Test {
     expect_near<Value>(Rotation::differential(f, spread<Value>(one.y)), one.tangent,
                        tolerance * largest(one.tangent), one.tag + ": dcay");
     if (largest(one.inverse_differential) < 0.25L * std::numeric_limits<Real>::max())
-      expect_near<Value>(Rotation::inverse_differential(f, spread<Value>(one.y)), one.inverse_differential,
-                         tolerance * largest(one.inverse_differential), one.tag + ": inverse dcay");
+      expect_near<Value>(Rotation::inverse_differential(f, spread<Value>(one.y)),
+                         one.inverse_differential, tolerance * largest(one.inverse_differential),
+                         one.tag + ": inverse dcay");
   }
 
   template <class Value>

@@ -59,12 +59,14 @@ TYPED_TEST(Packs, LanesEqualNumbers) {
                 [](auto const& f, auto const& x) { return Cayley::inverse_differential(f, x); });
   this->compare("OverflowSafeCayley::rotate",
                 [](auto const& f, auto const& x) { return OverflowSafeCayley::rotate(f, x); });
-  this->compare("OverflowSafeCayley::tangent",
-                [](auto const& f, auto const& x) { return OverflowSafeCayley::differential(f, x); });
+  this->compare("OverflowSafeCayley::tangent", [](auto const& f, auto const& x) {
+    return OverflowSafeCayley::differential(f, x);
+  });
   this->compare("Exponential::rotate",
                 [](auto const& f, auto const& x) { return Exponential::rotate(f, x); });
-  this->compare("Exponential::inverse_differential",
-                [](auto const& f, auto const& x) { return Exponential::inverse_differential(f, x); });
+  this->compare("Exponential::inverse_differential", [](auto const& f, auto const& x) {
+    return Exponential::inverse_differential(f, x);
+  });
 }
 
 }  // namespace

@@ -92,8 +92,8 @@ TEST(RedBlackOrder, OfATermThatSaysNothingAboutItself) {
   expect_orders("blended term", LandauLifshitz(EffectiveField{Blended{{block, 1}}}, 0.1));
 }
 
-/// An antisymmetric coupling to neighbours. It names what stands for a missing one, and does not say
-/// that all of it comes from neighbours.
+/// An antisymmetric coupling to neighbours. It names what stands for a missing one, and does not
+/// say that all of it comes from neighbours.
 struct OpenBonds {
   static constexpr int degree = 2;
 
@@ -112,8 +112,7 @@ struct OpenBonds {
 };
 
 TEST(RedBlackOrder, OfATermThatNamesWhatStandsForAMissingNeighbour) {
-  expect_orders("open bonds",
-                LandauLifshitz(EffectiveField{Exchange(block, 1), OpenBonds{}}, 0.1));
+  expect_orders("open bonds", LandauLifshitz(EffectiveField{Exchange(block, 1), OpenBonds{}}, 0.1));
 }
 
 TEST(RedBlackOrder, OnALatticeWithVacancies) {

@@ -27,9 +27,7 @@ std::int32_t pack_count(RowLayout const& layout) {
 /// Can the functor be called with two sites? Two independent sites keep the processor busy when
 /// each of them is a long chain of dependent operations.
 template <class Functor>
-inline constexpr bool takes_pairs = requires {
-  requires Functor::takes_pairs;
-};
+inline constexpr bool takes_pairs = requires { requires Functor::takes_pairs; };
 
 /// Calls functor(site) for packs begin .. end - 1 of a row, or functor(site, next site).
 template <class Value, class Functor>

@@ -20,7 +20,7 @@ KOKKOS_FORCEINLINE_FUNCTION void unrolled(Body const& body) {
 }
 
 template <int N, int K>
-inline constexpr int binomial = K == 0 ? 1 : binomial<N - 1, K - 1>* N / K;
+inline constexpr int binomial = K == 0 ? 1 : binomial<N - 1, K - 1> * N / K;
 template <int N>
 inline constexpr int binomial<N, 0> = 1;
 

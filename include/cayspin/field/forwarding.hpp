@@ -58,17 +58,22 @@ class ForwardingEnergy {
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const requires has_energy_density<Part, Stencil> {
+      Stencil const& stencil) const
+    requires has_energy_density<Part, Stencil>
+  {
     return part().energy_density(stencil);
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const requires has_energy_density<Part, Stencil> {
+      Stencil const& stencil) const
+    requires has_energy_density<Part, Stencil>
+  {
     return detail::energy_magnitude(part(), stencil);
   }
   template <class Stencil, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void energy_densities(
-      Stencil const& stencil, Value* energies) const requires has_energy_density<Part, Stencil> {
+  KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const& stencil, Value* energies) const
+    requires has_energy_density<Part, Stencil>
+  {
     detail::energy_densities(part(), stencil, energies);
   }
 

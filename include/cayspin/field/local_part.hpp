@@ -60,10 +60,9 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Term con
 
 /// Of a prepared term: does it say what its parts are, each term of a sum for itself?
 template <class Term, class Stencil>
-inline constexpr bool comes_in_parts = is_local<Term> ||
-                                       requires(Term const& term, Stencil const& stencil) {
-  term.neighbor_field(stencil);
-};
+inline constexpr bool comes_in_parts =
+    is_local<Term> ||
+    requires(Term const& term, Stencil const& stencil) { term.neighbor_field(stencil); };
 
 /// Of a prepared term that comes in parts: does its local field change with the spin?
 template <class Term>

@@ -103,7 +103,8 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   }
 
   bool is_conservative() const
-      requires(requires(Generator const& generator) { generator.is_conservative(); }) {
+    requires(requires(Generator const& generator) { generator.is_conservative(); })
+  {
     return generator_.is_conservative();
   }
   KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }

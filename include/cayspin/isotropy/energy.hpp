@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/generator/rigid_body.hpp>
+#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/vec3.hpp>
 
 namespace cayspin::isotropy {

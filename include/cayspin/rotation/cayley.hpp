@@ -29,7 +29,7 @@ struct Cayley {
   /// dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4)
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> differential(Vec3<Value> const& f,
-                                                         Vec3<Value> const& y) {
+                                                              Vec3<Value> const& y) {
     Vec3<Value> const h = Value(0.5) * f;
     return Value(Value(1) / (Value(1) + dot(h, h))) * (y + cross(h, y));
   }
@@ -37,7 +37,7 @@ struct Cayley {
   /// dcay_f^-1 y = y - f x y / 2 + f <f, y> / 4
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
-                                                                 Vec3<Value> const& y) {
+                                                                      Vec3<Value> const& y) {
     return multiply_add(Value(Value(0.25) * dot(f, y)), f,
                         multiply_add(Value(-0.5), cross(f, y), y));
   }
@@ -63,7 +63,7 @@ struct OverflowSafeCayley : Cayley {
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> differential(Vec3<Value> const& f,
-                                                         Vec3<Value> const& y) {
+                                                              Vec3<Value> const& y) {
     Vec3<Value> const h = Value(0.5) * f;
     Value const t = Value(1) / largest_or_one(h);
     Vec3<Value> const p = t * h;

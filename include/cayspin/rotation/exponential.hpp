@@ -31,7 +31,7 @@ struct Exponential {
   /// dexp_f^-1 y = y - f x y / 2 + (1 - (n/2) cot(n/2)) / n^2 f x (f x y), n = |f| < 2 pi
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> inverse_differential(Vec3<Value> const& f,
-                                                                 Vec3<Value> const& y) {
+                                                                      Vec3<Value> const& y) {
     Vec3<Value> const c = cross(f, y);
     return multiply_add(detail::inverse_tangent_coefficient(f), cross(f, c),
                         multiply_add(Value(-0.5), c, y));

@@ -20,13 +20,13 @@ struct StageArrays {
   static constexpr std::size_t most_increments = Stages > 1 ? Stages - 1 : 1;
   static constexpr std::size_t most_carried = 1;
 
-  typename Kind::Input start;                                    // spins at the begin of the step
-  typename Kind::Spins level;                                    // spins of this stage
-  typename Kind::Input increments[most_increments];              // of earlier stages, or spins
-  typename Kind::Input sum_before;                               // of weighted increments
+  typename Kind::Input start;                        // spins at the begin of the step
+  typename Kind::Spins level;                        // spins of this stage
+  typename Kind::Input increments[most_increments];  // of earlier stages, or spins
+  typename Kind::Input sum_before;                   // of weighted increments
   typename Kind::Output sum;
-  typename Kind::Output increment;  // of this stage
-  typename Kind::Output next;       // spins of the next stage, or of the end
+  typename Kind::Output increment;                    // of this stage
+  typename Kind::Output next;                         // spins of the next stage, or of the end
   typename Kind::Input carried_before[most_carried];  // left by the step before
   typename Kind::Output carried[most_carried];        // left by this step
 };

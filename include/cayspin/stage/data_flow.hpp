@@ -18,9 +18,7 @@ constexpr bool is_chain() {
 
 /// The last stage is at the end of the step, and its generator is the next step's first.
 template <class Tableau>
-inline constexpr bool is_first_same_as_last = requires {
-  Tableau::first_same_as_last;
-};
+inline constexpr bool is_first_same_as_last = requires { Tableau::first_same_as_last; };
 
 /// Weights of the rotation that follows the first one, if the tableau has any. Row `stages` is
 /// the end of the step.

@@ -42,9 +42,9 @@ class StageMemory {
   void allocate_buffers(std::string const& name, Lattice const& lattice, SweepPlan const& plan) {
     *this = {};
     levels_[0] = Spins(name + "::next", lattice);
-    buffers_ = Buffers(
-        Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::buffers"),
-        plan.size());
+    buffers_ =
+        Buffers(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::buffers"),
+                plan.size());
     advise_huge_pages(buffers_.data(), buffers_.size() * sizeof(Real));
     for_each_task(DefaultExec(), "cayspin::" + name + "::fill_buffers", plan.parts(),
                   lattice.sites(), FillSweepBuffers<Real>{buffers_.data(), plan});

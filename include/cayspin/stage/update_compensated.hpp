@@ -23,8 +23,7 @@ namespace detail {
 /// Fields that the end of a step leaves for the end of the next one.
 template <class Update>
 constexpr int carried_fields() {
-  if constexpr (requires { Update::carried; })
-    return static_cast<int>(std::size(Update::carried));
+  if constexpr (requires { Update::carried; }) return static_cast<int>(std::size(Update::carried));
   return 0;
 }
 

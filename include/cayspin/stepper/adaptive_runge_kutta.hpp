@@ -228,8 +228,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
                      detail::StageRowLoop(stage<I + 1>(at(Tableau::c[I + 1]), dt), fields<I + 1>(),
                                           layout)...,
                      detail::repeated_row_loop<Real>(layout, end_stage(at(1), dt))));
-    }
-    (std::make_integer_sequence<int, stages - 2>{});
+    }(std::make_integer_sequence<int, stages - 2>{});
   }
 
   template <int Stage, class Exec, class Generator>

@@ -32,9 +32,9 @@ class LieEuler<Spins, isotropy::FiniteDifferenceBackward, Rotation>
 /// With sigma from the generator's derivative; energy error of order 2, one evaluation and one of
 /// the field's linear part.
 template <class Spins, class Rotation, class Isotropy>
-requires(std::same_as<Isotropy, isotropy::Analytic> ||
-         std::same_as<Isotropy, isotropy::Connection>) class LieEuler<Spins, Isotropy, Rotation>
-    : public detail::StepperBase<Spins> {
+  requires(std::same_as<Isotropy, isotropy::Analytic> ||
+           std::same_as<Isotropy, isotropy::Connection>)
+class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
  public:
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = 1;

@@ -4,8 +4,8 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/isotropy/sigma.hpp>
-#include <cayspin/scalars.hpp>
 #include <cayspin/rotation/cayley.hpp>
+#include <cayspin/scalars.hpp>
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
@@ -86,10 +86,8 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
         next_("EnergyProjection::next", like.lattice()) {}
 
   std::size_t work_bytes() const { return stepper_.work_bytes() + 2 * begin_.bytes(); }
-  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone,
-                                int threads) requires requires {
-    Stepper::work_bytes(lattice, by_time_alone, threads);
-  }
+  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads)
+    requires requires { Stepper::work_bytes(lattice, by_time_alone, threads); }
   {
     auto const layout = detail::RowLayout::of<Real>(lattice);
     return Stepper::work_bytes(lattice, by_time_alone, threads) +

@@ -26,16 +26,15 @@ struct FieldExtrapolationOptions {
   double restart_growth = 100;  // above so many times the largest of the last few errors
 };
 
-/// Field extrapolation of order 3 or 4 with one evaluation per step. The polynomial through the last
-/// Order values predicts the field of the other spins. Every spin then moves in it and in its own
-/// local field, by one step of Rkmk4. What depends on a spin alone (anisotropy) or on t (applied
-/// fields) is not extrapolated. The first Order - 1 steps are steps of Rkmk4. Steps may change, but
-/// grow by a factor of 2 at most; otherwise the method starts again.
-/// Estimates: the error of each step is known one step later, as dt g |dA x m| of a spin. dA is the
-/// A in the neighbour field less the A in the predicted one. g is 3/8 for order 3 and, to 0.1 %,
-/// 251/720 for order 4 with equal steps, as in the methods of Adams and Bashforth. The estimate
-/// leaves out the error of the local solve, which is of order 4. It takes a field and a number per
-/// site more.
+/// Field extrapolation of order 3 or 4 with one evaluation per step. The polynomial through the
+/// last Order values predicts the field of the other spins. Every spin then moves in it and in its
+/// own local field, by one step of Rkmk4. What depends on a spin alone (anisotropy) or on t
+/// (applied fields) is not extrapolated. The first Order - 1 steps are steps of Rkmk4. Steps may
+/// change, but grow by a factor of 2 at most; otherwise the method starts again. Estimates: the
+/// error of each step is known one step later, as dt g |dA x m| of a spin. dA is the A in the
+/// neighbour field less the A in the predicted one. g is 3/8 for order 3 and, to 0.1 %, 251/720 for
+/// order 4 with equal steps, as in the methods of Adams and Bashforth. The estimate leaves out the
+/// error of the local solve, which is of order 4. It takes a field and a number per site more.
 template <class Spins, int Order, bool Estimates = false>
 class FieldExtrapolation : public detail::StepperBase<Spins> {
   static_assert(Order == 3 || Order == 4, "Field extrapolation is of order 3 or 4.");
@@ -88,7 +87,9 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   /// The largest error estimated for the step before the last one, as an angle in radians; NaN
   /// until Order + 1 steps are taken from a start. Waits.
   template <class Exec>
-  double last_error(Exec const& exec) const requires Estimates {
+  double last_error(Exec const& exec) const
+    requires Estimates
+  {
     if (!has_error_) return std::numeric_limits<double>::quiet_NaN();
     return detail::reduce_sites<detail::Maximum, 1>(
         exec, error_label_, angles_.layout(), detail::LargestOfSites<Real>{angles_.array()})[0];
@@ -180,7 +181,9 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
 
   /// For the polynomial of the step before: its weights at the end of that step, and the ratio of
   /// its mean error over the step (with the local solve's weights) to its error at the end.
-  Error error_of_step_before(double dt) const requires Estimates {
+  Error error_of_step_before(double dt) const
+    requires Estimates
+  {
     Error error{{}, 0, angles_.output(false)};
     if (!past_.is_full()) return error;
     auto const nodes = past_.template times<Order>(1, past_.last_step());

@@ -100,7 +100,8 @@ struct FieldExtrapolationStage {
       unrolled<Order - 1>([&](auto j) {
         predicted = multiply_add(value<Value>(error.weights[j() + 1]), before[j() + 1], predicted);
       });
-      Vec3<Value> const missed = cross(spin.last - increment(local[0], site, spin.m, predicted), spin.m);
+      Vec3<Value> const missed =
+          cross(spin.last - increment(local[0], site, spin.m, predicted), spin.m);
       site.store(value<Value>(error.scale) * square_root<Value>(dot(missed, missed)), error.angles);
     }
     site.store(h, newest);

@@ -67,8 +67,8 @@ class Implicit : public StepperBase<Spins> {
     };
     if (!solve(
             exec, [&](Spins const& from, Spins const& to) { map(from, to, AtMiddle); }, spins))
-      throw NotConverged(this->label("::step: the equation of the step from t = ") +
-                         to_text(t) + " is not solved: dt = " + to_text(dt) + " is too large");
+      throw NotConverged(this->label("::step: the equation of the step from t = ") + to_text(t) +
+                         " is not solved: dt = " + to_text(dt) + " is too large");
     if constexpr (is_corrected) {
       compute_sigma(exec, generator, spins, t, dt);
       corrected = true;

@@ -68,9 +68,8 @@ class StereographicRungeKutta
 /// Commutator-free method of order 4 with exact exponentials: no inverse differential, and two
 /// rotations at the last stage and at the end. Celledoni, Marthinsen and Owren 2003.
 template <class Spins, class Isotropy = isotropy::Zero>
-class CommutatorFree4
-    : public RungeKutta<Spins, tableau::CommutatorFree4, update::LieUncorrected<Exponential>,
-                        Isotropy> {
+class CommutatorFree4 : public RungeKutta<Spins, tableau::CommutatorFree4,
+                                          update::LieUncorrected<Exponential>, Isotropy> {
  public:
   explicit CommutatorFree4(Spins const& like, Isotropy isotropy = {})
       : CommutatorFree4::RungeKutta("CommutatorFree4", like, isotropy) {}
@@ -143,10 +142,10 @@ class ProjectedRk4 : public ProjectedRungeKutta<Spins, tableau::Classical4> {
 /// Not for code compiled with -ffast-math.
 /// It remembers: `spins` must be what the step before left. Otherwise call `reset`.
 template <class Stepper>
-requires requires {
-  typename Stepper::tableau_type;
-  typename Stepper::update_type;
-}
+  requires requires {
+    typename Stepper::tableau_type;
+    typename Stepper::update_type;
+  }
 class Compensated : public RungeKutta<typename Stepper::spins_type, typename Stepper::tableau_type,
                                       update::Compensated<typename Stepper::update_type>,
                                       typename Stepper::isotropy_type> {

@@ -126,8 +126,8 @@ class RedBlack : public detail::StepperBase<Spins> {
   }
 
   template <class Exec, class Stage>
-  void launch(Exec const& exec, Stage& stage, Spins const& spins,
-              detail::ColourPass const& pass, double dt) {
+  void launch(Exec const& exec, Stage& stage, Spins const& spins, detail::ColourPass const& pass,
+              double dt) {
     stage.set(pass, dt);
     detail::for_each_site_of_colour<Real>(exec, pass_label_, spins.layout(), stage);
     ++passes_done_;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/stepper/exact_flow.hpp>
 #include <cayspin/detail/for_each_site_of_colour.hpp>
 #include <cayspin/detail/varied_stencil.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/stencil.hpp>
+#include <cayspin/stepper/exact_flow.hpp>
 
 #include <array>
 #include <cstddef>

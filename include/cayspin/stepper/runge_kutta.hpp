@@ -61,8 +61,9 @@ class RungeKutta : public detail::StepperBase<Spins> {
   /// Throws std::invalid_argument when the fields cannot be swept.
   void use(Path path) {
     if (path == Path::sweep && !can_sweep(plan_.layout))
-      throw std::invalid_argument(this->label("::use: a sweep needs two stages, a host space and, "
-                                              "along a periodic y, as many rows as stages"));
+      throw std::invalid_argument(
+          this->label("::use: a sweep needs two stages, a host space and, "
+                      "along a periodic y, as many rows as stages"));
     path_ = path;
     if constexpr (has_sweep) {
       if (path == Path::sweep) return memory_.allocate_buffers(name_, this->lattice_, plan_);
@@ -101,7 +102,9 @@ class RungeKutta : public detail::StepperBase<Spins> {
   }
 
   /// Forgets the residual that rounding left at the last step.
-  void reset() requires(detail::carried_fields<Update>() > 0) {
+  void reset()
+    requires(detail::carried_fields<Update>() > 0)
+  {
     memory_.forget(this->label("::reset"));
   }
 
@@ -193,8 +196,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
       Loop loop{kernels, plan_, spins.array(), {}, {}, nullptr};
       memory_.set(loop);
       detail::for_each_task(exec, sweep_label_, plan_.parts(), spins.sites(), loop);
-    }
-    (std::make_integer_sequence<int, stages>{});
+    }(std::make_integer_sequence<int, stages>{});
     swap(spins, memory_.end());
   }
 
@@ -215,8 +217,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
     } else {
       return [&]<int... Stage>(std::integer_sequence<int, Stage...>) {
         return std::tuple(loop(std::integral_constant<int, Stage>{})...);
-      }
-      (std::make_integer_sequence<int, stages>{});
+      }(std::make_integer_sequence<int, stages>{});
     }
   }
 

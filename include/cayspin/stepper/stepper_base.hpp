@@ -28,7 +28,7 @@ class StepperBase {
   /// The region lasts as long as what is returned. `call`: the member that begins.
   template <class Exec>
   [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
-                                                      char const* call = "::step") const {
+                                                           char const* call = "::step") const {
     check_access<Exec, typename Spins::memory_space>();
     if (!(spins.lattice() == lattice_))
       throw std::invalid_argument(region_ + call + ": the spins are not of the stepper's lattice");

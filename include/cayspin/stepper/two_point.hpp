@@ -56,13 +56,16 @@ class TwoPoint : public detail::StepperBase<Spins> {
     stage(exec, generator, correct_label_, method_.correct(), spins, next_, spins, t + dt, dt);
   }
 
-  /// Forgets the step before; the next one is a first step. cayspin::integrate does it for each run.
+  /// Forgets the step before; the next one is a first step. cayspin::integrate does it for each
+  /// run.
   void reset() { last_dt_ = 0; }
 
   /// Takes `spins` as the state at t, one step of dt before the next one.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
-                double dt) requires(Method::remembers) {
+                double dt)
+    requires(Method::remembers)
+  {
     auto const region = this->begin_step(exec, spins);
     stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
     last_dt_ = dt;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/generator/orthogonal.hpp>
+#include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/stencil.hpp>
 
 // Steps from the generator at two points, one of which is kept in a field: finite differences of

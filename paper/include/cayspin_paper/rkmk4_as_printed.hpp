@@ -53,11 +53,11 @@ struct AsPrintedStage {
     } else {
       constexpr double weight = Tableau::a[Stage + 1][Stage];
       site.store(f[Stage], kept);
-      site.store(Cayley::rotate(
-                     weight == 1 ? f[Stage]
-                                 : Vec3<Value>(Value(static_cast<Real>(weight)) * f[Stage]),
-                     m0),
-                 next);
+      site.store(
+          Cayley::rotate(
+              weight == 1 ? f[Stage] : Vec3<Value>(Value(static_cast<Real>(weight)) * f[Stage]),
+              m0),
+          next);
     }
   }
 };
@@ -119,11 +119,11 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   template <int Stage, class Exec, class Generator>
   void stage(Exec const& exec, Generator const& generator, Spins const& start, Spins const& level,
              Spins const& next, double t, double dt) const {
-    auto prepared =
-        detail::prepare_term(generator, exec, level, t + tableau_type::c[Stage] * dt);
+    auto prepared = detail::prepare_term(generator, exec, level, t + tableau_type::c[Stage] * dt);
     using Kernel = detail::AsPrintedStage<Stage, Isotropy, decltype(prepared), Real>;
-    Kernel kernel{std::move(prepared), isotropy_, start.array(), level.array(), {}, {},
-                  next.output(false),  static_cast<Real>(dt)};
+    Kernel kernel{
+        std::move(prepared),  isotropy_, start.array(), level.array(), {}, {}, next.output(false),
+        static_cast<Real>(dt)};
     for (int j = 0; j < 3; ++j) kernel.generators[j] = generators_[j].array();
     if constexpr (Stage < 3) kernel.kept = generators_[Stage].output(false);
     detail::for_each_site<Real>(exec, labels_[Stage], start.layout(), kernel);

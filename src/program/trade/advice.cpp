@@ -129,7 +129,7 @@ class Search {
     }
   }
 
-  std::vector<Advice> advices() const {
+  std::vector<Advice> all_advice() const {
     std::vector<Advice> all;
     for (auto const& prospect : prospects_) {
       if (prospect.dropped) continue;
@@ -256,7 +256,7 @@ Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   Search search(pilot, horizon, request);
   search.run();
   Advised advised;
-  advised.others = search.advices();
+  advised.others = search.all_advice();
   advised.horizon = horizon.horizon;
   advised.why_shorter = horizon.why_shorter;
   if (!advised.others.empty() &&

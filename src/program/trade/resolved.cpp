@@ -35,7 +35,8 @@ std::string integrator_table(io::Integrator const& of_scene, Advice const& advic
   if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
   keys += fmt::format(",dt={:#},steps={}", dt, steps);
   for (auto const& [key, member] : io::Integrator::flags()) {
-    bool const belongs_to_method = key == "compensated" || (key == "energy_control" && candidate.method->adaptive);
+    bool const belongs_to_method =
+        key == "compensated" || (key == "energy_control" && candidate.method->adaptive);
     if (!belongs_to_method && of_scene.*member != io::Integrator{}.*member)
       keys += fmt::format(",{}={}", key, of_scene.*member);
   }
