@@ -29,7 +29,9 @@ std::filesystem::path output_file(io::Scene const& scene, RunOptions const& opti
 void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
   auto const reason = dt_warning(plan);
   if (!reason) return;
-  fmt::print(stderr, "warning: {}\n", io::scene_error(scene, "integrator.dt", *reason).what());
+  auto const error = io::scene_error(scene, "integrator.dt", *reason);
+  if (scene.integrator.refuse_unstable) throw error;
+  fmt::print(stderr, "warning: {}\n", error.what());
 }
 
 template <class Space>

@@ -87,15 +87,17 @@ struct Integrator {
   std::optional<double> tolerance;  ///< of adaptive methods, which have one
   std::optional<double> error;      ///< of method "auto": what its choice is to come to
   double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();  ///< of their own steps
-  bool compensated = false;     ///< what rounding takes off the spins goes into the next step
-  bool energy_guard = true;     ///< stops a run whose energy rises although it can only fall
-  bool energy_control = false;  ///< holds the energy of a run without damping
+  bool compensated = false;      ///< what rounding takes off the spins goes into the next step
+  bool energy_guard = true;      ///< stops a run whose energy rises although it can only fall
+  bool energy_control = false;   ///< holds the energy of a run without damping
+  bool refuse_unstable = false;  ///< a dt that `run` would warn of is an error
   std::optional<double> until_torque;
 
   static constexpr auto flags() {
     return std::to_array<Flag<Integrator>>({{"compensated", &Integrator::compensated},
                                             {"energy_guard", &Integrator::energy_guard},
-                                            {"energy_control", &Integrator::energy_control}});
+                                            {"energy_control", &Integrator::energy_control},
+                                            {"refuse_unstable", &Integrator::refuse_unstable}});
   }
 };
 

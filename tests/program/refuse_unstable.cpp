@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The key integrator.refuse_unstable: a warning of dt becomes an error, and nothing else changes.
+#include "program_test.hpp"
+
+namespace cayspin::program::test {
+namespace {
+
+class RefuseUnstable : public ProgramTest {
+ protected:
+  Outcome run_with(std::string const& dt, std::string const& key) const {
+    return start({"run", write("scene.toml", macrospin_scene()), "--quiet", "--overwrite",
+                  "--output", in_folder("out.h5"), "--set",
+                  "integrator={method=\"rkmk4\",steps=1,dt=" + dt + key + "}"});
+  }
+};
+
+TEST_F(RefuseUnstable, TurnsTheWarningIntoAnError) {
+  auto const warned = run_with("1e3", "");
+  EXPECT_TRUE(contains(warned.errors, "warning: ")) << warned.errors;
+  EXPECT_TRUE(std::filesystem::exists(in_folder("out.h5")));
+  std::filesystem::remove(in_folder("out.h5"));
+
+  auto const refused = run_with("1e3", ",refuse_unstable=true");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(is_one_line(refused.errors));
+  EXPECT_FALSE(contains(refused.errors, "warning: "));
+  auto const reason = refused.errors.substr(refused.errors.find("integrator.dt: "));
+  EXPECT_TRUE(contains(warned.errors, reason)) << refused.errors;
+  EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5")));
+}
+
+TEST_F(RefuseUnstable, TakesAStableStep) {
+  auto const outcome = run_with("0.01", ",refuse_unstable=true");
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+}
+
+}  // namespace
+}  // namespace cayspin::program::test
