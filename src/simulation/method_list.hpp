@@ -120,6 +120,10 @@ inline constexpr auto method_list = [] {
            .trials = {plain, in_chart, sigma, single_precision, compensated_single_precision}})),
       row<AsPrinted>(
           lie({.word = "rkmk4_as_printed", .order = 3, .evaluations = 4, .isotropies = a_number})),
+      row<Group<tableau::Oscillatory64>>(lie({.word = "rkmk64",
+                                              .generators = with_chart,
+                                              .isotropies = a_number,
+                                              .trials = {plain, in_chart}})),
       row<Group<tableau::Tsitouras5>>(
           lie({.word = "rkmk5",
                .compensated = true,
@@ -203,6 +207,7 @@ inline constexpr auto method_list = [] {
           {.word = "projected_rk4",
            .compensated = true,
            .trials = {plain, single_precision, compensated_single_precision}}),
+      row<Projected<tableau::Oscillatory64>>({.word = "projected_rk64", .trials = {plain}}),
       row<Projected<tableau::DormandPrince5>>({.word = "projected_rk5",
                                                .compensated = true,
                                                .trials = {plain, compensated_single_precision}}),

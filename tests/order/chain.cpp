@@ -51,6 +51,19 @@ TEST_P(ChainOrder, RkmkOfAnyTableau) {
   expect<Rkmk<Spins, tableau::Kutta3, Zero, Exponential>>("exponential", 3, slab.natural());
 }
 
+// Made for stability along the imaginary axis: up to 0.82 of dt omega per stage, RK4 0.71.
+TEST_P(ChainOrder, SixStagesOfOrder4) {
+  using tableau::Oscillatory64;
+  expect<Rkmk<Spins, Oscillatory64>>("group", 4, slab.natural());
+  expect<StereographicRungeKutta<Spins, Oscillatory64>>("chart", 4, slab.natural());
+  expect<ProjectedRungeKutta<Spins, Oscillatory64>>("projected", 4, slab.natural());
+  using Chart = StereographicRungeKutta<Spins, Oscillatory64>;
+  auto const per_stage = [](double damping) { return largest_stable_step<Chart>(1, damping) / 6; };
+  EXPECT_NEAR(per_stage(0.01), 0.819, 0.001);
+  EXPECT_NEAR(per_stage(0.05), 0.818, 0.001);
+  EXPECT_NEAR(per_stage(0.3), 0.650, 0.001);
+}
+
 TEST_P(ChainOrder, Stereographic) {
   expect<StereographicRungeKutta<Spins, tableau::Heun>>("Heun", 2, slab.natural());
   expect<StereographicRungeKutta<Spins, tableau::Kutta3>>("Kutta", 3, slab.natural());

@@ -53,6 +53,23 @@ struct ThreeEighths4 {
   static constexpr double c[4] = {0, 1. / 3, 2. / 3, 1};
 };
 
+/// Six stages of order 4 with the structure of RK4: each stage takes one slope, from the step's
+/// start. The weights solve the eight conditions of order 4 to 2e-14. Made for stability along the
+/// imaginary axis: 0.82 of dt omega per stage with a little damping, where RK4 has 0.71.
+struct Oscillatory64 {
+  static constexpr int stages = 6, order = 4;
+  static constexpr double c[6] = {0,
+                                  0.17760845716453608,
+                                  0.4975364905249184,
+                                  0.7398782940103877,
+                                  0.09508339788006245,
+                                  0.769585459698514};
+  static constexpr double a[6][6] = {{0},          {c[1]},          {0, c[2]},
+                                     {0, 0, c[3]}, {0, 0, 0, c[4]}, {0, 0, 0, 0, c[5]}};
+  static constexpr double b[6] = {-0.11008852322547563, 0.593768568034667,    -0.1808081520321058,
+                                  0.4468478584675798,   0.057412333557148615, 0.19286791519818647};
+};
+
 /// Commutator-free, order 4 (Celledoni, Marthinsen and Owren 2003): stages and end are reached by
 /// two rotations, of weights a then second_a, b then second_b, of the generators themselves.
 struct CommutatorFree4 {
