@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +17,8 @@
 // through that list.
 namespace cayspin {
 class Exchange;
-}
+class InterfacialDmi;
+}  // namespace cayspin
 
 namespace cayspin::io {
 
@@ -60,6 +63,39 @@ struct Exchange {
   }
 };
 
+/// Interfacial Dzyaloshinskii-Moriya interaction of a film.
+struct InterfacialDmi {
+  double interfacial = 0;     ///< D in the energy density D (m_n div m - m . grad m_n)
+  Triple normal = {0, 0, 1};  ///< unit vector n
+
+  static constexpr std::string_view key = "dmi";
+  static constexpr std::array parameters{
+      Parameter<InterfacialDmi>{"interfacial", &InterfacialDmi::interfacial},
+      Parameter<InterfacialDmi>{"normal", &InterfacialDmi::normal}};
+  static constexpr std::string_view formula = "E = {} (m_n div m - m.grad m_n), n = {}";
+
+  /// An upper bound: both neighbours along each axis across n.
+  template <class Lattice>
+  double field_bound(Lattice const& lattice) const {
+    return 2 * energy_magnitude(lattice);
+  }
+  template <class Lattice>
+  double energy_magnitude(Lattice const& lattice) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto const i = static_cast<std::size_t>(axis);
+      double const across = 1 - normal[i] * normal[i];  // |n x e|^2
+      if (lattice.has_neighbors(axis) && across > 0)
+        sum += std::abs(interfacial) * std::sqrt(across) / lattice.spacing[i];
+    }
+    return sum;
+  }
+  template <class Lattice, class Term = cayspin::InterfacialDmi>
+  Term term(Lattice const& lattice) const {
+    return Term(lattice, interfacial, {normal[0], normal[1], normal[2]});
+  }
+};
+
 /// H = constant (m.axis) axis.
 struct Anisotropy {
   double constant = 0;  ///< K in H = K (m.e) e
@@ -84,12 +120,13 @@ using AppliedComponent = std::variant<double, std::string>;
 /// Only terms that stand in the scene have a value.
 struct Field {
   std::optional<Exchange> exchange;
+  std::optional<InterfacialDmi> dmi;
   std::vector<Anisotropy> anisotropies;
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::optional<SlabDemagnetization> slab_demag;
   double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
 
-  static constexpr std::tuple lattice_terms{&Field::exchange};
+  static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi};
 };
 
 /// Calls work(term) for the std::optional of each lattice term.

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/lattice.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+namespace cayspin {
+
+namespace detail {
+
+/// What kernels hold of InterfacialDmi: (D / spacing) n x e of each axis e, or 0.
+class UniformInterfacialDmi {
+ public:
+  static constexpr int degree = 2;  // H is linear in the spins
+
+  UniformInterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal) {
+    double const length = std::hypot(normal.x, normal.y, normal.z);
+    if (!(length > 0) || !std::isfinite(length))
+      throw std::invalid_argument("cayspin::InterfacialDmi: the normal must not be zero");
+    Vec3<double> const axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double const scale =
+          lattice.shape[axis] > 1 ? constant / (lattice.spacing[axis] * length) : 0.0;
+      vector_[axis] = scale * cross(normal, axes[axis]);
+    }
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    auto h = zero<typename Stencil::value_type>();
+    if (acts<0>()) h = bonds<0>(stencil, h);
+    if (acts<1>()) h = bonds<1>(stencil, h);
+    if (acts<2>()) h = bonds<2>(stencil, h);
+    return h;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    return field(stencil);
+  }
+
+  /// Each site carries half of each of its bonds.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(Value(-0.5) * dot(stencil.center(), field(stencil)));
+  }
+
+ private:
+  template <std::size_t Axis>
+  KOKKOS_FORCEINLINE_FUNCTION bool acts() const {
+    return vector_[Axis].x != 0 || vector_[Axis].y != 0 || vector_[Axis].z != 0;
+  }
+
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector bonds(Stencil const& stencil, Vector const& sum) const {
+    using Value = typename Stencil::value_type;
+    auto const none = zero<Value>();
+    Vector const v{as_value<Value>(vector_[Axis].x), as_value<Value>(vector_[Axis].y),
+                   as_value<Value>(vector_[Axis].z)};
+    return sum +
+           cross(v, stencil.template next<Axis>(none) - stencil.template previous<Axis>(none));
+  }
+
+  Vec3<double> vector_[3];
+};
+
+}  // namespace detail
+
+/// Interfacial Dzyaloshinskii-Moriya interaction of a film with unit normal n, of energy density
+/// D (m_n div m - m . grad m_n). A bond from spin m along the axis e to its neighbour m' has
+/// E = (D / spacing) (m x m') . (n x e), so that H = sum over axes of
+/// (D / spacing) (n x e) x (m_next - m_previous). A missing neighbour has no bond.
+/// With Exchange(lattice, A), a free spiral along e turns by atan(D spacing / A) from site to site.
+/// Rohart and Thiaville 2013.
+class InterfacialDmi : public detail::UniformInterfacialDmi {
+ public:
+  /// `normal` is normalised. Throws std::invalid_argument when it is zero.
+  InterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal = {0, 0, 1})
+      : detail::UniformInterfacialDmi(lattice, constant, normal), lattice_(lattice) {}
+
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    require_lattice("cayspin::InterfacialDmi", lattice_, spins.lattice());
+  }
+
+  template <class Exec, class Spins>
+  detail::UniformInterfacialDmi prepare(Exec const&, Spins const&, double) const {
+    return *this;
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
+ private:
+  Lattice lattice_;
+};
+
+}  // namespace cayspin
