@@ -31,6 +31,7 @@ LIBRARY = [
 # The same for what is built on the library, relative to the repository.
 PROGRAMS = [
     ("list of methods", ["src/simulation/method_list.hpp"]),  # data that all others read
+    ("the paper's steppers", ["paper/include/"]),  # headers on the library alone
     ("reader and writer", ["src/io/", "src/hdf5/", "src/scene/", "src/trajectory/"]),
     ("simulation", ["src/simulation/"]),
     ("program", ["src/program/"]),
