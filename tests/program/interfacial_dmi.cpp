@@ -27,7 +27,8 @@ TEST_F(InterfacialDmi, AFreeSpiralTurnsByItsAngle) {
   auto const text = [&](std::string const& start) {
     return "[system]\nkind = \"llg\"\ndamping = 1\n[lattice]\nshape = [24]\nspacing = [0.5]\n"
            "[field]\nexchange = 0.75\ndmi = { interfacial = 0.6, normal = [0, 0, 1] }\n"
-           "[initial]\nexpression = [" + start +
+           "[initial]\nexpression = [" +
+           start +
            "]\n[integrator]\nmethod = \"rkmk4\"\ndt = 0.05\nsteps = 20000\n"
            "[output]\nfile = \"out.h5\"\n";
   };
@@ -36,9 +37,9 @@ TEST_F(InterfacialDmi, AFreeSpiralTurnsByItsAngle) {
     run(text("\"sin(-0.3*i)\", \"0\", \"cos(-0.3*i)\""), {"--precision", precision});
     auto const m = last_spins("out.h5");
     for (std::size_t i = 0; i + 1 < 24; ++i) {
-      double const turn = std::remainder(std::atan2(m[3 * i + 3], m[3 * i + 5]) -
-                                             std::atan2(m[3 * i], m[3 * i + 2]),
-                                         2 * std::acos(-1.0));
+      double const turn = std::remainder(
+          std::atan2(m[3 * i + 3], m[3 * i + 5]) - std::atan2(m[3 * i], m[3 * i + 2]),
+          2 * std::acos(-1.0));
       EXPECT_NEAR(turn, -std::atan(0.6 * 0.5 / 0.75), tolerance) << precision << ", bond " << i;
     }
   }
@@ -77,11 +78,11 @@ TEST_F(InterfacialDmi, UndampedRunsConserveTheEnergy) {
   for (std::string const method : {"rkmk4", "red_black4", "fx4", "series4"}) {
     double errors[2];
     for (int i = 0; i < 2; ++i) {
-      run(scene(0, "shape = [6, 4, 2]\n",
-                "exchange = 1.0\ndmi = { interfacial = 0.7, normal = [0.6, 0, 0.8] }\n"
-                "applied = [0.1, 0.2, 0.3]\n",
-                "method = \"" + method + "\"\nend = 1.0\ndt = " + (i == 0 ? "0.02" : "0.01") +
-                    "\n"),
+      run(scene(
+              0, "shape = [6, 4, 2]\n",
+              "exchange = 1.0\ndmi = { interfacial = 0.7, normal = [0.6, 0, 0.8] }\n"
+              "applied = [0.1, 0.2, 0.3]\n",
+              "method = \"" + method + "\"\nend = 1.0\ndt = " + (i == 0 ? "0.02" : "0.01") + "\n"),
           {"--overwrite"});
       auto const energy = read_dataset("out.h5", "/energy").values;
       errors[i] = std::abs(energy.back() - energy.front());
