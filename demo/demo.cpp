@@ -9,6 +9,7 @@
 #include <cayspin/field/uniaxial_anisotropy.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
+#include <cayspin/integrate.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/io/trajectory.hpp>
 #include <cayspin/observer/record.hpp>
