@@ -41,7 +41,7 @@ void expect_parts(char const* what, Generator const& generator, bool has_neighbo
   Space const exec;
   Spins const spins = random_spins(block, 7);
   auto const prepared = detail::prepare_term(generator, exec, spins, t);
-  auto const local = detail::prepare_local_generator(generator, exec, spins, t);
+  auto const local = detail::prepare_local(generator, exec, spins, t);
   double largest = 0;
   for (double const off : evaluated(exec, Parts{prepared, local, true}, spins))
     largest = std::max(largest, std::abs(off));
