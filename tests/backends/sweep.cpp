@@ -131,7 +131,7 @@ TYPED_TEST(Sweep, LeavesOffUnderANonlocalField) {
 }
 
 template <class Stepper>
-void expect_chosen_and_foretold(int fields_of_sweep, std::size_t fields_of_pass) {
+void expect_chosen_and_predicted(int fields_of_sweep, std::size_t fields_of_pass) {
   using Field = typename Stepper::spins_type;
   int const threads = Threaded().concurrency();
   for (auto const& [n, path] : {std::pair(8, Path::pass), std::pair(150, Path::sweep)}) {
@@ -146,10 +146,10 @@ void expect_chosen_and_foretold(int fields_of_sweep, std::size_t fields_of_pass)
   }
 }
 
-TYPED_TEST(Sweep, ChosenAndForetoldBySize) {
+TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
   using Field = typename TestFixture::Field;
-  expect_chosen_and_foretold<Rkmk4<Field>>(2, 4);
-  expect_chosen_and_foretold<Compensated<Rkmk4<Field>>>(3, 5);
+  expect_chosen_and_predicted<Rkmk4<Field>>(2, 4);
+  expect_chosen_and_predicted<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
 TEST(SweepRefusals, OneStageAndFewPeriodicRows) {

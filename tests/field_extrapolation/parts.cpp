@@ -104,7 +104,7 @@ TEST(LocalPart, OfANonlocalFieldIsNone) {
   FieldExtrapolation3 stepper(spins);
   advance(stepper, generator, spins, 0.01, 10);
   EXPECT_EQ(calls, 2 * 5 + 8);
-  // A field along the spins moves nothing, but for what it is off when foretold.
+  // A field along the spins moves nothing, but for what it is off when predicted.
   double const apart =
       largest_distance(spins, run<FieldExtrapolation3<Spins>>(without, start, 0.01, 10));
   EXPECT_GT(apart, 1e-12);

@@ -77,7 +77,7 @@ void expect_limits(char const* method) {
       auto const expect = [&](char const* what, auto const& of, double sigma, double along) {
         double const limit = largest_stable_step<Stepper>(bound, damping, true, along);
         double const found = bisected<Stepper>(of, start, limit, sigma);
-        std::printf("    %-10s %-6s damping %-4g %-18s limit %.6f, foretold %.6f\n", method, name,
+        std::printf("    %-10s %-6s damping %-4g %-18s limit %.6f, predicted %.6f\n", method, name,
                     damping, what, found, limit);
         EXPECT_GT(found / limit, 0.995) << method << ' ' << name << ' ' << what;
         // With a sigma another mode may be the first to grow.
