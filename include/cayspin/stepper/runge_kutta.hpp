@@ -122,10 +122,10 @@ class RungeKutta : public detail::StepperBase<Spins> {
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
     auto const region = this->begin_step(exec, spins, "::batch");
+    auto const prepared = detail::prepare_term(generator, exec, spins, t);
     if (!takes_batches(exec, generator, spins))
       throw std::invalid_argument(
           this->label("::batch: these steps have to be taken one by one (takes_batches)"));
-    auto const prepared = detail::prepare_term(generator, exec, spins, t);
     constexpr int steps = stages == 1 ? 2 : 1;  // of one pass through the kernels
     detail::repeat_on_calling_thread(batch_label_, count / steps,
                                      loops_of_steps(prepared, spins, dt));
