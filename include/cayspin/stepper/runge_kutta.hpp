@@ -138,7 +138,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
 
   static constexpr bool has_sweep =
       stages > 1 &&
-      stages <= detail::SweepPlan::most_stages&& detail::is_host_execution<DefaultExec>;
+      (stages <= detail::SweepPlan::most_stages) && detail::is_host_execution<DefaultExec>;
 
   static bool can_sweep(detail::RowLayout const& layout) {
     return has_sweep && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
