@@ -18,33 +18,32 @@
 // as far as these are the stepper's choice; Chart where the method takes the generator "tangent".
 namespace cayspin::simulation::family {
 
+/// A tableau's steps in the stereographic chart.
 template <class Tableau>
-struct Group {
-  template <class Spins, class Isotropy, class Rotation>
-  using Stepper = Rkmk<Spins, Tableau, Isotropy, Rotation>;
+struct InChart {
   template <class Spins>
   using Chart = StereographicRungeKutta<Spins, Tableau>;
 };
+
+template <class Tableau>
+struct Group : InChart<Tableau> {
+  template <class Spins, class Isotropy, class Rotation>
+  using Stepper = Rkmk<Spins, Tableau, Isotropy, Rotation>;
+};
 template <>
-struct Group<tableau::Euler> {
+struct Group<tableau::Euler> : InChart<tableau::Euler> {
   template <class Spins, class Isotropy, class Rotation>
   using Stepper = LieEuler<Spins, Isotropy, Rotation>;
-  template <class Spins>
-  using Chart = StereographicRungeKutta<Spins, tableau::Euler>;
 };
 template <>
-struct Group<tableau::Heun> {
+struct Group<tableau::Heun> : InChart<tableau::Heun> {
   template <class Spins, class Isotropy, class Rotation>
   using Stepper = LieHeun<Spins, Isotropy, Rotation>;
-  template <class Spins>
-  using Chart = StereographicRungeKutta<Spins, tableau::Heun>;
 };
 template <>
-struct Group<tableau::Classical4> {
+struct Group<tableau::Classical4> : InChart<tableau::Classical4> {
   template <class Spins, class Isotropy, class Rotation>
   using Stepper = Rkmk4<Spins, Isotropy, Rotation>;
-  template <class Spins>
-  using Chart = StereographicRungeKutta<Spins, tableau::Classical4>;
 };
 
 template <class Tableau>

@@ -55,6 +55,7 @@ KOKKOS_FORCEINLINE_FUNCTION void find_arrays(Step const& step,
   arrays.next = step.template next<stage>();
   if constexpr (Flow::carried > 0) {
     constexpr std::size_t carried = Flow::carried;
+    static_assert(carried <= StageArrays<Kind, Flow::stages>::most_carried);
     for (std::size_t i = 0; i < carried; ++i) {
       arrays.carried_before[i] = step.carried_before(i);
       arrays.carried[i] = step.carried(i);
