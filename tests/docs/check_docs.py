@@ -76,6 +76,10 @@ def page_words(pages):
                 yield page.path, number, f'"{word}": write "{instead}"'
 
 
+def holds_anything(pattern):
+    return any(os.path.isfile(path) or os.listdir(path) for path in glob.glob(pattern))
+
+
 def missing_files(root, pages):
     folders = {name for name in os.listdir(root) if os.path.isdir(os.path.join(root, name))}
     folders |= {"include", "src", "tests", "docs", "paper"}
@@ -89,7 +93,7 @@ def missing_files(root, pages):
             elif "/" in code and (first not in folders or first in ("build", ".deps", "reproduction")):
                 continue
             beside = os.path.join(root, os.path.dirname(page.path), code)
-            if not glob.glob(os.path.join(root, code)) and not glob.glob(beside):
+            if not holds_anything(os.path.join(root, code)) and not holds_anything(beside):
                 yield page.path, number, f"`{code}` is not in the repository"
 
 

@@ -31,10 +31,10 @@ struct StageArrays {
   typename Kind::Output carried[most_carried];        // left by this step
 };
 
-/// Finds the arrays of the stage that Flow describes. `step` knows where each of them lies.
+/// Finds the arrays of the stage that Flow describes, on the host. `step` knows where each of them
+/// lies.
 template <class Flow, class Kind, class Step>
-KOKKOS_FORCEINLINE_FUNCTION void find_arrays(Step const& step,
-                                             StageArrays<Kind, Flow::stages>& arrays) {
+void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
   constexpr int stage = Flow::stage;
   if constexpr (Flow::reads_start) arrays.start = step.start();
   arrays.level = step.template level<stage>();

@@ -3,7 +3,7 @@
 
 #include <cayspin/stage/update.hpp>
 
-#include <iterator>
+#include <array>
 
 namespace cayspin {
 
@@ -12,7 +12,7 @@ namespace update {
 /// Update with compensated sums: the rounding error of a step is added to the next step.
 template <class Update>
 struct Compensated : Update {
-  static constexpr char const* carried[] = {"residual"};  // names of the fields that a step leaves
+  static constexpr std::array carried{"residual"};  // names of the fields that a step leaves
   static constexpr bool has_chart = false;  // increments from rounded spins are too inexact
 };
 
@@ -23,7 +23,7 @@ namespace detail {
 /// Fields that the end of a step leaves for the end of the next one.
 template <class Update>
 constexpr int carried_fields() {
-  if constexpr (requires { Update::carried; }) return static_cast<int>(std::size(Update::carried));
+  if constexpr (requires { Update::carried; }) return static_cast<int>(Update::carried.size());
   return 0;
 }
 
