@@ -7,7 +7,7 @@
 namespace cayspin::paper {
 namespace {
 
-std::string number(double value) {
+std::string short_text(double value) {
   if (std::isnan(value)) return "-";
   double const size = std::abs(value);
   return size == 0 || (size >= 0.01 && size < 1000) ? fmt::format("{:.4g}", value)
@@ -24,7 +24,7 @@ void Comparison::begin(int number, std::string_view where, std::string_view prin
 }
 
 void Comparison::row(std::string_view quantity, double printed, double corrected) {
-  fmt::print("   {:<72} {:>10} {:>10}\n", quantity, number(printed), number(corrected));
+  fmt::print("   {:<72} {:>10} {:>10}\n", quantity, short_text(printed), short_text(corrected));
   file_.row(number_, quantity, printed, corrected);
 }
 

@@ -8,7 +8,7 @@
 namespace cayspin::paper {
 namespace {
 
-constexpr double end = 10;
+constexpr double end_time = 10;
 
 // <A', A x m> along the exact flow, of A = -I^-1 m and of A_o (they differ).
 double default_product(Body const& body, Vector const& m) {
@@ -47,7 +47,7 @@ Vector printed_norm(Body const& body, Vector const& m) {
 auto energy_error(Form form) {
   return [=](double dt) {
     return [=](Body const& body) {
-      return take_steps(body, std::llround(end / dt),
+      return take_steps(body, std::llround(end_time / dt),
                         [&](Vector const& m) { return dt * form(body, m); })
           .energy_error;
     };
@@ -84,7 +84,7 @@ auto remainder(double dt) {
 auto implicit_energy_error(double sign) {
   return [=](double dt) {
     return [=](Body const& body) {
-      return take_steps(body, std::llround(end / dt),
+      return take_steps(body, std::llround(end_time / dt),
                         [&](Vector const& m) {
                           Vector xi = default_generator(body, m);
                           for (int i = 0; i < 30; ++i)
@@ -138,14 +138,15 @@ void erratum_sigma(Comparison& comparison) {
                      median_of(bodies, local_error(form, dt)),
                      median_of(bodies, local_error(corrected, dt)));
   auto const library = [&](double dt) {
-    return run_ensemble(bodies, euler_cor, dt, end).energy_errors;
+    return run_ensemble(bodies, euler_cor, dt, end_time).energy_errors;
   };
   auto const coarse = library(coarse_dt);
   double const order =
       quantile(orders(coarse, library(fine_dt), coarse_dt / fine_dt, order_round_off), 0.5);
   for (auto const& [name, form] : variants) {
-    comparison.row(fmt::format("energy error over [0, {:g}], dt = {:g}: {}", end, coarse_dt, name),
-                   median_of(bodies, energy_error(form)(coarse_dt)), quantile(coarse, 0.5));
+    comparison.row(
+        fmt::format("energy error over [0, {:g}], dt = {:g}: {}", end_time, coarse_dt, name),
+        median_of(bodies, energy_error(form)(coarse_dt)), quantile(coarse, 0.5));
     comparison.row(fmt::format("energy order, dt {:g} to {:g}: {}", coarse_dt, fine_dt, name),
                    median_order(bodies, energy_error(form)), order);
   }

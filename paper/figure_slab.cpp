@@ -12,7 +12,7 @@ namespace {
 
 constexpr double between_looks = 0.05;
 
-struct Curve {
+struct SlabCurve {
   std::string_view name;
   SlabPath path;
 };
@@ -33,7 +33,7 @@ void figure_slab(Context const& context, Slab const& slab, std::string_view labe
   fmt::print("\n  {}: slab of 100 spins, applied ({:g}, {:g}, {:g}), {}damping {:g}, [0, {:g}]\n",
              label, x, y, z, slab.precession ? "" : "overdamped, ", slab.damping, slab.end);
   auto const reference = run_slab(slab, rkmk4_def, 0.0025, looks);
-  Curve const curves[]{
+  SlabCurve const curves[]{
       {"Euler, dt = 0.0001", run_slab(slab, choose("classical_euler"), 0.0001, looks)},
       {"Euler, dt = 0.01", run_slab(slab, choose("classical_euler"), 0.01, looks)},
       {"geometric Euler, optimal sigma, dt = 0.01",

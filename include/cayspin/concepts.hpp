@@ -24,7 +24,7 @@ template <class Spins>
 using ExecutionOf = typename Spins::memory_space::execution_space;
 
 template <class Spins>
-using StencilOf = Stencil<Site<Pack<typename Spins::value_type>, true>, typename Spins::value_type>;
+using StencilOf = Stencil<Site<Pack<typename Spins::value_type>>, typename Spins::value_type>;
 
 template <class Term, class Spins>
 using PreparedFor =

@@ -11,6 +11,7 @@
 #include <concepts>
 #include <cstdint>
 #include <stdexcept>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -65,19 +66,6 @@ template <class Stepper, class Exec, class Generator, class Spins>
 concept has_batches = requires(Stepper& stepper, Exec const& exec, Generator const& generator,
                                Spins& spins) { stepper.takes_batches(exec, generator, spins); };
 
-/// Steps from `number` to the next one that an observer, or the end, waits for; at most 1000, so
-/// that what an observer asks the world outside is asked again soon.
-template <class... Observers>
-std::int64_t steps_until_due(Times const& times, std::int64_t number,
-                             Observers const&... observers) {
-  std::int64_t const most = std::min<std::int64_t>(times.steps - number, 1000);
-  for (std::int64_t steps = 1; steps < most; ++steps) {
-    [[maybe_unused]] Step const then{number + steps, times.at(number + steps), times.dt, false};
-    if ((is_due(observers, then) || ...)) return steps;
-  }
-  return most;
-}
-
 template <class Exec, class Observer, class Spins>
 Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const& spins) {
   static_assert(std::is_invocable_v<Observer&, Exec const&, Step const&, Spins const&>,
@@ -93,6 +81,96 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
     return Next::proceed;
   }
 }
+
+/// An integration without its types: the loop is compiled once for all of them.
+class Integration {
+ public:
+  virtual void fence(char const* label) = 0;
+  virtual bool is_due(Step const& step) = 0;  // for any observer
+  virtual Next observe(Step const& step) = 0;
+  virtual void take_step(Step const& from) = 0;
+  virtual void take_batch(Step const& from, std::int64_t steps) = 0;
+
+  /// Takes several steps at once if it `batches`.
+  Summary run(Times const& times, bool batches) {
+    Summary summary;
+    fence("cayspin::integrate: begin");
+    Kokkos::Timer clock;
+    for (std::int64_t number = times.first;;) {
+      Step const now{number, times.at(number), times.dt, number == times.steps};
+      if (now.last || is_due(now)) {
+        fence("cayspin::integrate: observers");
+        summary.step_seconds += clock.seconds();
+        bool const stop = observe(now) == Next::stop;
+        if (now.last || stop) {
+          summary.stopped = stop && !now.last;
+          return summary;
+        }
+        clock.reset();
+      }
+      std::int64_t const steps = batches ? steps_until_due(times, number) : 1;
+      if (steps > 1)
+        take_batch(now, steps);
+      else
+        take_step(now);
+      number += steps;
+      summary.steps += steps;
+    }
+  }
+
+ protected:
+  ~Integration() = default;
+
+ private:
+  /// Steps from `number` to the next one that an observer, or the end, waits for; at most 1000, so
+  /// that what an observer asks the world outside is asked again soon.
+  std::int64_t steps_until_due(Times const& times, std::int64_t number) {
+    std::int64_t const most = std::min<std::int64_t>(times.steps - number, 1000);
+    for (std::int64_t steps = 1; steps < most; ++steps)
+      if (is_due({number + steps, times.at(number + steps), times.dt, false})) return steps;
+    return most;
+  }
+};
+
+template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
+class IntegrationOf final : public Integration {
+ public:
+  IntegrationOf(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
+                Observers&... observers)
+      : exec_(exec),
+        stepper_(stepper),
+        generator_(generator),
+        spins_(spins),
+        observers_(observers...) {}
+
+  void fence(char const* label) override { exec_.fence(label); }
+  bool is_due(Step const& step) override {
+    return std::apply([&](auto&... one) { return (detail::is_due(one, step) || ...); }, observers_);
+  }
+  Next observe(Step const& step) override {
+    bool stop = false;
+    std::apply(
+        [&](auto&... one) {
+          ((stop = detail::observe(exec_, one, step, spins_) == Next::stop || stop), ...);
+        },
+        observers_);
+    return stop ? Next::stop : Next::proceed;
+  }
+  void take_step(Step const& from) override {
+    stepper_.step(exec_, generator_, spins_, from.time, from.dt);
+  }
+  void take_batch([[maybe_unused]] Step const& from, [[maybe_unused]] std::int64_t steps) override {
+    if constexpr (has_batches<Stepper, Exec, Generator, Spins>)
+      stepper_.batch(exec_, generator_, spins_, from.time, from.dt, steps);
+  }
+
+ private:
+  Exec const& exec_;
+  Stepper& stepper_;
+  Generator const& generator_;
+  Spins& spins_;
+  std::tuple<Observers&...> observers_;
+};
 
 }  // namespace detail
 
@@ -121,8 +199,6 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
 
-  Summary summary;
-  Kokkos::Timer clock;
   if constexpr (requires { stepper.reset(); }) stepper.reset();
   std::int64_t evaluations_before = 0;
   if constexpr (detail::counts_evaluations<Stepper>)
@@ -133,32 +209,13 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   bool batches = false;
   if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>)
     batches = stepper.takes_batches(exec, generator, spins);
-  exec.fence("cayspin::integrate: begin");
-  clock.reset();
-  for (std::int64_t number = times.first;;) {
-    Step const now{number, times.at(number), times.dt, number == times.steps};
-    if ((detail::is_due(observers, now) || ...) || now.last) {
-      exec.fence("cayspin::integrate: observers");
-      summary.step_seconds += clock.seconds();
-      bool stop = false;
-      ((stop = detail::observe(exec, observers, now, spins) == Next::stop || stop), ...);
-      if (now.last || stop) {
-        summary.stopped = stop && !now.last;
-        break;
-      }
-      clock.reset();
-    }
-    std::int64_t const steps = batches ? detail::steps_until_due(times, number, observers...) : 1;
-    if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>) {
-      if (steps > 1) stepper.batch(exec, generator, spins, now.time, times.dt, steps);
-    }
-    if (steps == 1) stepper.step(exec, generator, spins, now.time, times.dt);
-    number += steps;
-    summary.steps += steps;
-    summary.evaluations += steps * evaluations_per_step<Stepper>().value_or(0);
-  }
+  detail::IntegrationOf<Exec, Stepper, Generator, Spins, std::remove_reference_t<Observers>...>
+  integration(exec, stepper, generator, spins, observers...);
+  Summary summary = integration.run(times, batches);
   if constexpr (detail::counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;
+  else
+    summary.evaluations = summary.steps * evaluations_per_step<Stepper>().value_or(0);
   if constexpr (AdaptiveStepper<Stepper>) {
     summary.own_steps = stepper.accepted_steps() - own_before.first;
     summary.rejected = stepper.rejected_steps() - own_before.second;

@@ -5,7 +5,10 @@
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/vec3.hpp>
 
+#include <array>
 #include <concepts>
+#include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -162,6 +165,20 @@ inline void require_lattice(char const* who, Lattice const& lattice, Lattice con
            : ": made for a lattice of " + sites(lattice) + " sites, and the spins are on " +
                  sites(spins)));
 }
+
+namespace detail {
+
+/// Fields "name_1", "name_2", ..
+template <class Field, std::size_t Count>
+CAYSPIN_DETAIL_NOINLINE std::array<Field, Count> numbered_fields(std::string const& name,
+                                                                 Lattice const& lattice) {
+  std::array<Field, Count> fields;
+  for (std::size_t i = 0; i < Count; ++i)
+    fields[i] = Field(name + "_" + std::to_string(i + 1), lattice);
+  return fields;
+}
+
+}  // namespace detail
 
 /// One number per site, for example a coefficient.
 template <std::floating_point Real, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>

@@ -16,19 +16,23 @@ class Stencil {
   using vector_type = Vec3<value_type>;
 
   KOKKOS_FORCEINLINE_FUNCTION Stencil(Site const& site, Spins const& spins)
-      : site_(site), spins_(spins), center_(site.load_center(spins)) {}
+      : site_(site),
+        spins_(spins),
+        center_(site.load_center(spins)),
+        beside_{site.template neighbor<0, 0>(spins, center_),
+                site.template neighbor<0, 1>(spins, center_)} {}
 
   KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return center_; }
 
   /// The neighbour at index - 1; the spin itself where there is none.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type previous() const {
-    return site_.template neighbor<Axis, 0>(spins_, center_);
+    return neighbor<Axis, 0>();
   }
   /// The neighbour at index + 1; the spin itself where there is none.
   template <int Axis>
   KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
-    return site_.template neighbor<Axis, 1>(spins_, center_);
+    return neighbor<Axis, 1>();
   }
 
   /// The same with `missing` for a neighbour where there is none.
@@ -46,16 +50,26 @@ class Stencil {
 
  private:
   template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION vector_type neighbor() const {
+    if constexpr (Axis == 0)
+      return beside_[Direction];
+    else
+      return site_.template neighbor<Axis, Direction>(spins_, center_);
+  }
+  template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type neighbor_or(vector_type const& missing) const {
-    if constexpr (Axis > 0) {
-      if (!site_.row().template has_neighbor<Axis, Direction>()) return missing;
-    }
-    return site_.template neighbor<Axis, Direction>(spins_, missing);
+    if constexpr (Axis == 0)
+      return site_.template unless_past_end<Direction>(beside_[Direction], missing);
+    else
+      return site_.row().template has_neighbor<Axis, Direction>() ? neighbor<Axis, Direction>()
+                                                                  : missing;
   }
 
   Site const& site_;
   Spins const& spins_;
   vector_type center_;
+  // Along x, where the ends of rows make a branch: once for all terms. Unused ones cost nothing.
+  vector_type beside_[2];
 };
 
 /// The neighbour at index + 1 along an axis (0, 1, 2 for x, y, z); the spin itself, or `missing`,

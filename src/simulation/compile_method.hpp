@@ -90,7 +90,7 @@ class Compiled {
   }
 
   template <class Of, class Spins>
-  static Of make(Spins const& like, MethodOptions const& options) {
+  CAYSPIN_DETAIL_NOINLINE static Of make(Spins const& like, MethodOptions const& options) {
     if constexpr (std::is_constructible_v<Of, Spins, StepOptions, Isotropy>)
       return Of(like, options.steps, isotropy(options));
     else if constexpr (std::is_constructible_v<Of, Spins, StepOptions>)

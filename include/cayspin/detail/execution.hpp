@@ -8,6 +8,12 @@
 #include <string>
 #include <type_traits>
 
+#if defined(__GNUC__)
+#define CAYSPIN_DETAIL_NOINLINE [[gnu::noinline]]
+#else
+#define CAYSPIN_DETAIL_NOINLINE
+#endif
+
 namespace cayspin::detail {
 
 /// Host spaces run over rows with packs, device spaces with one thread per site.
@@ -57,24 +63,30 @@ struct HostTask {
   }
 };
 
+using TaskIndex = Kokkos::IndexType<std::int64_t>;
+
+template <class Exec>
+CAYSPIN_DETAIL_NOINLINE void run_tasks(Exec const& exec, std::string const& label,
+                                       std::int64_t count, std::int64_t sites,
+                                       HostTask const& task) {
+#if defined(KOKKOS_ENABLE_SERIAL)
+  if (runs_on_calling_thread<Exec>(sites)) {
+    Kokkos::parallel_for(label, Kokkos::RangePolicy<Kokkos::Serial, TaskIndex>(0, count), task);
+    return;
+  }
+#endif
+  Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), task);
+}
+
 /// Runs body(0) .. body(count - 1) on the threads of a host space. Small kernels run on the calling
 /// thread, when the space finishes a kernel before the launch returns.
 template <class Exec, class Body>
 void for_each_task(Exec const& exec, std::string const& label, std::int64_t count,
                    std::int64_t sites, Body const& body) {
-  using Index = Kokkos::IndexType<std::int64_t>;
-  if constexpr (is_synchronous<Exec>) {
-    auto const task = HostTask::of(body);
-#if defined(KOKKOS_ENABLE_SERIAL)
-    if (runs_on_calling_thread<Exec>(sites)) {
-      Kokkos::parallel_for(label, Kokkos::RangePolicy<Kokkos::Serial, Index>(0, count), task);
-      return;
-    }
-#endif
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Index>(exec, 0, count), task);
-  } else {
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, Index>(exec, 0, count), body);
-  }
+  if constexpr (is_synchronous<Exec>)
+    run_tasks(exec, label, count, sites, HostTask::of(body));
+  else
+    Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), body);
 }
 
 template <class Exec, class MemorySpace>

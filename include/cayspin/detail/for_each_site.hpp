@@ -34,26 +34,12 @@ template <class Value, class Functor>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(Row const& row, std::int32_t begin, std::int32_t end,
                                                Functor&& functor) {
   constexpr std::int32_t lanes = lanes_of<Value>;
-  // The ends of the row share one instance of the functor: kernels are large, and compile slowly.
-  std::int32_t const last = (row.nx + lanes - 1) / lanes - 1;
-  constexpr std::int32_t at_once = takes_pairs<std::remove_cvref_t<Functor>> ? 2 : 1;
-  std::int32_t const inner_end = Kokkos::min(end, last);
-  std::int32_t pack = Kokkos::max<std::int32_t>(begin, 1);
-  // A pack that is left over is handled with the ends.
-  std::int32_t const odd =
-      at_once == 2 && pack < inner_end && (inner_end - pack) % 2 == 1 ? pack++ : last;
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-#pragma GCC unroll 1
-#endif
-  for (std::int32_t edge = 0; edge <= last; edge = edge < odd ? odd : Kokkos::max(last, edge + 1))
-    if (begin <= edge && edge < end) functor(Site<Value, true>(row, edge * lanes));
-  for (; pack < inner_end; pack += at_once) {
-    Site<Value, false> const site(row, pack * lanes);
-    if constexpr (at_once == 2)
-      functor(site, Site<Value, false>(row, (pack + 1) * lanes));
-    else
-      functor(site);
+  std::int32_t pack = begin;
+  if constexpr (takes_pairs<std::remove_cvref_t<Functor>>) {
+    for (; pack + 1 < end; pack += 2)
+      functor(Site<Value>(row, pack * lanes), Site<Value>(row, (pack + 1) * lanes));
   }
+  for (; pack < end; ++pack) functor(Site<Value>(row, pack * lanes));
 }
 
 /// Rows y_begin .. y_end - 1 of plane z, packs pack_begin .. pack_end - 1 of each.
@@ -102,12 +88,6 @@ KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(RowLayout const& layout, std::int
                        static_cast<std::int32_t>(packs * (part + 1) / per_row), functor);
 }
 
-#if defined(__GNUC__)
-#define CAYSPIN_DETAIL_NOINLINE [[gnu::noinline]]
-#else
-#define CAYSPIN_DETAIL_NOINLINE
-#endif
-
 /// The host loop. One compiled body serves all host spaces, so their results have the same bits.
 template <class Real, class Functor>
 struct RowLoop {
@@ -132,7 +112,7 @@ struct SiteLoop {
 
   KOKKOS_FUNCTION void operator()(std::int64_t site) const {
     Row const row(layout, site / layout.nx);
-    functor(Site<Real, true>(row, static_cast<std::int32_t>(site % layout.nx)));
+    functor(Site<Real>(row, static_cast<std::int32_t>(site % layout.nx)));
   }
 };
 

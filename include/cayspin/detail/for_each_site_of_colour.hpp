@@ -22,7 +22,7 @@ enum class RowsOf : std::int32_t { even = 0, odd = 1, both = 2 };
 
 template <class Value, bool AtEdge>
 using PackOfColour =
-    std::conditional_t<lanes_of<Value> == 1, Site<Value, true>, ColourSite<Value, AtEdge>>;
+    std::conditional_t<lanes_of<Value> == 1, Site<Value>, ColourSite<Value, AtEdge>>;
 
 /// The host loop. A functor that takes pairs is called with two packs, which may lie in different
 /// rows. A single pack that is left over is passed twice.
@@ -107,7 +107,7 @@ struct ColourSiteLoop {
     Row const row(layout, index / half);
     auto const x =
         static_cast<std::int32_t>(2 * (index % half)) + ((row.y + row.z + functor.colour) & 1);
-    if (x < layout.nx) functor(Site<Real, true>(row, x));
+    if (x < layout.nx) functor(Site<Real>(row, x));
   }
 };
 

@@ -71,13 +71,12 @@ struct Collect {
   Functor const& functor;
   Value total[std::size_t{Count}];
 
-  template <bool AtEdge>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site<Value, AtEdge> const& site) {
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site<Value> const& site) {
     Value value[std::size_t{Count}];
     functor(site, value);
-    if constexpr (AtEdge) {
-      auto const is_site = Value(0.5) < site.inside();
-      for (int i = 0; i < Count; ++i) value[i] = select<Value>(is_site, value[i], Value(0.0));
+    if (site.is_partial()) [[unlikely]] {
+      auto const is_site = site.inside();
+      unrolled<Count>([&](auto i) { value[i()] = select<Value>(is_site, value[i()], Value(0.0)); });
     }
     combine_values<Combine, Count>(total, value);
   }
@@ -121,7 +120,7 @@ struct ReduceOnDevice {
   KOKKOS_FUNCTION void operator()(std::int64_t index, value_type& total) const {
     Row const row(layout, index / layout.nx);
     double value[std::size_t{Count}];
-    functor(Site<double, true>(row, static_cast<std::int32_t>(index % layout.nx)), value);
+    functor(Site<double>(row, static_cast<std::int32_t>(index % layout.nx)), value);
     combine_values<Combine, Count>(total.values, value);
   }
   KOKKOS_FUNCTION void init(value_type& total) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/vec3.hpp>
 
@@ -76,8 +77,8 @@ struct PlaneRows {
 
 /// Plane z of a field. `low` and `high` lead to the same rows one period away.
 template <class Real>
-PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array, RowLayout const& layout,
-                           std::int32_t z) {
+CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array,
+                                                   RowLayout const& layout, std::int32_t z) {
   Real* const plane = array.data + std::ptrdiff_t(z) * layout.ny * layout.pitch;
   return {plane + layout.ny * layout.pitch, plane, plane, 0, layout.ny, layout.pitch, array.stride};
 }

@@ -9,9 +9,9 @@
 namespace cayspin::detail {
 
 /// Neighbouring sites of a row, as many as Value has lanes.
-template <class Value, bool AtEdge>
-class Site : public SitesOfRow<Value, AtEdge, 1> {
-  using Base = SitesOfRow<Value, AtEdge, 1>;
+template <class Value>
+class Site : public SitesOfRow<Value, true, 1> {
+  using Base = SitesOfRow<Value, true, 1>;
   using Base::row_, Base::x_;
 
  public:
@@ -21,14 +21,11 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return x_; }
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t offset() const { return row_.offset + x_; }
 
-  /// 1 on lanes that are sites, 0 on lanes past the end of the row.
-  KOKKOS_FORCEINLINE_FUNCTION Value inside() const {
-    if constexpr (!AtEdge || lanes == 1) {
-      return Value(scalar_type(1));
-    } else {
-      return select<Value>(lane_numbers<Value>() < Value(static_cast<scalar_type>(row_.nx - x_)),
-                           Value(scalar_type(1)), Value(scalar_type(0)));
-    }
+  /// Are there lanes past the end of the row?
+  KOKKOS_FORCEINLINE_FUNCTION bool is_partial() const { return row_.nx - x_ < lanes; }
+  /// The lanes that are sites.
+  KOKKOS_FORCEINLINE_FUNCTION auto inside() const {
+    return lane_numbers<Value>() < Value(static_cast<scalar_type>(row_.nx - x_));
   }
 
   template <class Real>
@@ -120,12 +117,10 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
       return detail::load<Value>(array.data + offset() + row_.to_neighbor[Axis - 1][Direction]);
     } else {
       Value const found = detail::load<Value>(array.data + offset() + (Direction == 0 ? -1 : 1));
-      if constexpr (AtEdge) {
-        if (this->template holds_end<Direction>())
-          return select<Value>(this->template is_end<Direction>(),
-                               this->template past_end<Direction>(array.data + row_.offset, center),
-                               found);
-      }
+      if (this->template holds_end<Direction>()) [[unlikely]]
+        return select<Value>(this->template is_end<Direction>(),
+                             this->template past_end<Direction>(array.data + row_.offset, center),
+                             found);
       return found;
     }
   }
@@ -144,15 +139,13 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> beside(Real const* row, std::ptrdiff_t stride,
                                                  Vec3<Value> const& center) const {
     Vec3<Value> found = load_at(row + (Direction == 0 ? -1 : 1), stride);
-    if constexpr (AtEdge) {
-      if (this->template holds_end<Direction>()) {
-        auto const end = this->template is_end<Direction>();
-        found = {
-            select<Value>(end, this->template past_end<Direction>(row, center.x), found.x),
-            select<Value>(end, this->template past_end<Direction>(row + stride, center.y), found.y),
-            select<Value>(end, this->template past_end<Direction>(row + 2 * stride, center.z),
-                          found.z)};
-      }
+    if (this->template holds_end<Direction>()) [[unlikely]] {
+      auto const end = this->template is_end<Direction>();
+      found = {
+          select<Value>(end, this->template past_end<Direction>(row, center.x), found.x),
+          select<Value>(end, this->template past_end<Direction>(row + stride, center.y), found.y),
+          select<Value>(end, this->template past_end<Direction>(row + 2 * stride, center.z),
+                        found.z)};
     }
     return found;
   }

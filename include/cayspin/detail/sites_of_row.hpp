@@ -66,7 +66,7 @@ class SitesOfRow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
                                                           Vec3<Value> const& missing) const {
     if constexpr (AtEdge) {
-      if (!row_.periodic_x && holds_end<Direction>())
+      if (!row_.periodic_x && holds_end<Direction>()) [[unlikely]]
         return select<Value>(is_end<Direction>(), missing, found);
     }
     return found;
@@ -76,6 +76,7 @@ class SitesOfRow {
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
     std::int32_t const way = to_end<Direction>();
+    if constexpr (Spacing == 1) return Direction == 0 ? way == 0 : way < lanes;
     return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
   }
   /// The lane at the end of the row, if these sites hold it.

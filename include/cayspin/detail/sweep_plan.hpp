@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/detail/rows.hpp>
 
@@ -156,7 +157,7 @@ struct SweepPart {
   }
 
   /// Plane z of a buffer.
-  PlaneRows<Real> rows(int number, std::int32_t at_z) const {
+  CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> rows(int number, std::int32_t at_z) const {
     SweepBuffer const& buffer = plan.buffer[number];
     std::int32_t const seam_rows = buffer.planes - 1, from_begin = at_z - z.low(0);
     std::int32_t const first = low(buffer.producer);

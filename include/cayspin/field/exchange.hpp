@@ -17,10 +17,12 @@ class UniformExchange {
   static constexpr int degree = 2;  // H is linear in the spins
 
   UniformExchange(Lattice const& lattice, double constant) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       coefficient_[axis] = lattice.shape[axis] > 1
                                ? constant / (lattice.spacing[axis] * lattice.spacing[axis])
                                : 0.0;
+      couples_[axis] = coefficient_[axis] != 0;
+    }
   }
 
   template <class Stencil>
@@ -28,9 +30,9 @@ class UniformExchange {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto h = zero<Value>();
-    if (coefficient_[0] != 0) h = second_difference<0>(stencil, h);
-    if (coefficient_[1] != 0) h = second_difference<1>(stencil, h);
-    if (coefficient_[2] != 0) h = second_difference<2>(stencil, h);
+    if (couples_[0]) h = second_difference<0>(stencil, h);
+    if (couples_[1]) h = second_difference<1>(stencil, h);
+    if (couples_[2]) h = second_difference<2>(stencil, h);
     return h;
   }
 
@@ -40,9 +42,9 @@ class UniformExchange {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto h = zero<Value>();
-    if (coefficient_[0] != 0) h = neighbor_sum<0>(stencil, h);
-    if (coefficient_[1] != 0) h = neighbor_sum<1>(stencil, h);
-    if (coefficient_[2] != 0) h = neighbor_sum<2>(stencil, h);
+    if (couples_[0]) h = neighbor_sum<0>(stencil, h);
+    if (couples_[1]) h = neighbor_sum<1>(stencil, h);
+    if (couples_[2]) h = neighbor_sum<2>(stencil, h);
     return h;
   }
 
@@ -53,9 +55,9 @@ class UniformExchange {
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value e(0);
-    if (coefficient_[0] != 0) e = bonds<0>(stencil, e);
-    if (coefficient_[1] != 0) e = bonds<1>(stencil, e);
-    if (coefficient_[2] != 0) e = bonds<2>(stencil, e);
+    if (couples_[0]) e = bonds<0>(stencil, e);
+    if (couples_[1]) e = bonds<1>(stencil, e);
+    if (couples_[2]) e = bonds<2>(stencil, e);
     return e;
   }
 
@@ -94,6 +96,7 @@ class UniformExchange {
   }
 
   double coefficient_[3];
+  bool couples_[3];  // is the coefficient of the axis not 0?
 };
 
 }  // namespace detail

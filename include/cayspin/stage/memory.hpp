@@ -23,8 +23,7 @@ class StageMemory {
 
   void allocate_fields(std::string const& name, Lattice const& lattice) {
     *this = {};
-    for (std::size_t i = 0; i < levels_.size(); ++i)
-      levels_[i] = Spins(name + "::level_" + std::to_string(i + 1), lattice);
+    levels_ = numbered_fields<Spins, std::size_t{level_count}>(name + "::level", lattice);
     if constexpr (keeps_sum<Tableau, Update>) {
       sum_ = Spins(name + "::sum", lattice);
       Spins const last_increment(name + "::increment", lattice);

@@ -15,45 +15,49 @@ template <class Kernel>
 using FieldsOf = StageArrays<WholeFields<typename Kernel::value_type>, Kernel::stages>;
 
 /// The planes that a stage reads and writes.
-template <class Kernel>
+template <class Flow, class Real>
 struct StagePlanes {
-  using Real = typename Kernel::value_type;
-  using RowArrays = StageArrays<Rows<Real>, Kernel::stages>;
+  using RowArrays = StageArrays<Rows<Real>, Flow::stages>;
 
-  StageArrays<Planes<Real>, Kernel::stages> arrays;
+  StageArrays<Planes<Real>, Flow::stages> arrays;
   Axis y;
   std::ptrdiff_t ahead = 0;        // how much earlier rows from memory are prefetched
   bool level_from_memory = false;  // not from a cache
 
   KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
     RowArrays rows;
-    convert<typename Kernel::Flow>(arrays, ToRow<Real>{y, at, ahead, level_from_memory}, rows);
+    convert<Flow>(arrays, ToRow<Real>{y, at, ahead, level_from_memory}, rows);
     return rows;
   }
 };
 
-/// A stage on given rows.
 template <class Kernel>
-struct StageOnRows {
-  Kernel const& kernel;
-  typename Kernel::RowArrays const& rows;
+using PlanesOf = StagePlanes<typename Kernel::Flow, typename Kernel::value_type>;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    kernel(site, rows);
-  }
-};
+/// Plane z of the fields.
+template <class Flow, class Real>
+CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
+    StageArrays<WholeFields<Real>, Flow::stages> const& fields, RowLayout const& layout,
+    std::int32_t z) {
+  StagePlanes<Flow, Real> planes;
+  convert<Flow>(fields, ToPlane<Real>{layout, z}, planes.arrays);
+  planes.y = Axis(layout, 1);
+  planes.ahead = layout.pitch;
+  planes.level_from_memory = true;
+  return planes;
+}
 
 /// The one compiled body of a stage on host spaces: every caller gets the same bits.
 template <class Kernel>
-CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, StagePlanes<Kernel> const& planes,
-                                       RowLayout const& layout, RowBlock const& block) {
+CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> const& planes,
+                                       RowLayout const& layout, RowBlock block) {
+  using Real = typename Kernel::value_type;
   Kernel const local = kernel;
   for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
     typename Kernel::RowArrays const rows = planes.rows(y);
     Row const row(layout, planes.y.wrapped(y), block.z);
-    for_each_pack<Pack<typename Kernel::value_type>>(row, block.pack_begin, block.pack_end,
-                                                     StageOnRows<Kernel>{local, rows});
+    for (std::int32_t pack = block.pack_begin; pack < block.pack_end; ++pack)
+      local(Site<Pack<Real>>(row, pack * host_lanes<Real>), rows);
   }
 }
 
@@ -74,27 +78,17 @@ struct StageRowLoop {
   struct Task {
     StageRowLoop const& loop;
     RowBlock block;
-    StagePlanes<Kernel> planes;
+    PlanesOf<Kernel> planes;
     void operator()() const { run_stage(loop.kernel, planes, loop.layout, block); }
   };
   Task task_at(std::int64_t task) const {
     auto const block = blocks(task);
-    return {*this, block, planes(block.z)};
+    return {*this, block, planes_of_fields<typename Kernel::Flow>(fields, layout, block.z)};
   }
 
   void operator()(std::int64_t task) const {
     task_at(task)();
     if (fields.next.streaming) streaming_fence();
-  }
-
- private:
-  StagePlanes<Kernel> planes(std::int32_t z) const {
-    StagePlanes<Kernel> planes;
-    convert<typename Kernel::Flow>(fields, ToPlane<Real>{layout, z}, planes.arrays);
-    planes.y = Axis(layout, 1);
-    planes.ahead = layout.pitch;
-    planes.level_from_memory = true;
-    return planes;
   }
 };
 

@@ -141,7 +141,7 @@ struct SweepLoop {
     auto const& kernel = std::get<Stage>(kernels);
     using Kernel = std::remove_cvref_t<decltype(kernel)>;
     std::int32_t const here = part.z.axis.wrapped(z);
-    StagePlanes<Kernel> planes;
+    PlanesOf<Kernel> planes;
     find_arrays<typename Kernel::Flow>(PlaneOfStep{*this, part, z, here}, planes.arrays);
     planes.y = part.y.axis;
     planes.level_from_memory = Stage == 0;

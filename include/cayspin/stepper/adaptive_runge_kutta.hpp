@@ -57,11 +57,9 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
         level_(name + "::level", like.lattice()),
         first_(name + "::first_generator", like.lattice()),
         last_(name + "::last_generator", like.lattice()),
+        increments_(detail::numbered_fields<Spins, std::size_t{stages - 1}>(name + "::increment",
+                                                                            like.lattice())),
         square_(name + "::squared_error", like.lattice()) {
-    for (std::size_t i = 0; i < increments_.size(); ++i) {
-      increments_[i] = Spins(name + "::increment_" + std::to_string(i + 1), like.lattice());
-      labels_[i] = this->label("::stage_") + std::to_string(i + 1);
-    }
     streaming_ = detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes());
   }
 
@@ -287,7 +285,8 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
               dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
               step_label_ = this->label("::all_stages");
-  std::array<std::string, std::size_t{stages}> labels_;
+  std::array<std::string, std::size_t{stages}> labels_ =
+      this->template stage_labels<std::size_t{stages}>();
   Isotropy isotropy_;
   StepOptions options_;
   detail::StepController controller_;

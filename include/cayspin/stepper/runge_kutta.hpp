@@ -51,8 +51,6 @@ class RungeKutta : public detail::StepperBase<Spins> {
         name_(name),
         isotropy_(isotropy),
         plan_(sweep_plan(like.layout(), DefaultExec().concurrency())) {
-    for (std::size_t i = 0; i < labels_.size(); ++i)
-      labels_[i] = this->label("::stage_") + std::to_string(i + 1);
     use(sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep : Path::pass);
   }
 
@@ -222,7 +220,8 @@ class RungeKutta : public detail::StepperBase<Spins> {
   }
 
   std::string name_, sweep_label_ = this->label("::sweep"), batch_label_ = this->label("::batch");
-  std::array<std::string, std::size_t{stages}> labels_;
+  std::array<std::string, std::size_t{stages}> labels_ =
+      this->template stage_labels<std::size_t{stages}>();
   Isotropy isotropy_;
   detail::SweepPlan plan_;
   Path path_ = Path::pass;

@@ -6,6 +6,8 @@
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 
+#include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,7 +25,14 @@ class StepperBase {
   StepperBase(std::string const& name, Lattice const& lattice)
       : lattice_(lattice), region_("cayspin::" + name) {}
 
-  std::string label(char const* stage) const { return region_ + stage; }
+  CAYSPIN_DETAIL_NOINLINE std::string label(char const* stage) const { return region_ + stage; }
+  /// "::stage_1", "::stage_2", .. of so many stages.
+  template <std::size_t Stages>
+  std::array<std::string, Stages> stage_labels() const {
+    std::array<std::string, Stages> labels;
+    for (std::size_t i = 0; i < Stages; ++i) labels[i] = stage_label(i + 1);
+    return labels;
+  }
 
   /// The region lasts as long as what is returned. `call`: the member that begins.
   template <class Exec>
@@ -38,6 +47,10 @@ class StepperBase {
   Lattice lattice_;
 
  private:
+  CAYSPIN_DETAIL_NOINLINE std::string stage_label(std::size_t number) const {
+    return label("::stage_") + std::to_string(number);
+  }
+
   std::string region_;
 };
 
