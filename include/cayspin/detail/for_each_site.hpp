@@ -77,17 +77,6 @@ class RowBlocks {
   std::int32_t packs_, parts_of_row_, parts_of_plane_;
 };
 
-/// The same for part task % per_row of row task / per_row.
-template <class Value, class Functor>
-KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(RowLayout const& layout, std::int64_t task,
-                                               std::int32_t per_row, Functor& functor) {
-  Row const row(layout, task / per_row);
-  std::int64_t const packs = (layout.nx + lanes_of<Value> - 1) / lanes_of<Value>;
-  std::int64_t const part = task % per_row;
-  for_each_pack<Value>(row, static_cast<std::int32_t>(packs * part / per_row),
-                       static_cast<std::int32_t>(packs * (part + 1) / per_row), functor);
-}
-
 /// The host loop. One compiled body serves all host spaces, so their results have the same bits.
 template <class Real, class Functor>
 struct RowLoop {

@@ -12,8 +12,9 @@
 #include <string>
 
 // Sums and maxima over sites in double. On host spaces their order depends on the lattice alone:
-// packs of a block of tasks in order, the lanes of a pack in a fixed tree, blocks in order. The
-// result has the same bits on every host space and for any number of threads.
+// rows of a block of tasks in order, each by its ends and then the packs between them, the lanes of
+// a pack in a fixed tree, blocks in order. The result has the same bits on every host space and for
+// any number of threads.
 namespace cayspin::detail {
 
 struct Sum {
@@ -82,6 +83,28 @@ struct Collect {
   }
 };
 
+/// Calls functor(site) for the packs of part task % per_row of row task / per_row: those at the
+/// ends of the row first, then the others in order.
+template <class Value, class Functor>
+void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::int32_t per_row,
+                              Functor& functor) {
+  constexpr std::int32_t lanes = lanes_of<Value>;
+  Row const row(layout, task / per_row);
+  std::int32_t const packs = (layout.nx + lanes - 1) / lanes;
+  auto const cut = [&](std::int64_t part) {
+    return static_cast<std::int32_t>(packs * part / per_row);
+  };
+  std::int32_t const begin = cut(task % per_row), end = cut(task % per_row + 1);
+  std::int32_t const last = packs - 1;
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+#pragma GCC unroll 1
+#endif
+  for (std::int32_t pack = 0; pack <= last; pack = Kokkos::max(last, pack + 1))
+    if (begin <= pack && pack < end) functor(Site<Value>(row, pack * lanes));
+  for (std::int32_t pack = Kokkos::max(begin, 1); pack < Kokkos::min(end, last); ++pack)
+    functor(Site<Value>(row, pack * lanes));
+}
+
 /// A host reduction has at most this many partial results, so that they fit on the stack.
 inline constexpr std::int64_t largest_blocks = 1024;
 
@@ -100,7 +123,7 @@ struct ReduceBlock {
     for (int i = 0; i < Count; ++i) collect.total[i] = Value(0.0);
     std::int64_t const end = tasks * (block + 1) / blocks;
     for (std::int64_t task = tasks * block / blocks; task < end; ++task)
-      for_each_pack<Value>(layout, task, per_row, collect);
+      for_each_pack_ends_first<Value>(layout, task, per_row, collect);
     unrolled<Count>([&](auto i) {
       using One = typename Combine::template combine_at<i()>;
       partial[block * Count + i()] = combine_lanes<One>(collect.total[i()]);
