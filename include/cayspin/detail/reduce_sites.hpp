@@ -96,6 +96,7 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
   };
   std::int32_t const begin = cut(task % per_row), end = cut(task % per_row + 1);
   std::int32_t const last = packs - 1;
+  // Both ends share one compiled body.
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
 #pragma GCC unroll 1
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/field/term_on_lattice.hpp>
 #include <cayspin/lattice.hpp>
-#include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
@@ -104,27 +104,10 @@ class UniformExchange {
 /// Exchange with the nearest neighbours along each axis: H = A Lap(m), the second difference over
 /// existing neighbours, each divided by the axis' spacing squared.
 /// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
-class Exchange : public detail::UniformExchange {
+class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
  public:
   Exchange(Lattice const& lattice, double constant)
-      : detail::UniformExchange(lattice, constant), lattice_(lattice) {}
-
-  template <class Spins>
-  void check_spins(Spins const& spins) const {
-    require_lattice("cayspin::Exchange", lattice_, spins.lattice());
-  }
-
-  template <class Exec, class Spins>
-  detail::UniformExchange prepare(Exec const&, Spins const&, double) const {
-    return *this;
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
-  }
-
- private:
-  Lattice lattice_;
+      : TermOnLattice("cayspin::Exchange", lattice, constant) {}
 };
 
 }  // namespace cayspin

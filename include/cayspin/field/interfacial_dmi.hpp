@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/field/term_on_lattice.hpp>
 #include <cayspin/lattice.hpp>
-#include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cmath>
@@ -83,28 +83,11 @@ class UniformInterfacialDmi {
 /// (D / spacing) (n x e) x (m_next - m_previous). A missing neighbour has no bond.
 /// With Exchange(lattice, A), a free spiral along e turns by atan(D spacing / A) from site to site.
 /// Rohart and Thiaville 2013.
-class InterfacialDmi : public detail::UniformInterfacialDmi {
+class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDmi> {
  public:
   /// `normal` is normalised. Throws std::invalid_argument when it is zero.
   InterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal = {0, 0, 1})
-      : detail::UniformInterfacialDmi(lattice, constant, normal), lattice_(lattice) {}
-
-  template <class Spins>
-  void check_spins(Spins const& spins) const {
-    require_lattice("cayspin::InterfacialDmi", lattice_, spins.lattice());
-  }
-
-  template <class Exec, class Spins>
-  detail::UniformInterfacialDmi prepare(Exec const&, Spins const&, double) const {
-    return *this;
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
-  }
-
- private:
-  Lattice lattice_;
+      : TermOnLattice("cayspin::InterfacialDmi", lattice, constant, normal) {}
 };
 
 }  // namespace cayspin

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/lattice.hpp>
+#include <cayspin/spin_field.hpp>
+
+namespace cayspin::detail {
+
+/// A term made for one lattice, the same at all times. Prepared: what kernels hold of it, made from
+/// the lattice and the term's numbers.
+template <class Prepared>
+class TermOnLattice : public Prepared {
+ public:
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    require_lattice(name_, lattice_, spins.lattice());
+  }
+  template <class Exec, class Spins>
+  Prepared prepare(Exec const&, Spins const&, double) const {
+    return *this;
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
+ protected:
+  template <class... Numbers>
+  TermOnLattice(char const* name, Lattice const& lattice, Numbers const&... numbers)
+      : Prepared(lattice, numbers...), name_(name), lattice_(lattice) {}
+
+ private:
+  char const* name_;  // for messages
+  Lattice lattice_;
+};
+
+}  // namespace cayspin::detail
