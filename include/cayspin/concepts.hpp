@@ -59,6 +59,9 @@ concept counts_evaluations = requires(Stepper const& stepper) {
 /// |---|---|---|
 /// | `Vec3<Value> field(stencil)` | H at the stencil's centre | required |
 /// | `Value energy_density(stencil)` | the site's share of E | required |
+/// | `Vec3<Value> add_field(stencil, h)` | h + H, where that takes less | h + field |
+/// | `Vec3<Value> add_turning_field(stencil, h)` | the same, less a multiple of m | add_field |
+/// | `Vec3<Value> turning_field(stencil)` | that of a sum, from its first term | from h = 0 |
 /// | `Value energy_magnitude(stencil)` | the sum of absolute E of its terms | energy_density |
 /// | `static int energy_terms` | of how many terms E is the sum | 1 |
 /// | `energy_densities(stencil, Value* e)` | the E of each of them | energy_density |
@@ -101,6 +104,7 @@ concept FieldTerm = requires {
 /// | member | says | left out |
 /// |---|---|---|
 /// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
+/// | `Vec3<Value> turning_part(stencil)` | A, less a multiple of m: what turns m | A |
 /// | `Value energy_density(stencil)` | the site's share of E | it has no energy |
 /// | `bool is_conservative()` | E is kept: A = -dE/dm + c m (host) | EnergyControl refuses it |
 /// | `bool is_orthogonal()` | A has no part along m | false |

@@ -52,6 +52,37 @@ constexpr void check_energy_density() {
                 "that returns typename Stencil::value_type, with field = -d energy / d spin.");
 }
 
+/// `h` and a term's field at a stencil's centre: most terms add it in fewer operations.
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
+    Term const& term, Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) {
+  check_field<Term, Stencil>();
+  if constexpr (requires { term.add_field(stencil, h); })
+    return term.add_field(stencil, h);
+  else
+    return h + term.field(stencil);
+}
+
+/// The same up to a multiple of the spin.
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
+    Term const& term, Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) {
+  if constexpr (requires { term.add_turning_field(stencil, h); })
+    return term.add_turning_field(stencil, h);
+  else
+    return add_field(term, stencil, h);
+}
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
+    Term const& term, Stencil const& stencil) {
+  if constexpr (requires { term.turning_field(stencil); })
+    return term.turning_field(stencil);
+  else if constexpr (requires { term.add_turning_field(stencil, stencil.center()); })
+    return term.add_turning_field(stencil, zero<typename Stencil::value_type>());
+  else
+    return term.field(stencil);
+}
+
 /// The linear part of an affine field at a stencil's centre, applied to the stencil's array.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
@@ -178,6 +209,16 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> evaluate(Generato
                 "A generator needs a const, device-callable template operator()(stencil) that "
                 "returns Vec3<typename Stencil::value_type>: the A of m' = A x m.");
   return generator(stencil);
+}
+
+/// The same up to a multiple of the spin: what turns it.
+template <class Generator, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
+    Generator const& generator, Stencil const& stencil) {
+  if constexpr (requires { generator.turning_part(stencil); })
+    return generator.turning_part(stencil);
+  else
+    return evaluate(generator, stencil);
 }
 
 }  // namespace cayspin::detail

@@ -16,11 +16,9 @@ class Stencil {
   using vector_type = Vec3<value_type>;
 
   KOKKOS_FORCEINLINE_FUNCTION Stencil(Site const& site, Spins const& spins)
-      : site_(site),
-        spins_(spins),
-        center_(site.load_center(spins)),
-        beside_{site.template neighbor<0, 0>(spins, center_),
-                site.template neighbor<0, 1>(spins, center_)} {}
+      : site_(site), spins_(spins), place_(site.place(spins.stride)) {
+    site.load_row(spins, place_, center_, beside_);
+  }
 
   KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return center_; }
 
@@ -54,7 +52,7 @@ class Stencil {
     if constexpr (Axis == 0)
       return beside_[Direction];
     else
-      return site_.template neighbor<Axis, Direction>(spins_, center_);
+      return site_.template neighbor<Axis, Direction>(spins_, place_);
   }
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION vector_type neighbor_or(vector_type const& missing) const {
@@ -67,6 +65,7 @@ class Stencil {
 
   Site const& site_;
   Spins const& spins_;
+  typename Site::Place place_;
   vector_type center_;
   // Along x, where the ends of rows make a branch: once for all terms. Unused ones cost nothing.
   vector_type beside_[2];

@@ -15,6 +15,7 @@ struct TermsIfThere {
   KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const&, Vector const& h) const {
     return h;
   }
+  KOKKOS_FORCEINLINE_FUNCTION bool any() const { return false; }
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_neighbor_field(Stencil const&, Vector const& h) const {
     return h;
@@ -32,8 +33,9 @@ struct TermsIfThere<Term, Others...> {
 
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const& stencil, Vector const& h) const {
-    return others.add_field(stencil, there ? Vector(h + term.field(stencil)) : h);
+    return others.add_field(stencil, there ? cayspin::detail::add_field(term, stencil, h) : h);
   }
+  KOKKOS_FORCEINLINE_FUNCTION bool any() const { return there || others.any(); }
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_neighbor_field(Stencil const& stencil,
                                                         Vector const& h) const {
@@ -54,15 +56,23 @@ struct LatticeTerms {
   TermsIfThere<Others...> others;
   double magnitude;  // of the energy of a site: what round-off is proportional to
 
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const& stencil, Vector const& h) const {
+    auto const sum = cayspin::detail::add_field(first, stencil, h);
+    if (others.any()) [[unlikely]]
+      return others.add_field(stencil, sum);
+    return sum;
+  }
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_turning_field(Stencil const& stencil,
+                                                       Vector const& h) const {
+    auto const sum = cayspin::detail::add_turning_field(first, stencil, h);
+    if (others.any()) [[unlikely]]
+      return others.add_field(stencil, sum);
+    return sum;
+  }
   // Where there are no others the first is returned as it is: g++ copies what has a name through
   // memory.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION auto field(Stencil const& stencil) const {
-    if constexpr (sizeof...(Others) == 0)
-      return first.field(stencil);
-    else
-      return others.add_field(stencil, first.field(stencil));
-  }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto neighbor_field(Stencil const& stencil) const {
     if constexpr (sizeof...(Others) == 0)

@@ -23,14 +23,18 @@ class QuadraticTerms {
   void add(double constant, io::Triple const& axis) {
     sum_.add(constant, axis);
     magnitude_.add(std::abs(constant), axis);
-    present_ = true;
+    bool const along_z = axis[0] == 0 && axis[1] == 0;
+    form_ = along_z && form_ != Form::any ? Form::along_z : Form::any;
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION bool present() const { return present_; }
+  KOKKOS_FORCEINLINE_FUNCTION bool present() const { return form_ != Form::none; }
 
   template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field(Vec3<Value> const& m) const {
-    return sum_.template matrix<Value>() * m;
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> add_field(Vec3<Value> const& m,
+                                                    Vec3<Value> const& h) const {
+    if (form_ == Form::along_z) [[likely]]
+      return {h.x, h.y, cayspin::detail::multiply_add(as_value<Value>(sum_.zz), m.z, h.z)};
+    return present() ? h + field(m) : h;
   }
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m) const {
@@ -59,8 +63,15 @@ class QuadraticTerms {
     }
   };
 
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field(Vec3<Value> const& m) const {
+    return sum_.template matrix<Value>() * m;
+  }
+
+  enum class Form { none, along_z, any };
+
   Sum sum_, magnitude_;
-  bool present_ = false;
+  Form form_ = Form::none;
 };
 
 /// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
@@ -69,7 +80,7 @@ template <class Real>
 struct SceneFieldNow {
   SceneLatticeTerms lattice_terms;
   QuadraticTerms quadratic;
-  Zeeman zeeman;
+  Zeeman zeeman;  // zero without an applied field
   cayspin::detail::LayerField layers;
   cayspin::detail::StoredField<Real> stored;
   bool has_applied, has_layers, has_stored;
@@ -77,8 +88,13 @@ struct SceneFieldNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
-    auto const h = linear_field(stencil);
-    return has_applied ? h + zeeman.field(stencil) : h;
+    return add_demagnetization(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
+      Stencil const& stencil) const {
+    return add_demagnetization(stencil,
+                               lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }
 
   /// Does the part of the spin itself depend on the spin?
@@ -88,27 +104,19 @@ struct SceneFieldNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
       Stencil const& stencil) const {
-    auto h = lattice_terms.field(stencil);
-    if (quadratic.present()) h = h + quadratic.field(stencil.center());
-    if (has_layers) h = h + layers.field(stencil);
-    if (has_stored) h = h + stored.field(stencil);
-    return h;
+    auto const none = zero<typename Stencil::value_type>();
+    return add_demagnetization(
+        stencil, lattice_terms.add_field(stencil, quadratic.add_field(stencil.center(), none)));
   }
   /// The part that comes from other spins, and the rest.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
       Stencil const& stencil) const {
-    auto h = lattice_terms.neighbor_field(stencil);
-    if (has_layers) h = h + layers.field(stencil);
-    if (has_stored) h = h + stored.field(stencil);
-    return h;
+    return add_demagnetization(stencil, lattice_terms.neighbor_field(stencil));
   }
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
-    auto h = zero<typename Spin::value_type>();
-    if (quadratic.present()) h = quadratic.field(spin.center());
-    if (has_applied) h = h + zeeman.field(spin);
-    return h;
+    return quadratic.add_field(spin.center(), zeeman.field(spin));
   }
   /// dH/dt along rates, of what prepare_rate returns.
   template <class Value, class Stencil>
@@ -138,6 +146,16 @@ struct SceneFieldNow {
     if (has_layers) e = e + Kokkos::abs(layers.energy_density(stencil));
     if (has_stored) e = e + Kokkos::abs(stored.energy_density(stencil));
     return e;
+  }
+
+ private:
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_demagnetization(Stencil const& stencil, Vector h) const {
+    if (has_layers || has_stored) [[unlikely]] {
+      if (has_layers) h = h + layers.field(stencil);
+      if (has_stored) h = h + stored.field(stencil);
+    }
+    return h;
   }
 };
 
@@ -187,6 +205,7 @@ class SceneField {
                                    double dt) const {
     auto now = prepare(exec, rates, t);
     now.has_applied = applied_.depends_on_time();
+    now.zeeman = {};
     if (now.has_applied) now.zeeman = {cayspin::detail::time_derivative(applied_, t, dt)};
     return now;
   }

@@ -24,6 +24,11 @@ struct SceneGeneratorNow {
     Vec3<Value> const a = is_llg ? llg(stencil) : bodies(stencil);
     return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
   }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
+      Stencil const& stencil) const {
+    return is_llg ? llg.turning_part(stencil) : bodies(stencil);
+  }
   /// Of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
   /// rigid body is its own.
   template <class Spin, class Value>

@@ -85,6 +85,39 @@ TYPED_TEST(Fields, UniformStatesHaveNoExchange) {
     }
 }
 
+/// What steppers that need A x m alone ask a field for.
+template <class Prepared>
+struct TurningField {
+  Prepared field_of;
+
+  template <class Stencil>
+  KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {
+    return detail::turning_field(field_of, stencil);
+  }
+};
+
+TYPED_TEST(Fields, WhatTurnsSpinsDiffersByAMultipleOfThem) {
+  using Spins = typename TypeParam::Spins;
+  auto stretched = Lattice::cubic(19, 4, 3, 0.5, Boundary::periodic);
+  stretched.spacing[1] = 0.7;
+  for (auto const& lattice : {Lattice::cubic(19, 4, 3), stretched, Lattice::square(19, 5),
+                              Lattice::chain(19, 1, Boundary::periodic)}) {
+    EffectiveField const field(Exchange(lattice, 1.3), UniaxialAnisotropy(0.5, {1, 0, 0}),
+                               UniaxialAnisotropy(0.4, {0, 1, 0}), SlabDemag({0, 0, 1}, 0.6),
+                               UniaxialAnisotropy(0.3, {1, 2, 3}), Zeeman{{0.1, 0.2, 0.3}});
+    auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 7));
+    auto const prepared = detail::prepare_term(field, this->exec, spins, 0);
+    auto const h = evaluated(this->exec, field, spins);
+    auto const turning = evaluated(
+        this->exec, TurningField<std::remove_const_t<decltype(prepared)>>{prepared}, spins);
+    auto const m = numbers_of(spins);
+    for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+      auto const apart = cross(at(turning, site) - at(h, site), at(m, site));
+      EXPECT_LT(std::sqrt(dot(apart, apart)), 100 * epsilon<typename TypeParam::Real>) << site;
+    }
+  }
+}
+
 // Half a million equal shares: a sum in float would stop growing at the fifth digit.
 TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
   using Real = typename TypeParam::Real;

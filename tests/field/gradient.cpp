@@ -21,6 +21,10 @@ TYPED_TEST(Terms, LocalTerms) {
   auto const& lattice = lattices[0];
   this->check("anisotropy", lattice, UniaxialAnisotropy(1.7, {1, -2, 2}),
               anisotropy_by_hand(1.7, {1, -2, 2}));
+  // Along the coordinates H has a formula of its own.
+  for (Vec3<double> const& axis : {Vec3<double>{2, 0, 0}, {0, -2, 0}, {0, 0, 2}})
+    this->check("anisotropy along a coordinate", lattice, UniaxialAnisotropy(1.7, axis),
+                anisotropy_by_hand(1.7, axis));
   this->check("a second anisotropy", lattice, UniaxialAnisotropy(-0.4, {0, 3, 1}),
               anisotropy_by_hand(-0.4, {0, 3, 1}));
   this->check("applied field", lattice, Zeeman{{0.3, -0.4, 5}}, zeeman_by_hand({0.3, -0.4, 5}));

@@ -36,13 +36,6 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(SiteArray<Real, 3> const& array) const {
     return vector_at(array.data + row_.offset, array.stride);
   }
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(SiteArray<Real, 3> const& array) const {
-    for (int component = 0; component < 3; ++component)
-      prefetch(array.data + component * array.stride + row_.offset + x_ + row_.to_neighbor[1][1] +
-               row_.pitch);
-    return load(array);
-  }
   template <class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
                                          int component) const {
@@ -64,17 +57,26 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
     store_every_other(value.z, to + 2 * array.stride, count());
   }
 
-  /// The same as Site::neighbor.
+  /// The same as of Site.
+  struct Place {
+    std::ptrdiff_t stride;
+  };
+  KOKKOS_FORCEINLINE_FUNCTION Place place(std::ptrdiff_t stride) const { return {stride}; }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void load_row(SiteArray<Real, 3> const& array, Place const&,
+                                            Vec3<Value>& center, Vec3<Value> (&found)[2]) const {
+    Real const* const row = array.data + row_.offset;
+    for (int component = 0; component < 3; ++component)
+      prefetch(row + component * array.stride + x_ + row_.to_neighbor[1][1] + row_.pitch);
+    center = load(array);
+    found[0] = vector_beside<0>(row, array.stride, center);
+    found[1] = vector_beside<1>(row, array.stride, center);
+  }
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
-                                                   Vec3<Value> const& center) const {
-    Real const* const row = array.data + row_.offset;
-    if constexpr (Axis > 0) {
-      return vector_at(row + row_.to_neighbor[Axis - 1][Direction], array.stride);
-    } else {
-      return {beside<Direction>(row, center.x), beside<Direction>(row + array.stride, center.y),
-              beside<Direction>(row + 2 * array.stride, center.z)};
-    }
+                                                   Place const&) const {
+    return vector_at(array.data + row_.offset + row_.to_neighbor[Axis - 1][Direction],
+                     array.stride);
   }
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value neighbor(SiteArray<Real, 1> const& array,
@@ -89,7 +91,10 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
  private:
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t count() const {
     if constexpr (!AtEdge) return lanes;
-    return Kokkos::min<std::int32_t>(lanes, (row_.nx - x_ + 1) / 2);
+    return Kokkos::min<std::int32_t>(lanes, (to_last() + 2) / 2);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t to_last() const {
+    return row_.nx - 1 - static_cast<std::int32_t>(x_);
   }
   /// Do whole packs stay within the row's memory?
   KOKKOS_FORCEINLINE_FUNCTION bool has_room() const { return x_ + 2 * lanes <= row_.pitch; }
@@ -97,7 +102,7 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value at(Real const* row) const {
     if constexpr (AtEdge) {
-      if (!has_room()) return load_every_other_of<Value>(row + x_, 0, row_.nx - 1 - x_);
+      if (!has_room()) return load_every_other_of<Value>(row + x_, 0, to_last());
     }
     return load_every_other<0, Value>(row + x_);
   }
@@ -107,17 +112,22 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   }
 
   template <int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> vector_beside(Real const* row, std::ptrdiff_t stride,
+                                                        Vec3<Value> const& center) const {
+    return {beside<Direction>(row, center.x), beside<Direction>(row + stride, center.y),
+            beside<Direction>(row + 2 * stride, center.z)};
+  }
+  template <int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value beside(Real const* row, Value const& center) const {
     if constexpr (AtEdge) {
       bool const whole = has_room() && (Direction == 1 || x_ > 0);
-      Value found = whole
-                        ? whole_beside<Direction>(row)
-                        : load_every_other_of<Value>(row + x_ + (Direction == 0 ? -1 : 1),
-                                                     Direction == 0 && x_ == 0 ? 1 : 0,
-                                                     row_.nx - 1 - x_ + (Direction == 0 ? 1 : -1));
+      Value found = whole ? whole_beside<Direction>(row)
+                          : load_every_other_of<Value>(row + x_ + (Direction == 0 ? -1 : 1),
+                                                       Direction == 0 && x_ == 0 ? 1 : 0,
+                                                       to_last() + (Direction == 0 ? 1 : -1));
       if (this->template holds_end<Direction>())
         found = select<Value>(this->template is_end<Direction>(),
-                              this->template past_end<Direction>(row, center), found);
+                              this->template beyond<Direction>(row, center), found);
       return found;
     } else {
       return whole_beside<Direction>(row);

@@ -39,6 +39,17 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
   }
 }
 
+/// The same pointer or index, of which the compiler does not know where it comes from. It then
+/// computes an address where it is used, rather than keep more of them than there are registers.
+template <class Word>
+KOKKOS_FORCEINLINE_FUNCTION Word opaque(Word word) {
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(__CUDA_ARCH__) && \
+    !defined(__HIP_DEVICE_COMPILE__) && !defined(__SYCL_DEVICE_ONLY__)
+  __asm__("" : "+r"(word));
+#endif
+  return word;
+}
+
 /// Writes past the caches. `to` is aligned to the pack.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Value>* to) {

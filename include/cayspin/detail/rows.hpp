@@ -16,7 +16,6 @@ template <class Real>
 struct RowInput {
   Real const* data = nullptr;
   std::ptrdiff_t stride = 0;
-  std::ptrdiff_t ahead = 0;  // from a site to the one to prefetch
 };
 
 /// A row and its neighbours along y and z. A missing neighbour is the row itself.
@@ -67,8 +66,8 @@ struct PlaneRows {
     if (y < first) return low + (y - first) * pitch;
     return y < last ? middle + (y - first) * pitch : high + (y - last) * pitch;
   }
-  KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(std::int32_t y, std::ptrdiff_t ahead) const {
-    return {row(y), stride, ahead};
+  KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(std::int32_t y) const {
+    return {row(y), stride};
   }
   KOKKOS_FORCEINLINE_FUNCTION RowOutput<Real> output(std::int32_t y, bool streaming) const {
     return {row(y), stride, streaming};

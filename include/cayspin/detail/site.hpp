@@ -9,16 +9,16 @@
 namespace cayspin::detail {
 
 /// Neighbouring sites of a row, as many as Value has lanes.
-template <class Value>
-class Site : public SitesOfRow<Value, true, 1> {
-  using Base = SitesOfRow<Value, true, 1>;
+template <class Value, bool AtEdge = true>
+class Site : public SitesOfRow<Value, AtEdge, 1> {
+  using Base = SitesOfRow<Value, AtEdge, 1>;
   using Base::row_, Base::x_;
 
  public:
   using Base::Base, Base::lanes;
   using typename Base::scalar_type;
 
-  KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return x_; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return static_cast<std::int32_t>(x_); }
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t offset() const { return row_.offset + x_; }
 
   /// Are there lanes past the end of the row?
@@ -37,24 +37,9 @@ class Site : public SitesOfRow<Value, true, 1> {
     prefetch(array, offset() + row_.pitch);
     return load_at(array.data + row_.offset, array.stride);
   }
-  /// The same, of an array whose neighbours are read too: the next row to come from memory is in
-  /// the next plane.
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(SiteArray<Real, 3> const& array) const {
-    prefetch(array, offset() + row_.to_neighbor[1][1] + row_.pitch);
-    return load_at(array.data + row_.offset, array.stride);
-  }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(RowInput<Real> const& row) const {
-    if constexpr (lanes > 1) {
-      for (int component = 0; component < 3; ++component)
-        detail::prefetch(row.data + component * row.stride + x_ + row.ahead);
-    }
     return load_at(row.data, row.stride);
-  }
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_center(RowStencil<Real> const& rows) const {
-    return load(static_cast<RowInput<Real> const&>(rows));
   }
   template <class Real, int Components>
   KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
@@ -79,8 +64,8 @@ class Site : public SitesOfRow<Value, true, 1> {
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value,
                                          RowOutput<Real> const& row) const {
-    Real* const to = row.data + x_;
-    if (row.streaming) {
+    Real* const to = opaque(row.data + x_);
+    if (row.streaming) [[unlikely]] {
       store_streaming(value.x, to);
       store_streaming(value.y, to + row.stride);
       store_streaming(value.z, to + 2 * row.stride);
@@ -91,24 +76,40 @@ class Site : public SitesOfRow<Value, true, 1> {
     }
   }
 
-  /// The value one site back (direction 0) or on (direction 1) along an axis; at an open end, and
-  /// along an axis of extent 1, `center` itself.
+  /// Where the three components of these sites lie, from the first number of a row with this
+  /// stride. One place serves all rows of a stencil.
+  struct Place {
+    std::ptrdiff_t x, y, z;
+  };
+  KOKKOS_FORCEINLINE_FUNCTION Place place(std::ptrdiff_t stride) const {
+    std::ptrdiff_t const y = opaque(x_ + stride);
+    return {x_, y, opaque(y + stride)};
+  }
+
+  /// The spins themselves and those beside them along x, at an open end the spin itself.
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void load_row(SiteArray<Real, 3> const& array, Place const& place,
+                                            Vec3<Value>& center, Vec3<Value> (&beside)[2]) const {
+    prefetch(array, offset() + row_.to_neighbor[1][1] + row_.pitch);
+    load_row(array.data + row_.offset, place, center, beside);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void load_row(RowStencil<Real> const& rows, Place const& place,
+                                            Vec3<Value>& center, Vec3<Value> (&beside)[2]) const {
+    load_row(rows.data, place, center, beside);
+  }
+
+  /// The value one site back (direction 0) or on (direction 1) along y or z; at an open end, and
+  /// along an axis of extent 1, the spin itself.
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(SiteArray<Real, 3> const& array,
-                                                   Vec3<Value> const& center) const {
-    Real const* const row = array.data + row_.offset;
-    if constexpr (Axis > 0)
-      return load_at(row + row_.to_neighbor[Axis - 1][Direction], array.stride);
-    else
-      return beside<Direction>(row, array.stride, center);
+                                                   Place const& place) const {
+    return load_from(array.data + row_.offset + row_.to_neighbor[Axis - 1][Direction], place);
   }
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(RowStencil<Real> const& rows,
-                                                   Vec3<Value> const& center) const {
-    if constexpr (Axis > 0)
-      return load_at(rows.neighbor[Axis - 1][Direction], rows.stride);
-    else
-      return beside<Direction>(rows.data, rows.stride, center);
+                                                   Place const& place) const {
+    return load_from(rows.neighbor[Axis - 1][Direction], place);
   }
   template <int Axis, int Direction, class Real>
   KOKKOS_FORCEINLINE_FUNCTION Value neighbor(SiteArray<Real, 1> const& array,
@@ -117,9 +118,9 @@ class Site : public SitesOfRow<Value, true, 1> {
       return detail::load<Value>(array.data + offset() + row_.to_neighbor[Axis - 1][Direction]);
     } else {
       Value const found = detail::load<Value>(array.data + offset() + (Direction == 0 ? -1 : 1));
-      if (this->template holds_end<Direction>()) [[unlikely]]
+      if (AtEdge && this->template holds_end<Direction>())
         return select<Value>(this->template is_end<Direction>(),
-                             this->template past_end<Direction>(array.data + row_.offset, center),
+                             this->template beyond<Direction>(array.data + row_.offset, center),
                              found);
       return found;
     }
@@ -135,25 +136,47 @@ class Site : public SitesOfRow<Value, true, 1> {
     }
   }
 
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> load_from(Real const* row, Place const& place) {
+    return {detail::load<Value>(row + place.x), detail::load<Value>(row + place.y),
+            detail::load<Value>(row + place.z)};
+  }
+
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void load_row(Real const* row, Place const& place,
+                                            Vec3<Value>& center, Vec3<Value> (&beside)[2]) const {
+    center = {detail::load<Value>(row + place.x), detail::load<Value>(row + place.y),
+              detail::load<Value>(row + place.z)};
+    beside[0] = {detail::load<Value>(row + place.x - 1), detail::load<Value>(row + place.y - 1),
+                 detail::load<Value>(row + place.z - 1)};
+    beside[1] = {detail::load<Value>(row + place.x + 1), detail::load<Value>(row + place.y + 1),
+                 detail::load<Value>(row + place.z + 1)};
+    if (!AtEdge || (x_ > 0 && row_.nx - x_ > lanes)) [[likely]]
+      return;
+    std::ptrdiff_t const strides[2] = {place.y - place.x, place.z - place.x};
+    if (this->template holds_end<0>())
+      beside[0] =
+          select<Value>(this->template is_end<0>(), past_end<0>(row, strides, center), beside[0]);
+    if (this->template holds_end<1>())
+      beside[1] =
+          select<Value>(this->template is_end<1>(), past_end<1>(row, strides, center), beside[1]);
+  }
+
+  /// The neighbours past the end of a row: those at the other end, or the spins themselves.
   template <int Direction, class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> beside(Real const* row, std::ptrdiff_t stride,
-                                                 Vec3<Value> const& center) const {
-    Vec3<Value> found = load_at(row + (Direction == 0 ? -1 : 1), stride);
-    if (this->template holds_end<Direction>()) [[unlikely]] {
-      auto const end = this->template is_end<Direction>();
-      found = {
-          select<Value>(end, this->template past_end<Direction>(row, center.x), found.x),
-          select<Value>(end, this->template past_end<Direction>(row + stride, center.y), found.y),
-          select<Value>(end, this->template past_end<Direction>(row + 2 * stride, center.z),
-                        found.z)};
-    }
-    return found;
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> past_end(Real const* row,
+                                                   std::ptrdiff_t const (&strides)[2],
+                                                   Vec3<Value> const& center) const {
+    if (!row_.periodic_x) return center;
+    Real const* const end = row + (Direction == 0 ? row_.nx - 1 : 0);
+    return {Value(scalar_type(end[0])), Value(scalar_type(end[strides[0]])),
+            Value(scalar_type(end[strides[1]]))};
   }
 
   /// The numbers at x of a row.
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* row, std::ptrdiff_t stride) const {
-    Real const* const from = row + x_;
+    Real const* const from = opaque(row + x_);
     return {detail::load<Value>(from), detail::load<Value>(from + stride),
             detail::load<Value>(from + 2 * stride)};
   }

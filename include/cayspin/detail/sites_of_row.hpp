@@ -55,7 +55,7 @@ class SitesOfRow {
   using scalar_type = scalar_t<Value>;
   static constexpr int lanes = lanes_of<Value>;
 
-  KOKKOS_FORCEINLINE_FUNCTION SitesOfRow(Row const& row, std::int32_t x) : row_(row), x_(x) {}
+  KOKKOS_FORCEINLINE_FUNCTION SitesOfRow(Row const& row, std::ptrdiff_t x) : row_(row), x_(x) {}
 
   KOKKOS_FORCEINLINE_FUNCTION Row const& row() const { return row_; }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
@@ -75,7 +75,7 @@ class SitesOfRow {
  protected:
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION bool holds_end() const {
-    std::int32_t const way = to_end<Direction>();
+    std::ptrdiff_t const way = to_end<Direction>();
     if constexpr (Spacing == 1) return Direction == 0 ? way == 0 : way < lanes;
     return way >= 0 && way < Spacing * lanes && way % Spacing == 0;
   }
@@ -86,17 +86,17 @@ class SitesOfRow {
   }
   /// The neighbour past the end of a row: the site at the other end, or `center`.
   template <int Direction, class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Value past_end(Real const* row, Value const& center) const {
+  KOKKOS_FORCEINLINE_FUNCTION Value beyond(Real const* row, Value const& center) const {
     return row_.periodic_x ? Value(scalar_type(row[Direction == 0 ? row_.nx - 1 : 0])) : center;
   }
 
   Row const& row_;
-  std::int32_t x_;
+  std::ptrdiff_t x_;
 
  private:
   /// From the first lane to the end of the row.
   template <int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION std::int32_t to_end() const {
+  KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t to_end() const {
     return Direction == 0 ? -x_ : row_.nx - 1 - x_;
   }
 };

@@ -14,9 +14,11 @@ class NeighborsOfSite {
 
   KOKKOS_FORCEINLINE_FUNCTION NeighborsOfSite(Site const& site, SiteArray<Real, 3> const& spins)
       : site_(site) {
-    load<0, 0>(spins), load<0, 1>(spins);
-    load<1, 0>(spins), load<1, 1>(spins);
-    load<2, 0>(spins), load<2, 1>(spins);
+    auto const place = site.place(spins.stride);
+    vector_type center;
+    site.load_row(spins, place, center, found_[0]);
+    load<1, 0>(spins, place), load<1, 1>(spins, place);
+    load<2, 0>(spins, place), load<2, 1>(spins, place);
   }
 
   KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
@@ -32,15 +34,11 @@ class NeighborsOfSite {
 
  private:
   template <int Axis, int Direction>
-  KOKKOS_FORCEINLINE_FUNCTION void load(SiteArray<Real, 3> const& spins) {
-    value_type const zero(Real(0));
-    vector_type const none{zero, zero, zero};
-    if constexpr (Axis == 0)
-      found_[Axis][Direction] = site_.template neighbor<Axis, Direction>(spins, none);
-    else
-      found_[Axis][Direction] = site_.row().template has_neighbor<Axis, Direction>()
-                                    ? site_.template neighbor<Axis, Direction>(spins, none)
-                                    : none;
+  KOKKOS_FORCEINLINE_FUNCTION void load(SiteArray<Real, 3> const& spins,
+                                        typename Site::Place const& place) {
+    found_[Axis][Direction] = site_.row().template has_neighbor<Axis, Direction>()
+                                  ? site_.template neighbor<Axis, Direction>(spins, place)
+                                  : zero<value_type>();
   }
 
   Site const& site_;

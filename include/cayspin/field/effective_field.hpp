@@ -87,11 +87,20 @@ class EffectiveField<First, Rest...>
       Stencil const& stencil) const {
     detail::check_field<First, Stencil>();
     detail::check_energy_density<First, Stencil>();
-    if constexpr (sizeof...(Rest) == 0) {
+    if constexpr (sizeof...(Rest) == 0)
       return first_.field(stencil);
-    } else {
-      return first_.field(stencil) + rest_.field(stencil);
-    }
+    else
+      return detail::add_field(first_, stencil, rest_.field(stencil));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
+      Stencil const& stencil) const {
+    detail::check_field<First, Stencil>();
+    detail::check_energy_density<First, Stencil>();
+    if constexpr (sizeof...(Rest) == 0)
+      return detail::turning_field(first_, stencil);
+    else
+      return detail::add_turning_field(first_, stencil, rest_.turning_field(stencil));
   }
 
   /// The part of H that is not local.

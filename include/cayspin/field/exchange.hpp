@@ -23,16 +23,42 @@ class UniformExchange {
                                : 0.0;
       couples_[axis] = coefficient_[axis] != 0;
     }
+    is_cubic_ =
+        couples_[0] && coefficient_[0] == coefficient_[1] && coefficient_[1] == coefficient_[2];
   }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
+    return add_field(stencil, zero<typename Stencil::value_type>());
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
+      Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
     using Value = typename Stencil::value_type;
-    auto h = zero<Value>();
+    if (is_cubic_) [[likely]] {
+      // As below, exactly zero where all are equal.
+      auto const in_plane =
+          multiply_add(Value(-4), stencil.center(), pair<0>(stencil) + pair<1>(stencil));
+      auto const across = multiply_add(Value(-2), stencil.center(), pair<2>(stencil));
+      return multiply_add(scaled<0, Value>(1), in_plane + across, h);
+    }
     if (couples_[0]) h = second_difference<0>(stencil, h);
     if (couples_[1]) h = second_difference<1>(stencil, h);
     if (couples_[2]) h = second_difference<2>(stencil, h);
+    return h;
+  }
+  /// H without a multiple of the spin itself; past an open end the neighbour is the spin.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
+      Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
+    using Value = typename Stencil::value_type;
+    if (is_cubic_) [[likely]]
+      return multiply_add(scaled<0, Value>(1),
+                          pair<0>(stencil) + pair<1>(stencil) + pair<2>(stencil), h);
+    if (couples_[0]) h = pair_sum<0>(stencil, h);
+    if (couples_[1]) h = pair_sum<1>(stencil, h);
+    if (couples_[2]) h = pair_sum<2>(stencil, h);
     return h;
   }
 
@@ -67,14 +93,24 @@ class UniformExchange {
     return as_value<Value>(factor * coefficient_[Axis]);
   }
 
+  template <int Axis, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION static auto pair(Stencil const& stencil) {
+    return stencil.template previous<Axis>() + stencil.template next<Axis>();
+  }
+
   // previous + next - 2 center, in a form that is exactly zero where the three are equal.
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector second_difference(Stencil const& stencil,
                                                        Vector const& sum) const {
     using Value = typename Stencil::value_type;
-    Vector const both = stencil.template previous<Axis>() + stencil.template next<Axis>();
-    return multiply_add(scaled<Axis, Value>(1), multiply_add(Value(-2), stencil.center(), both),
-                        sum);
+    return multiply_add(scaled<Axis, Value>(1),
+                        multiply_add(Value(-2), stencil.center(), pair<Axis>(stencil)), sum);
+  }
+
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector pair_sum(Stencil const& stencil, Vector const& sum) const {
+    using Value = typename Stencil::value_type;
+    return multiply_add(scaled<Axis, Value>(1), pair<Axis>(stencil), sum);
   }
 
   template <int Axis, class Stencil, class Vector>
@@ -97,6 +133,7 @@ class UniformExchange {
 
   double coefficient_[3];
   bool couples_[3];  // is the coefficient of the axis not 0?
+  bool is_cubic_;    // the same coefficient along all axes
 };
 
 }  // namespace detail

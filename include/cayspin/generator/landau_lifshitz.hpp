@@ -27,14 +27,12 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
 
   /// Throws std::invalid_argument when damping is negative or not finite.
   LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
-      : field_(std::move(field)),
-        damping_(std::move(damping)),
-        precession_(precession ? 1.0 : 0.0) {
+      : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
     check(damping_);
   }
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
-  KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_ != 0; }
+  KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }
   /// False where the damping is zero on all sites; not looked for where it is a field.
   KOKKOS_FORCEINLINE_FUNCTION bool is_damped() const {
     if constexpr (uniform)
@@ -57,7 +55,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
     auto prepared = make(field_);
     auto damping = detail::array_of(damping_);
     return LandauLifshitz<decltype(prepared), decltype(damping)>(std::move(prepared), damping,
-                                                                 precession_ != 0);
+                                                                 precession_);
   }
   template <class Test>
   bool all_parts(Test const& test) const {
@@ -69,6 +67,11 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     return generator(stencil.site(), stencil.center(), field_.field(stencil));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
+      Stencil const& stencil) const {
+    return generator(stencil.site(), stencil.center(), detail::turning_field(field_, stencil));
   }
 
   /// H from other spins, of which generator_at makes A at a spin that has moved on since.
@@ -107,7 +110,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
                                                      Vec3<Value> const* h) const {
     static_assert(uniform, "Series4 needs a damping that is one number for all sites.");
-    Vec3<Value> a = as_value<Value>(precession_) * h[K];
+    Vec3<Value> a = as_value<Value>(precession_ ? 1 : 0) * h[K];
     detail::leibniz<K>([&](auto weight, auto j, auto rest) {
       a = multiply_add(as_value<Value>(damping_ * weight), cross(m[j], h[rest]), a);
     });
@@ -118,7 +121,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   /// Not looked for where the damping is a field.
   bool is_conservative() const {
     if constexpr (uniform)
-      return damping_ == 0 && precession_ != 0;
+      return damping_ == 0 && precession_;
     else
       return false;
   }
@@ -141,13 +144,15 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,
                                                     Vec3<Value> const& h) const {
-    return multiply_add(detail::coefficient<Value>(damping_, site), cross(m, h),
-                        as_value<Value>(precession_) * h);
+    Value const damping = detail::coefficient<Value>(damping_, site);
+    if (precession_) [[likely]]
+      return multiply_add(damping, cross(m, h), h);
+    return damping * cross(m, h);
   }
 
   Field field_;
   Damping damping_;
-  double precession_;
+  bool precession_;
 };
 
 namespace detail {

@@ -68,6 +68,11 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
       Stencil const& stencil) const {
     return detail::orthogonal_part(detail::evaluate(generator_, stencil), stencil.center());
   }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
+      Stencil const& stencil) const {
+    return detail::turning_part(generator_, stencil);
+  }
 
   // Of generators made of a field.
   template <class Stencil>

@@ -84,6 +84,19 @@ KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& 
   }
 }
 
+/// Calls visit(array) for the arrays that a stage reads.
+template <class Flow, class Kind, class Visit>
+KOKKOS_FORCEINLINE_FUNCTION void for_each_input(StageArrays<Kind, Flow::stages> const& arrays,
+                                                Visit const& visit) {
+  if constexpr (Flow::reads_start) visit(arrays.start);
+  visit(arrays.level);
+  unrolled<Flow::stages - 1>([&](auto j) {
+    if constexpr (Flow::reads_increment(j())) visit(arrays.increments[j()]);
+  });
+  if constexpr (Flow::reads_sum) visit(arrays.sum_before);
+  for (int i = 0; i < Flow::carried; ++i) visit(arrays.carried_before[i]);
+}
+
 template <class Real>
 struct WholeFields {
   using Input = SiteArray<Real, 3>;
@@ -133,16 +146,14 @@ struct ToPlane {
   }
 };
 
-/// Planes to their rows `row`. Inputs are prefetched `ahead` numbers further; 0: not at all.
+/// Planes to their rows `row`.
 template <class Real>
 struct ToRow {
   Axis y;
   std::int32_t row;
-  std::ptrdiff_t ahead;
-  bool level_from_memory;
 
   KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(PlaneRows<Real> const& plane) const {
-    return plane.input(row, ahead);
+    return plane.input(row);
   }
   KOKKOS_FORCEINLINE_FUNCTION RowStencil<Real> spins(
       typename Planes<Real>::Spins const& planes) const {
@@ -153,13 +164,26 @@ struct ToRow {
     rows.neighbor[0][1] = planes.here.row(y.next(row));
     rows.neighbor[1][0] = planes.previous.row(row);
     rows.neighbor[1][1] = planes.next.row(row);
-    // Of the neighbour planes, the next one is read from memory first.
-    rows.ahead = level_from_memory ? rows.neighbor[1][1] - rows.data + planes.next.pitch : 0;
     return rows;
   }
   KOKKOS_FORCEINLINE_FUNCTION RowOutput<Real> output(
       typename Planes<Real>::Output const& plane) const {
     return plane.rows.output(row, plane.streaming);
+  }
+};
+
+/// Asks for what will be read from memory next, `ahead` numbers further. Of the neighbour planes,
+/// the next one comes first.
+template <class Real>
+struct Prefetch {
+  std::ptrdiff_t ahead;
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(RowInput<Real> const& row) const {
+    for (int component = 0; component < 3; ++component)
+      prefetch(row.data + component * row.stride + ahead);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(RowStencil<Real> const& rows) const {
+    (*this)(RowInput<Real>{rows.neighbor[1][1], rows.stride});
   }
 };
 
@@ -169,7 +193,7 @@ struct ToSiteRow {
   Row const& row;
 
   KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(SiteArray<Real, 3> const& array) const {
-    return {array.data + row.offset, array.stride, 0};
+    return {array.data + row.offset, array.stride};
   }
   KOKKOS_FORCEINLINE_FUNCTION RowStencil<Real> spins(SiteArray<Real, 3> const& array) const {
     RowStencil<Real> rows;

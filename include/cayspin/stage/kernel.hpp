@@ -62,6 +62,10 @@ struct ChartWeights {
   }
 };
 
+/// Are an update's increments made of A x m alone?
+template <class Update>
+inline constexpr bool needs_turning_alone = requires { requires Update::increment_is_normal; };
+
 /// isotropy::Energy's formula for a method, specialised beside the methods that have one.
 template <class Tableau, class Update>
 struct EnergyCorrection {
@@ -93,8 +97,8 @@ struct RungeKuttaStage {
     using Value = typename Site::value_type;
     Stencil<Site, Real, RowStencil<Real>> const stencil(site, rows.level);
     Vec3<Value> const& m = stencil.center();
+    Vec3<Value> const xi = stage_generator(stencil);
     Vec3<Value> const m0 = StageIndex == 0 ? m : site.load(rows.start);
-    Vec3<Value> const xi = completed_by_isotropy(m, evaluate(generator, stencil));
     if constexpr (Flow::recovers) {
       site.store(on_chart(site, rows, xi, m, m0), rows.next);
       return;
@@ -132,17 +136,20 @@ struct RungeKuttaStage {
   }
 
  private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> completed_by_isotropy(Vec3<Value> const& m,
-                                                                Vec3<Value> const& a) const {
-    if constexpr (std::is_same_v<Isotropy, isotropy::Energy>) {
-      return a;  // completed at the end of the step
+  // A, or what turns the spin of it where the update asks for no more.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
+    if constexpr (needs_turning_alone<Update>) {
+      return turning_part(generator, stencil);
+    } else if constexpr (std::is_same_v<Isotropy, isotropy::Energy>) {
+      return evaluate(generator, stencil);  // completed at the end of the step
     } else {
+      using Vector = typename Stencil::vector_type;
       static_assert(
-          requires { isotropy(m, a); },
+          requires(Vector const& m) { isotropy(m, m); },
           "This isotropy policy does not go with this stepper: Zero and Constant go with all on "
           "the group, FiniteDifference, Analytic and Connection with LieEuler.");
-      return isotropy(m, a);
+      return isotropy(stencil.center(), evaluate(generator, stencil));
     }
   }
 
@@ -206,7 +213,11 @@ struct RungeKuttaStage {
                                                    Vec3<Value> const& m0) const {
     if constexpr (!last) {
       constexpr double factor = Tableau::a[StageIndex + 1][StageIndex];
-      return Update::advance(Value(static_cast<Real>(factor) * dt), a, m, m0);
+      Value const step(static_cast<Real>(factor) * dt);
+      if constexpr (StageIndex == 0)
+        return Update::advance(step, a, m);
+      else
+        return Update::advance(step, a, m, m0);
     } else {
       Vec3<Value> spins[std::size_t{StageIndex}];
       unrolled<StageIndex - 1>([&](auto j) { spins[j()] = site.load(rows.increments[j()]); });

@@ -21,12 +21,11 @@ struct StagePlanes {
 
   StageArrays<Planes<Real>, Flow::stages> arrays;
   Axis y;
-  std::ptrdiff_t ahead = 0;        // how much earlier rows from memory are prefetched
-  bool level_from_memory = false;  // not from a cache
+  bool from_memory = false;  // not from a cache
 
   KOKKOS_FORCEINLINE_FUNCTION RowArrays rows(std::int32_t at) const {
     RowArrays rows;
-    convert<Flow>(arrays, ToRow<Real>{y, at, ahead, level_from_memory}, rows);
+    convert<Flow>(arrays, ToRow<Real>{y, at}, rows);
     return rows;
   }
 };
@@ -42,22 +41,33 @@ CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
   StagePlanes<Flow, Real> planes;
   convert<Flow>(fields, ToPlane<Real>{layout, z}, planes.arrays);
   planes.y = Axis(layout, 1);
-  planes.ahead = layout.pitch;
-  planes.level_from_memory = true;
+  planes.from_memory = layout.allocation(3) * sizeof(Real) > core_cache_bytes();
   return planes;
 }
 
-/// The one compiled body of a stage on host spaces: every caller gets the same bits.
+/// The one compiled body of a stage on host spaces: every caller gets the same bits. The packs at
+/// the ends of a row have a loop of their own, so that the others ask nothing.
 template <class Kernel>
 CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                        RowLayout const& layout, RowBlock block) {
   using Real = typename Kernel::value_type;
+  constexpr std::ptrdiff_t lanes = host_lanes<Real>;
+  std::ptrdiff_t const begin = block.pack_begin * lanes, end = block.pack_end * lanes;
+  std::ptrdiff_t const last = (pack_count<Real>(layout) - 1) * lanes;
+  std::ptrdiff_t const first_at_end = begin > 0 ? last : 0, to_last = last > 0 ? last : lanes;
+  std::ptrdiff_t const inner_begin = Kokkos::max(begin, lanes), inner_end = Kokkos::min(end, last);
   Kernel const local = kernel;
   for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
     typename Kernel::RowArrays const rows = planes.rows(y);
     Row const row(layout, planes.y.wrapped(y), block.z);
-    for (std::int32_t pack = block.pack_begin; pack < block.pack_end; ++pack)
-      local(Site<Pack<Real>>(row, pack * host_lanes<Real>), rows);
+    for (std::ptrdiff_t x = inner_begin; x < inner_end; x += lanes) {
+      std::ptrdiff_t const here = opaque(x);
+      if (planes.from_memory)
+        for_each_input<typename Kernel::Flow>(rows, Prefetch<Real>{here + layout.pitch});
+      local(Site<Pack<Real>, false>(row, here), rows);
+    }
+    for (std::ptrdiff_t x = first_at_end; x < end; x += to_last)
+      local(Site<Pack<Real>, true>(row, opaque(x)), rows);
   }
 }
 

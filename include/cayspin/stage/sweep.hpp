@@ -144,7 +144,7 @@ struct SweepLoop {
     PlanesOf<Kernel> planes;
     find_arrays<typename Kernel::Flow>(PlaneOfStep{*this, part, z, here}, planes.arrays);
     planes.y = part.y.axis;
-    planes.level_from_memory = Stage == 0;
+    planes.from_memory = Stage == 0;
     run_stage(kernel, planes, plan.layout,
               {here, part.low(Stage), part.high(Stage), 0, pack_count<Real>(plan.layout)});
   }

@@ -58,6 +58,7 @@ struct LieUncorrected : Lie<Rotation> {
 /// Classical Runge-Kutta in space: f is a displacement, and |m| drifts.
 struct Classical {
   static constexpr bool increment_needs_argument = false;
+  static constexpr bool increment_is_normal = true;  // made of A x m alone
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -105,6 +106,7 @@ struct Projected : Classical {
 /// Breaks down only if the spin of a stage reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
+  static constexpr bool increment_is_normal = true;
   static constexpr bool has_chart = true;  // f can be computed again from the spin it moves m0 to
 
   template <class Value>
@@ -132,6 +134,16 @@ struct Stereographic {
                                                                       Vec3<Value> const& m0) {
     Value const s = dot(f, f);
     return {Value(Value(2) / (Value(1) + s)), multiply_add(Value(Value(0) - s), m0, f)};
+  }
+
+  /// move(increment(step a, m, m), m) for a unit spin, with one division.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
+                                                         Vec3<Value> const& m) {
+    Vec3<Value> const u = cross(a, m);
+    Value const s = Value(Value(0.25) * step * step) * dot(u, u);
+    Value const scale = Value(1) / (Value(1) + s);
+    return multiply_add(Value(scale * step), u, multiply_add(Value(Value(-2) * scale * s), m, m));
   }
 
   /// move(increment(step a, m, m0), m0) for unit spins, with one division.

@@ -137,7 +137,7 @@ struct RedBlackStage {
 
    public:
     KOKKOS_FORCEINLINE_FUNCTION Moving(RedBlackStage const& stage, Site const& site)
-        : site_(site), q_(site.load_center(stage.spins)), neighbors_(site, stage.spins) {}
+        : site_(site), q_(site.load(stage.spins)), neighbors_(site, stage.spins) {}
 
     KOKKOS_FORCEINLINE_FUNCTION static bool varies(RedBlackStage const& stage) {
       if constexpr (in_parts)
