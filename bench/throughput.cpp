@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Nanoseconds per spin and step over the number of spins, beside the hand-written loops and the
 // memory's speed in the same run. Cases are named PRECISION/METHOD/SIZE; a size is a cube's edge,
-// or L2 for a lattice that the second cache holds.
+// or L2 for a lattice that the second cache holds. There a probe stands beside each method: its
+// step written out for this scene alone, on one core.
 //   bench_throughput --benchmark_filter='/(32|128)/' --benchmark_out=32_128.json
 #include "context.hpp"
 #include "hand_written.hpp"
+#include "probes.hpp"
 #include "scene.hpp"
 #include "stream.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -27,6 +34,39 @@ void run_hand_written(benchmark::State& state, int n, double words) {
   scene::report(state, sites, words, 0);
 }
 
+/// How far the spins of a probe are from those of the library's method after a few steps.
+template <class Stepper>
+double distance(probes::Probe<typename Stepper::spins_type::value_type>& probe) {
+  auto const lattice = scene::in_l2();
+  auto spins = scene::random<typename Stepper::spins_type>(lattice);
+  auto stepper = scene::make_stepper<Stepper>(spins);
+  auto const generator = scene::Default::generator(lattice);
+  probe.set(random_spins(lattice.sites()));
+  for (int step = 0; step < 10; ++step) {
+    stepper.step(Kokkos::DefaultExecutionSpace(), generator, spins, 0, scene::dt);
+    probe.step(static_cast<typename Stepper::spins_type::value_type>(scene::dt));
+  }
+  auto const ours = copy_to_host(spins);
+  auto const its = probe.get();
+  double most = 0;
+  for (std::size_t i = 0; i < its.size(); ++i)
+    most = std::max(most, std::abs(static_cast<double>(ours[i]) - its[i]));
+  return most;
+}
+
+template <class Stepper, class Make>
+void run_probe(benchmark::State& state, Make const& make, double words) {
+  using Real = typename Stepper::spins_type::value_type;
+  auto const shape = scene::in_l2().shape;
+  auto const probe = make(probes::Scene{static_cast<int>(shape[0]), static_cast<int>(shape[1]),
+                                        static_cast<int>(shape[2]), scene::exchange,
+                                        scene::anisotropy, scene::applied, scene::damping});
+  if (!(distance<Stepper>(*probe) < 200 * std::numeric_limits<Real>::epsilon()))
+    return state.SkipWithError("the probe does not take the steps that it stands for");
+  for (auto _ : state) probe->step(static_cast<Real>(scene::dt));
+  scene::report(state, scene::in_l2().sites(), words, 0);
+}
+
 constexpr int edges[] = {5, 10, 16, 24, 32, 48, 64, 96, 128, 192, 256, 292};
 
 template <class Real>
@@ -40,6 +80,13 @@ class Register {
     // Numbers read and written per spin and step where each stage is a pass over memory.
     hand_written<hand_written::Heun>("hand-written Heun", 27);
     hand_written<hand_written::RungeKutta4>("hand-written RK4", 63);
+    add_probe<cayspin::LieEuler<Spins>>("Euler", probes::euler<Real>, 6);
+    add_probe<cayspin::LieHeun<Spins>>("Heun", probes::heun<Real>, 21);
+    add_probe<cayspin::Rkmk4<Spins>>("RKMK4", probes::rkmk4<Real>, 57);
+    add_probe<StereographicRungeKutta<Spins, Heun>>("Heun tangent", probes::chart_heun<Real>, 15);
+    add_probe<StereographicRungeKutta<Spins, Classical4>>("RKMK4 tangent", probes::chart_rk4<Real>,
+                                                          39);
+    add_probe<cayspin::ProjectedRk4<Spins>>("RK4 projected", probes::projected_rk4<Real>, 51);
     add<cayspin::LieEuler<Spins>>("Euler", 6);
     add<cayspin::LieHeun<Spins>>("Heun", 21);
     add<cayspin::Rkmk4<Spins>>("RKMK4", 57);
@@ -58,6 +105,12 @@ class Register {
     for (int const n : edges)
       scene::add(prefix_ + name + "/" + std::to_string(n),
                  [=](benchmark::State& state) { run_hand_written<Method, Real>(state, n, words); });
+  }
+
+  template <class Stepper, class Make>
+  void add_probe(std::string const& name, Make make, double words) const {
+    scene::add(prefix_ + "probe " + name + "/L2",
+               [=](benchmark::State& state) { run_probe<Stepper>(state, make, words); });
   }
 
   template <class Stepper, class System = scene::Default>
