@@ -142,7 +142,7 @@ class OnRows : public Probe<Real> {
     auto const damping = static_cast<Real>(scene_.damping);
     Real const* const spins = fields_[static_cast<std::size_t>(level)].data();
     std::ptrdiff_t const stride = stride_;
-    auto const pairs = [&](Real const* from, std::ptrdiff_t const (&to)[4]) {
+    auto const pairs = [&](Real const* from, std::ptrdiff_t const(&to)[4]) {
       return (load(from - 1) + load(from + 1)) + (load(from + to[0]) + load(from + to[1])) +
              (load(from + to[2]) + load(from + to[3]));
     };
@@ -162,7 +162,8 @@ class OnRows : public Probe<Real> {
           body(at, m, h + damping * cross(m, h));
         }
         for (int component = 0; component < 3; ++component) {
-          Real* const begin = fields_[static_cast<std::size_t>(out)].data() + component * stride + row;
+          Real* const begin =
+              fields_[static_cast<std::size_t>(out)].data() + component * stride + row;
           begin[-1] = begin[0];
           begin[scene_.nx] = begin[scene_.nx - 1];
         }
@@ -202,12 +203,12 @@ class OnRows : public Probe<Real> {
   std::ptrdiff_t pitch_, stride_;
 };
 
-#define PROBE_MEMBERS(Name)                                \
- public:                                                   \
+#define PROBE_MEMBERS(Name)                                  \
+ public:                                                     \
   explicit Name(Scene const& scene) : OnRows<Real>(scene) {} \
-                                                           \
- private:                                                  \
-  using typename OnRows<Real>::V;                          \
+                                                             \
+ private:                                                    \
+  using typename OnRows<Real>::V;                            \
   using OnRows<Real>::fields_;
 
 template <class Real>
@@ -334,12 +335,12 @@ class ProjectedRk4 : public OnRows<Real> {
 
 }  // namespace
 
-#define PROBE(name, Type)                              \
-  template <class Real>                                \
-  Made<Real> name(Scene const& scene) {                \
-    return std::make_unique<Type<Real>>(scene);        \
-  }                                                    \
-  template Made<float> name<float>(Scene const&);      \
+#define PROBE(name, Type)                         \
+  template <class Real>                           \
+  Made<Real> name(Scene const& scene) {           \
+    return std::make_unique<Type<Real>>(scene);   \
+  }                                               \
+  template Made<float> name<float>(Scene const&); \
   template Made<double> name<double>(Scene const&);
 
 PROBE(euler, Euler)

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# cmake -DVALGRIND=... -DPROGRAM=... -DEXPECTED=... [-DRECORD=ON] -P compare.cmake
+# cmake -DVALGRIND=... -DPROGRAM=... -DEXPECTED=... [-DFOLDER=...] [-DRECORD=ON] -P compare.cmake
 # Runs the program under callgrind and compares each count of instructions per site and step with
 # the expected one; RECORD writes what is found into EXPECTED instead.
 set(sites 1024)
 set(margin_percent 2)
 
 set(folder callgrind)
+if(FOLDER)
+  set(folder ${FOLDER})
+endif()
 file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder})
 execute_process(
