@@ -4,21 +4,22 @@
 a kernel of cayspin spills any, or keeps arrays in a stack frame, both of which is memory."""
 
 import argparse
-import json
 import pathlib
 import re
 import shlex
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from device_kernels import compile_entry, short_names  # noqa: E402
+
 ENTRY = re.compile(
     r"Compiling entry function '(\S+)'.*?(\d+) bytes stack frame, (\d+) bytes spill stores, "
     r"(\d+) bytes spill loads.*?Used (\d+) registers", re.DOTALL)
 
 
-def device_command(wrapper_command, output):
+def device_command(words, output):
     """nvcc's own command for the cubin, from the one that compiles the object."""
-    words = shlex.split(wrapper_command)
     words.remove("-c")
     at = words.index("-o")
     del words[at:at + 2]
@@ -27,25 +28,15 @@ def device_command(wrapper_command, output):
     return [*shlex.split(asked.stdout), "-Xptxas=-v", "-cubin", "-o", output]
 
 
-def short_names(symbols):
-    """What a kernel does and to which precision, without Kokkos' wrapping."""
-    names = subprocess.run(["c++filt"], input="\n".join(symbols), check=True, text=True,
-                           stdout=subprocess.PIPE).stdout.splitlines()
-    for name in names:
-        inner = re.search(r"ParallelFor<(.*?), Kokkos::RangePolicy", name)
-        yield re.sub(r"(cayspin|detail|stepper|tableau)::", "", inner[1] if inner else name)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
     parser.add_argument("source")
     parser.add_argument("output", metavar="CUBIN")
     arguments = parser.parse_args()
-    entry = next(entry for entry in json.loads(arguments.commands.read_text())
-                 if entry["file"] == arguments.source)
-    command = device_command(entry["command"], arguments.output)
-    done = subprocess.run(command, cwd=entry["directory"], text=True, stdout=subprocess.PIPE,
+    directory, words = compile_entry(arguments.commands, arguments.source)
+    command = device_command(words, arguments.output)
+    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT)
     found = [match.groups() for match in ENTRY.finditer(done.stdout) if "cayspin" in match[1]]
     if done.returncode != 0 or not found:

@@ -5,12 +5,14 @@ fails when a kernel spills vector registers to memory that is not known to. Scal
 into lanes of vector registers."""
 
 import argparse
-import json
 import pathlib
 import re
 import shlex
 import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from device_kernels import compile_entry, short_names  # noqa: E402
 
 REMARK = re.compile(r"remark:\s+(Function Name|VGPRs|AGPRs|ScratchSize|SGPRs Spill|VGPRs Spill)"
                     r"(?: \[[^\]]*\])?: (\S+)")
@@ -27,15 +29,6 @@ def kernels(output):
     return [kernel for kernel in found if "cayspin" in kernel["symbol"]]
 
 
-def short_names(symbols):
-    """What a kernel does and to which precision, without Kokkos' wrapping."""
-    names = subprocess.run(["c++filt"], input="\n".join(symbols), check=True, text=True,
-                           stdout=subprocess.PIPE).stdout.splitlines()
-    for name in names:
-        inner = re.search(r"ParallelFor<(.*?), Kokkos::RangePolicy", name)
-        yield re.sub(r"(cayspin|detail|stepper|tableau)::", "", inner[1] if inner else name)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
@@ -43,12 +36,10 @@ def main():
     parser.add_argument("output", metavar="OBJECT")
     parser.add_argument("--may-spill", metavar="PATTERN", default="(?!)")
     arguments = parser.parse_args()
-    entry = next(entry for entry in json.loads(arguments.commands.read_text())
-                 if entry["file"] == arguments.source)
-    words = shlex.split(entry["command"])
+    directory, words = compile_entry(arguments.commands, arguments.source)
     words[words.index("-o") + 1] = arguments.output
     command = [*words, "--cuda-device-only", "-Rpass-analysis=kernel-resource-usage"]
-    done = subprocess.run(command, cwd=entry["directory"], text=True, stdout=subprocess.PIPE,
+    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT)
     found = kernels(done.stdout)
     if done.returncode != 0 or not found:
