@@ -141,5 +141,8 @@ inline void refused() {
   evaluate_field(exec, body, spins, 0, Spins("output", Lattice::chain(3)));
 #elif CAYSPIN_TEST_MISTAKE == 30
   largest_rate(exec, Zeeman{{0, 0, 1}}, spins);
+#elif CAYSPIN_TEST_MISTAKE == 31
+  RungeKutta<Spins, tableau::Heun, update::Stereographic, isotropy::Analytic>("chart", spins)
+      .step(exec, body, spins, 0, 0.1);
 #endif
 }

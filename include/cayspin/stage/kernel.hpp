@@ -64,7 +64,7 @@ struct ChartWeights {
 
 /// Are an update's increments made of A x m alone?
 template <class Update>
-inline constexpr bool needs_turning_alone = requires { requires Update::increment_is_normal; };
+inline constexpr bool needs_turning_alone = requires { requires Update::needs_turning_alone; };
 
 /// isotropy::Energy's formula for a method, specialised beside the methods that have one.
 template <class Tableau, class Update>
@@ -139,18 +139,18 @@ struct RungeKuttaStage {
   // A, or what turns the spin of it where the update asks for no more.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
-    if constexpr (needs_turning_alone<Update>) {
+    using Vector = typename Stencil::vector_type;
+    constexpr bool at_the_end = std::is_same_v<Isotropy, isotropy::Energy>;
+    static_assert(
+        at_the_end || requires(Isotropy const& sigma, Vector const& m) { sigma(m, m); },
+        "This isotropy policy does not go with this stepper: Zero and Constant go with all on "
+        "the group, FiniteDifference, Analytic and Connection with LieEuler.");
+    if constexpr (needs_turning_alone<Update>)
       return turning_part(generator, stencil);
-    } else if constexpr (std::is_same_v<Isotropy, isotropy::Energy>) {
-      return evaluate(generator, stencil);  // completed at the end of the step
-    } else {
-      using Vector = typename Stencil::vector_type;
-      static_assert(
-          requires(Vector const& m) { isotropy(m, m); },
-          "This isotropy policy does not go with this stepper: Zero and Constant go with all on "
-          "the group, FiniteDifference, Analytic and Connection with LieEuler.");
+    else if constexpr (at_the_end)
+      return evaluate(generator, stencil);
+    else
       return isotropy(stencil.center(), evaluate(generator, stencil));
-    }
   }
 
   template <class Value, int Index>

@@ -58,7 +58,7 @@ struct LieUncorrected : Lie<Rotation> {
 /// Classical Runge-Kutta in space: f is a displacement, and |m| drifts.
 struct Classical {
   static constexpr bool increment_needs_argument = false;
-  static constexpr bool increment_is_normal = true;  // made of A x m alone
+  static constexpr bool needs_turning_alone = true;  // of A: increments are made of A x m
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,
@@ -106,7 +106,7 @@ struct Projected : Classical {
 /// Breaks down only if the spin of a stage reaches -m0.
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
-  static constexpr bool increment_is_normal = true;
+  static constexpr bool needs_turning_alone = true;
   static constexpr bool has_chart = true;  // f can be computed again from the spin it moves m0 to
 
   template <class Value>
