@@ -29,7 +29,7 @@ void check_energy_control(Scene const& scene) {
   if (system.kind == SystemKind::llg && (system.damping != 0 || !system.precession))
     refuse(scene, key, "needs a system that conserves its energy",
            "damping = 0 with precession, or no such key");
-  if (depends_on_time(scene)) refuse(scene, key, "needs a field without t", "no such key");
+  if (depends_on_time(scene.field)) refuse(scene, key, "needs a field without t", "no such key");
   if (!integrator.method->has_equal_steps())
     refuse(scene, key,
            fmt::format("method \"{}\" does not step from the spins that it changes",
@@ -76,7 +76,7 @@ void check_isotropy(Scene const& scene) {
   if (system.damping != 0 || !system.precession)
     refuse(scene, key, "\"energy\" needs a system that conserves its energy",
            "damping = 0 with precession, or another isotropy");
-  if (depends_on_time(scene))
+  if (depends_on_time(scene.field))
     refuse(scene, key, "\"energy\" needs a field without t", "another isotropy");
 }
 
@@ -139,7 +139,7 @@ void check_combination(Scene const& scene) {
   if (method.neighbors == Neighbors::by_colour) check_two_colours(scene);
   if (integrator.generator == Generator::tangent) return check_tangent(scene);
   check_isotropy(scene);
-  if (method.differentiates_field && depends_on_time(scene))
+  if (method.differentiates_field && depends_on_time(scene.field))
     refuse(scene, "integrator.method",
            fmt::format("\"{}\" refuses fields that depend on t", method.word),
            "a method without derivatives, or numbers in field.applied");

@@ -7,13 +7,13 @@
 
 namespace cayspin::simulation {
 
-AppliedField::AppliedField(io::Scene const& scene)
-    : mu0_(scene.field.mu0),
-      present_(scene.field.applied.has_value()),
-      depends_on_time_(io::depends_on_time(scene)) {
+AppliedField::AppliedField(io::Field const& field)
+    : mu0_(field.mu0),
+      present_(field.applied.has_value()),
+      depends_on_time_(io::depends_on_time(field)) {
   if (!present_) return;
   for (std::size_t c = 0; c < 3; ++c) {
-    auto const& component = (*scene.field.applied)[c];
+    auto const& component = (*field.applied)[c];
     if (auto const* text = std::get_if<std::string>(&component))
       components_[c] = io::Expression(*text, {"t"});
     else

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/io/expression.hpp>
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/field.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <array>
@@ -13,7 +13,7 @@ namespace cayspin::simulation {
 /// The uniform field mu0 applied(t) of a scene.
 class AppliedField {
  public:
-  explicit AppliedField(io::Scene const& scene);
+  explicit AppliedField(io::Field const& field);
 
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }

@@ -37,7 +37,7 @@ Lattice make_lattice(io::Scene const& scene) {
 
 // The largest |mu0 applied| at 1001 equal times of the run.
 double largest_applied(io::Scene const& scene, Times const& times) {
-  AppliedField const applied(scene);
+  AppliedField const applied(scene.field);
   if (!applied.present()) return 0;
   int const samples = applied.depends_on_time() ? 1000 : 0;
   double const end = times.at(times.steps);

@@ -10,7 +10,7 @@
 #include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/generator/rigid_body.hpp>
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/field.hpp>
 
 #include <optional>
 
@@ -165,10 +165,10 @@ class SceneField {
   using Real = typename Spins::value_type;
 
  public:
-  SceneField(io::Scene const& scene, Lattice const& lattice)
-      : lattice_terms_(lattice_terms_of(scene.field, lattice)), applied_(scene) {
-    for (auto const& term : scene.field.anisotropies) quadratic_.add(term.constant, term.axis);
-    if (scene.field.slab_demag) add(*scene.field.slab_demag, scene.field.mu0, lattice);
+  SceneField(io::Field const& field, Lattice const& lattice)
+      : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field) {
+    for (auto const& term : field.anisotropies) quadratic_.add(term.constant, term.axis);
+    if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);
   }
 
   /// Throws NumbersFailed when an applied field is not finite at t.

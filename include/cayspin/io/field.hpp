@@ -129,6 +129,9 @@ struct Field {
   static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi};
 };
 
+/// True when a component of the applied field contains t.
+bool depends_on_time(Field const& field);
+
 /// Calls work(term) for the std::optional of each lattice term.
 template <class AnyField, class Work>
 void for_each_lattice_term(AnyField&& field, Work&& work) {
