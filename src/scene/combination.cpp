@@ -100,10 +100,11 @@ void check_two_colours(Scene const& scene) {
                          method, extent, "xyz"[axis]),
              "an even extent, an open boundary, or another method");
   }
-  if (auto const& slab = scene.field.slab_demag; slab && (slab->average_layer || slab->on_host))
-    refuse(scene, "field.slab_demag",
+  if (is_nonlocal(scene.field))
+    refuse(scene, scene.field.own.nonlocal ? "field" : "field.slab_demag",
            fmt::format("method \"{}\" needs a field of the neighbours alone", method),
-           "neither average nor where, or another method");
+           scene.field.own.nonlocal ? "no nonlocal field, or another method"
+                                    : "neither average nor where, or another method");
 }
 
 void check_tangent(Scene const& scene) {
@@ -123,6 +124,11 @@ void check_tangent(Scene const& scene) {
 }  // namespace
 
 void check_combination(Scene const& scene) {
+  if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->on_host)
+    refuse(scene, "field.slab_demag", "where = \"host\" does not go with a program's own field",
+           "no such key");
+  if (scene.field.own.uniform && scene.field.applied)
+    refuse(scene, "field.applied", "the program has a uniform field of its own", "no such key");
   auto const& integrator = scene.integrator;
   auto const& method = *integrator.method;
   check_energy_control(scene);

@@ -79,6 +79,7 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
   auto changed = read(scene.text, scene.path, overrides);
   changed.places = scene.places;
+  changed.field.own = scene.field.own;
   return changed;
 }
 

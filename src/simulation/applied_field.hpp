@@ -6,6 +6,7 @@
 #include <cayspin/vec3.hpp>
 
 #include <array>
+#include <functional>
 #include <variant>
 
 namespace cayspin::simulation {
@@ -23,6 +24,7 @@ class AppliedField {
 
  private:
   std::array<std::variant<double, io::Expression>, 3> components_;
+  std::function<std::array<double, 3>(double t)> own_;
   double mu0_;
   bool present_, depends_on_time_;
 };
