@@ -52,7 +52,8 @@ class Scenes(PackageTest):
 
     def test_messages(self):
         for part, tables in {
-                "field.exchnge: unknown key, did you mean \"exchange\"?": {"field": {"exchnge": 1}},
+                "field.anisotropy.konstant: unknown key, did you mean \"constant\"?":
+                    {"field": {"anisotropy": {"konstant": 1, "axis": [0, 0, 1]}}},
                 "integrator.dt: 0 is not positive; accepted: a number > 0":
                     {"integrator": {"dt": 0}},
                 "system.damping: is of type object; accepted: bool":
