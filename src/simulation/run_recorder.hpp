@@ -19,6 +19,8 @@ class RunRecorder {
   /// Throws std::runtime_error for a file that cannot be, or exists and `overwrite` is false.
   RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path, bool overwrite,
               std::string const& git_commit);
+  RunRecorder(RunRecorder const&) = delete;
+  RunRecorder& operator=(RunRecorder const&) = delete;
 
   /// The step at which the file next wants a frame or a sample; the present one at the end.
   std::int64_t next() const;

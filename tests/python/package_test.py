@@ -37,6 +37,8 @@ def scene(**tables):
 
 
 class PackageTest(unittest.TestCase):
+    programs = 0  # that ran
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -44,15 +46,17 @@ class PackageTest(unittest.TestCase):
 
     def run_program(self, of_scene, *options):
         """What `cayspin run` writes of a scene: the open file."""
-        text, output = self.folder / "program.toml", self.folder / "program.h5"
+        self.programs += 1
+        text = self.folder / f"program{self.programs}.toml"
+        output = text.with_suffix(".h5")
         text.write_text(of_scene.text, encoding="utf-8")
-        subprocess.run([PROGRAM, "run", text, "--output", output, "--quiet", "--overwrite",
-                        *options], check=True)
+        subprocess.run([PROGRAM, "run", text, "--output", output, "--quiet", *options],
+                       check=True)
         file = h5py.File(output)
         self.addCleanup(file.close)
         return file
 
-    def assert_refused(self, error, part, call, *arguments, **options):
+    def assert_refused(self, error, part, call, /, *arguments, **options):
         with self.assertRaises(error) as caught:
             call(*arguments, **options)
         message = str(caught.exception)

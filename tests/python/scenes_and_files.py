@@ -104,7 +104,8 @@ class OwnFields(PackageTest):
                 raise ZeroDivisionError("at half past")
             return 0, 0, 1
 
-        sim = cayspin.Simulation(scene(field={"applied": failing}))
+        endless = {"steps": None}  # a scene with an end is looked at up to there beforehand
+        sim = cayspin.Simulation(scene(field={"applied": failing}, integrator=endless))
         self.assert_refused(ZeroDivisionError, "at half past", sim.step, 40)
         self.assertEqual(sim.steps, 10)
         other = cayspin.Simulation(scene(field={"applied": [0, 0, "1"]}))

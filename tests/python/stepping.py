@@ -15,7 +15,7 @@ METHODS = {
     "ab2": {"method": "ab2"},
     "tsit5": {"method": "tsit5", "tolerance": 1e-5},
     "compensated": {"compensated": True},
-    "lagged": {"method": "heun", "isotropy": "finite_difference_backward"},
+    "lagged": {"method": "euler", "isotropy": "finite_difference_backward"},
 }
 
 
@@ -125,7 +125,7 @@ class Interrupt(PackageTest):
         timer.join()
 
     def test_state_is_whole(self):
-        for keys in ({}, METHODS["ab2"], {"method": "tsit5", "tolerance": 1e-5}):
+        for keys in ({}, METHODS["ab2"], {**METHODS["tsit5"], "energy_guard": False}):
             for shape in ([7, 3, 2], [24, 24, 24]):
                 with self.subTest(keys, shape=shape):
                     of = scene(lattice={"shape": shape}, integrator={"steps": None, **keys})
