@@ -7,7 +7,7 @@ core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the heade
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
 program=(libcli11-dev nlohmann-json3-dev)
 drawing=(python3-h5py python3-matplotlib)
-tests=(libgtest-dev nlohmann-json3-dev valgrind clang libomp-dev doxygen)
+tests=(libgtest-dev nlohmann-json3-dev valgrind clang libomp-dev doxygen libfftw3-dev)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${tests[@]}" "${bench[@]}") # but drawing
 
