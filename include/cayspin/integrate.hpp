@@ -23,6 +23,7 @@ struct Times {
   double begin = 0, dt = 0;
   std::int64_t steps = 0;
   std::int64_t first = 0;
+  bool continues = false;  // the stepper goes on with what it remembers of the run before
 
   double at(std::int64_t step) const { return begin + static_cast<double>(step) * dt; }
 };
@@ -174,7 +175,8 @@ class IntegrationOf final : public Integration {
 
 }  // namespace detail
 
-/// Advances `spins` over `times`. A stepper that remembers steps forgets those of runs before.
+/// Advances `spins` over `times`. A stepper that remembers steps forgets those of runs before,
+/// unless times.continues: then runs in pieces give the bits of one run.
 /// Observers see the state before the first step and after each one.
 /// Returns what was done; `spins` holds the state at the end, and the work has finished.
 /// Lengths of spins are not checked: require_unit_spins does that for spins of one's own.
@@ -199,7 +201,9 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
 
-  if constexpr (requires { stepper.reset(); }) stepper.reset();
+  if constexpr (requires { stepper.reset(); }) {
+    if (!times.continues) stepper.reset();
+  }
   std::int64_t evaluations_before = 0;
   if constexpr (detail::counts_evaluations<Stepper>)
     evaluations_before = stepper.evaluations_done();

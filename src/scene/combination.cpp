@@ -29,7 +29,7 @@ void check_energy_control(Scene const& scene) {
   if (system.kind == SystemKind::llg && (system.damping != 0 || !system.precession))
     refuse(scene, key, "needs a system that conserves its energy",
            "damping = 0 with precession, or no such key");
-  if (depends_on_time(scene)) refuse(scene, key, "needs a field without t", "no such key");
+  if (depends_on_time(scene.field)) refuse(scene, key, "needs a field without t", "no such key");
   if (!integrator.method->has_equal_steps())
     refuse(scene, key,
            fmt::format("method \"{}\" does not step from the spins that it changes",
@@ -76,7 +76,7 @@ void check_isotropy(Scene const& scene) {
   if (system.damping != 0 || !system.precession)
     refuse(scene, key, "\"energy\" needs a system that conserves its energy",
            "damping = 0 with precession, or another isotropy");
-  if (depends_on_time(scene))
+  if (depends_on_time(scene.field))
     refuse(scene, key, "\"energy\" needs a field without t", "another isotropy");
 }
 
@@ -100,10 +100,11 @@ void check_two_colours(Scene const& scene) {
                          method, extent, "xyz"[axis]),
              "an even extent, an open boundary, or another method");
   }
-  if (auto const& slab = scene.field.slab_demag; slab && (slab->average_layer || slab->on_host))
-    refuse(scene, "field.slab_demag",
+  if (is_nonlocal(scene.field))
+    refuse(scene, scene.field.own.nonlocal ? "field" : "field.slab_demag",
            fmt::format("method \"{}\" needs a field of the neighbours alone", method),
-           "neither average nor where, or another method");
+           scene.field.own.nonlocal ? "no nonlocal field, or another method"
+                                    : "neither average nor where, or another method");
 }
 
 void check_tangent(Scene const& scene) {
@@ -123,6 +124,11 @@ void check_tangent(Scene const& scene) {
 }  // namespace
 
 void check_combination(Scene const& scene) {
+  if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->on_host)
+    refuse(scene, "field.slab_demag", "where = \"host\" does not go with a program's own field",
+           "no such key");
+  if (scene.field.own.uniform && scene.field.applied)
+    refuse(scene, "field.applied", "the program has a uniform field of its own", "no such key");
   auto const& integrator = scene.integrator;
   auto const& method = *integrator.method;
   check_energy_control(scene);
@@ -139,7 +145,7 @@ void check_combination(Scene const& scene) {
   if (method.neighbors == Neighbors::by_colour) check_two_colours(scene);
   if (integrator.generator == Generator::tangent) return check_tangent(scene);
   check_isotropy(scene);
-  if (method.differentiates_field && depends_on_time(scene))
+  if (method.differentiates_field && depends_on_time(scene.field))
     refuse(scene, "integrator.method",
            fmt::format("\"{}\" refuses fields that depend on t", method.word),
            "a method without derivatives, or numbers in field.applied");

@@ -133,3 +133,22 @@ Field read_field(Table const& root, SystemKind kind) {
 }
 
 }  // namespace cayspin::io::detail
+
+namespace cayspin::io {
+
+bool depends_on_time(Field const& field) {
+  if (field.own.uniform) return true;
+  if (!field.applied) return false;
+  for (auto const& component : *field.applied) {
+    auto const* const text = std::get_if<std::string>(&component);
+    if (text != nullptr && Expression(*text, {"t"}).depends_on("t")) return true;
+  }
+  return false;
+}
+
+bool is_nonlocal(Field const& field) {
+  auto const& slab = field.slab_demag;
+  return field.own.nonlocal || (slab && (slab->average_layer || slab->on_host));
+}
+
+}  // namespace cayspin::io

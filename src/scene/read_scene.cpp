@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
 
-#include <cayspin/io/expression.hpp>
-
 #include <fmt/format.h>
 
 #include <array>
@@ -81,6 +79,7 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
   auto changed = read(scene.text, scene.path, overrides);
   changed.places = scene.places;
+  changed.field.own = scene.field.own;
   return changed;
 }
 
@@ -99,15 +98,6 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
 std::int64_t sites(Scene const& scene) {
   auto const& shape = scene.lattice.shape;
   return shape[0] * shape[1] * shape[2];
-}
-
-bool depends_on_time(Scene const& scene) {
-  if (!scene.field.applied) return false;
-  for (auto const& component : *scene.field.applied) {
-    auto const* const text = std::get_if<std::string>(&component);
-    if (text != nullptr && Expression(*text, {"t"}).depends_on("t")) return true;
-  }
-  return false;
 }
 
 }  // namespace cayspin::io

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <cayspin/io/expression.hpp>
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/field.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <array>
+#include <functional>
 #include <variant>
 
 namespace cayspin::simulation {
@@ -13,7 +14,7 @@ namespace cayspin::simulation {
 /// The uniform field mu0 applied(t) of a scene.
 class AppliedField {
  public:
-  explicit AppliedField(io::Scene const& scene);
+  explicit AppliedField(io::Field const& field);
 
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }
@@ -23,6 +24,7 @@ class AppliedField {
 
  private:
   std::array<std::variant<double, io::Expression>, 3> components_;
+  std::function<std::array<double, 3>(double t)> own_;
   double mu0_;
   bool present_, depends_on_time_;
 };

@@ -150,17 +150,31 @@ class Compiled {
                                                     : work_bytes_of<float>(lattice, by_time_alone);
   }
 
-  template <class Simulation>
-  static Summary advance_one(Simulation& simulation, MethodOptions const& options) {
-    return with_rotation(options.rotation, [&]<class Rotation>(Rotation) {
-      using Of = Stepper<typename Simulation::Spins, Rotation>;
-      Of stepper = make<Of>(simulation.spins, options);
-      return integrate(simulation.exec, stepper, generator(simulation.generator), simulation.spins,
-                       simulation.times, *simulation.observer);
-    });
-  }
-  static Summary advance(AnySimulation any, MethodOptions const& options) {
-    return std::visit([&](auto* simulation) { return advance_one(*simulation, options); }, any);
+  template <class Simulation, class Rotation>
+  class Open final : public OpenMethod {
+   public:
+    Open(Simulation& simulation, MethodOptions const& options)
+        : simulation_(simulation), stepper_(make<Of>(simulation.spins, options)) {}
+
+    Summary advance() override {
+      return integrate(simulation_.exec, stepper_, generator(simulation_.generator),
+                       simulation_.spins, simulation_.times, *simulation_.observer);
+    }
+
+   private:
+    using Of = Stepper<typename Simulation::Spins, Rotation>;
+    Simulation& simulation_;
+    Of stepper_;
+  };
+  static std::unique_ptr<OpenMethod> open(AnySimulation any, MethodOptions const& options) {
+    return std::visit(
+        [&]<class Simulation>(Simulation* simulation) {
+          return with_rotation(
+              options.rotation, [&]<class Rotation>(Rotation) -> std::unique_ptr<OpenMethod> {
+                return std::make_unique<Open<Simulation, Rotation>>(*simulation, options);
+              });
+        },
+        any);
   }
 
   static std::optional<int> evaluations() {
@@ -186,7 +200,7 @@ class Compiled {
             .work_fields = work_fields(),
             .work_bytes = work_bytes,
             .stable_step = stable_step,
-            .advance = advance};
+            .open = open};
   }
 };
 

@@ -37,7 +37,7 @@ Lattice make_lattice(io::Scene const& scene) {
 
 // The largest |mu0 applied| at 1001 equal times of the run.
 double largest_applied(io::Scene const& scene, Times const& times) {
-  AppliedField const applied(scene);
+  AppliedField const applied(scene.field);
   if (!applied.present()) return 0;
   int const samples = applied.depends_on_time() ? 1000 : 0;
   double const end = times.at(times.steps);
@@ -80,12 +80,6 @@ double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const&
   return largest;
 }
 
-// As SceneField says of itself.
-bool by_time_alone(io::Scene const& scene) {
-  auto const& slab = scene.field.slab_demag;
-  return !slab || !(slab->on_host || slab->average_layer);
-}
-
 template <class Real>
 std::int64_t field_bytes(Lattice const& lattice, int components) {
   return static_cast<std::int64_t>(
@@ -97,7 +91,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
                  Precision precision) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
-  memory.work = variant.work_bytes(lattice, by_time_alone(scene), precision);
+  memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field), precision);
+  if (scene.field.own.nonlocal) memory.field += memory.spins;
   if (auto const& slab = scene.field.slab_demag) {
     if (slab->on_host) memory.field += memory.spins;
     if (slab->average_layer) memory.field += 8 * std::ranges::max(lattice.shape);

@@ -2,15 +2,15 @@
 #pragma once
 
 #include "applied_field.hpp"
+#include "host_solver.hpp"
 #include "lattice_terms.hpp"
 
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/local_part.hpp>
-#include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/generator/rigid_body.hpp>
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/field.hpp>
 
 #include <optional>
 
@@ -165,10 +165,11 @@ class SceneField {
   using Real = typename Spins::value_type;
 
  public:
-  SceneField(io::Scene const& scene, Lattice const& lattice)
-      : lattice_terms_(lattice_terms_of(scene.field, lattice)), applied_(scene) {
-    for (auto const& term : scene.field.anisotropies) quadratic_.add(term.constant, term.axis);
-    if (scene.field.slab_demag) add(*scene.field.slab_demag, scene.field.mu0, lattice);
+  SceneField(io::Field const& field, Lattice const& lattice)
+      : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field) {
+    for (auto const& term : field.anisotropies) quadratic_.add(term.constant, term.axis);
+    if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);
+    if (field.own.nonlocal) stored_.emplace(lattice, HostSolver(field.own.nonlocal));
   }
 
   /// Throws NumbersFailed when an applied field is not finite at t.
@@ -215,7 +216,7 @@ class SceneField {
     Vec3<double> const normal{slab.normal[0], slab.normal[1], slab.normal[2]};
     double const strength = mu0 * slab.strength;
     if (slab.on_host) {
-      stored_.emplace(lattice, SlabDemagOnHost(normal, strength, slab.average_layer));
+      stored_.emplace(lattice, HostSolver(SlabDemagOnHost(normal, strength, slab.average_layer)));
     } else if (slab.average_layer) {
       layers_.emplace(lattice, normal.x != 0 ? 0 : normal.y != 0 ? 1 : 2, strength);
     } else {
@@ -227,7 +228,7 @@ class SceneField {
   QuadraticTerms quadratic_;
   AppliedField applied_;
   std::optional<LayerAveragedSlabDemag<typename Spins::memory_space>> layers_;
-  std::optional<HostField<Spins, SlabDemagOnHost>> stored_;
+  std::optional<HostField<Spins, HostSolver>> stored_;
 };
 
 }  // namespace cayspin::simulation

@@ -3,6 +3,8 @@
 
 #include "space.hpp"
 
+#include <cayspin/io/scene.hpp>
+
 namespace cayspin::simulation {
 
 template <class Spins>
@@ -14,7 +16,7 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                                       std::vector<SymmetricTensor> const& inverse_inertia)
-    : llg_(SceneField<Spins>(scene, lattice), scene.system.damping, scene.system.precession),
+    : llg_(SceneField<Spins>(scene.field, lattice), scene.system.damping, scene.system.precession),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
       bodies_(inverse_inertia, lattice) {}

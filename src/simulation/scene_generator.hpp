@@ -7,6 +7,10 @@
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 
+namespace cayspin::io {
+struct Scene;
+}
+
 namespace cayspin::simulation {
 
 /// The A of any scene at one instant, for kernels. One type for all scenes: which system it is, and

@@ -9,13 +9,12 @@
 namespace cayspin::simulation {
 
 template <class Real, class Space>
-Ending Simulation<Real, Space>::advance(Variant const& variant, MethodOptions const& options,
-                                        RunObserver<Exec, Spins>& observed_by) {
+Ending Simulation<Real, Space>::advance(OpenMethod& method, RunObserver<Exec, Spins>& observed_by) {
   observer = &observed_by;
   Ending ending;
   try {
     FlushDenormals const while_stepping;
-    ending.summary = variant.advance(this, options);
+    ending.summary = method.advance();
   } catch (NumbersFailed const& error) {
     ending.failure = error.what();
   } catch (NotConverged const& error) {
@@ -24,6 +23,12 @@ Ending Simulation<Real, Space>::advance(Variant const& variant, MethodOptions co
     ending.failure = error.what();
   }
   return ending;
+}
+
+template <class Real, class Space>
+Ending Simulation<Real, Space>::advance(Variant const& variant, MethodOptions const& options,
+                                        RunObserver<Exec, Spins>& observed_by) {
+  return advance(*variant.open(this, options), observed_by);
 }
 
 #define CAYSPIN_INSTANTIATE(Space, Real) template struct Simulation<Real, Space>;

@@ -18,6 +18,7 @@
 
 namespace cayspin::simulation {
 
+class OpenMethod;
 struct Variant;
 struct MethodOptions;
 
@@ -59,6 +60,7 @@ struct Simulation {
       : Simulation(lattice, times_of_run, start, SceneGenerator<Spins>(scene, lattice)) {}
 
   /// Runs to the end of the times, or as far as the numbers or `observed_by` let it.
+  Ending advance(OpenMethod& method, RunObserver<Exec, Spins>& observed_by);
   Ending advance(Variant const& variant, MethodOptions const& options,
                  RunObserver<Exec, Spins>& observed_by);
 };

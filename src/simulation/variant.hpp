@@ -3,9 +3,10 @@
 
 #include "simulate.hpp"
 
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/method.hpp>
 #include <cayspin/stepper/step_control.hpp>
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <variant>
@@ -18,6 +19,14 @@ struct MethodOptions {
   io::Rotation rotation = io::Rotation::cayley;
   double sigma = 0, cap = 0;  // of isotropies that have one
   StepOptions steps = {};     // of adaptive methods
+};
+
+/// A stepper at work on one simulation, which outlives it. It remembers what its method does.
+class OpenMethod {
+ public:
+  virtual ~OpenMethod() = default;
+  /// Integrates over the simulation's times, under its observer.
+  virtual Summary advance() = 0;
 };
 
 /// One compiled integrator: a method with what changes its stepper's type.
@@ -38,8 +47,8 @@ struct Variant {
   /// cayspin::largest_stable_step of the stepper; infinity where no bound is known.
   double (*stable_step)(double field_bound, double damping, bool precession,
                         MethodOptions const& options) = {};
-  /// Allocates the stepper and integrates.
-  Summary (*advance)(AnySimulation simulation, MethodOptions const& options) = {};
+  /// Allocates the stepper.
+  std::unique_ptr<OpenMethod> (*open)(AnySimulation simulation, MethodOptions const& options) = {};
 };
 
 /// All of them, method by method in the order of the list.

@@ -51,6 +51,30 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
+template <class Stepper>
+class InPieces : public ::testing::Test {};
+using AllKinds =
+    ::testing::Types<LieAdamsBashforth2<Spins>, LieEuler<Spins, FiniteDifferenceBackward>,
+                     Compensated<Rkmk4<Spins>>, FieldExtrapolation4<Spins>, AdaptiveRkmk<Spins>>;
+TYPED_TEST_SUITE(InPieces, AllKinds);
+
+TYPED_TEST(InPieces, ARunThatContinuesHasTheBitsOfOneRun) {
+  constexpr std::int64_t steps = 12;
+  Spins const start = random_spins(slab.lattice, 5);
+  auto const in_pieces_of = [&](std::int64_t length, bool continues) {
+    Spins spins = copy_of(start);
+    TypeParam stepper(start);
+    for (std::int64_t first = 0; first < steps; first += length)
+      integrate(Space{}, stepper, slab.natural(), spins,
+                Times{0, 0.05, first + length, first, continues});
+    return copy_to_host(spins);
+  };
+  auto const whole = in_pieces_of(steps, false);
+  EXPECT_EQ(in_pieces_of(4, true), whole);
+  EXPECT_EQ(in_pieces_of(1, true), whole);
+  EXPECT_NE(in_pieces_of(4, false), whole);
+}
+
 // A first step from a state that is told is the second step from it.
 TYPED_TEST(Remembering, StateBefore) {
   Spins const start = random_spins(slab.lattice, 5);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/io/own_field.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -125,9 +127,16 @@ struct Field {
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::optional<SlabDemagnetization> slab_demag;
   double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
+  OwnField own;    ///< empty, unless a program sets it
 
   static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi};
 };
+
+/// True when a component of the applied field contains t, or the uniform field is a program's.
+bool depends_on_time(Field const& field);
+
+/// True when the field at a site depends on more than the site and its neighbours.
+bool is_nonlocal(Field const& field);
 
 /// Calls work(term) for the std::optional of each lattice term.
 template <class AnyField, class Work>

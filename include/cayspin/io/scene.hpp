@@ -144,9 +144,6 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
 /// Number of spins, or of rigid bodies.
 std::int64_t sites(Scene const& scene);
 
-/// True when a component of the applied field contains t.
-bool depends_on_time(Scene const& scene);
-
 /// Opens every file that the scene reads and checks the datasets' types and shapes, not the values.
 /// Throws SceneError.
 void check_files(Scene const& scene);

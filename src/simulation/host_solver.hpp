@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/field/slab_demag_on_host.hpp>
+#include <cayspin/io/own_field.hpp>
+
+#include <functional>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace cayspin::simulation {
+
+/// The vectors of a field in host memory.
+template <class HostSpins>
+io::HostVectors host_vectors(HostSpins const& spins) {
+  auto const array = spins.array();
+  auto const& layout = spins.layout();
+  return {array.data,
+          std::is_same_v<typename HostSpins::value_type, double>,
+          {layout.nz, layout.ny, layout.nx},
+          {layout.ny * layout.pitch, layout.pitch, 1, array.stride}};
+}
+
+/// A scene's field that is computed on the host: a slab's, or a program's own.
+class HostSolver {
+ public:
+  static constexpr int degree = 2;
+  using Own = decltype(io::OwnField::nonlocal);
+
+  explicit HostSolver(SlabDemagOnHost slab) : solver_(std::move(slab)) {}
+  explicit HostSolver(Own own) : solver_(std::move(own)) {}
+
+  template <class HostSpins>
+  void operator()(HostSpins const& spins, HostSpins const& field, double t) const {
+    if (auto const* own = std::get_if<Own>(&solver_))
+      (*own)(host_vectors(spins), host_vectors(field), t);
+    else
+      std::get<SlabDemagOnHost>(solver_)(spins, field, t);
+  }
+
+ private:
+  std::variant<SlabDemagOnHost, Own> solver_;
+};
+
+}  // namespace cayspin::simulation
