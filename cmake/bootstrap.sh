@@ -5,11 +5,12 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh deps|build|compile|test|demo|bench [--preset NAME]
+Usage: bash cmake/bootstrap.sh deps|build|compile|test|python|demo|bench [--preset NAME]
   deps     install everything that any of the others needs, and print the option for CMake
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
   test     build everything but the benchmarks and run the tests
+  python   build the Python package and install it into build/venv
   demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
 Each verb first installs the Debian packages that it needs and builds Kokkos into .deps/.
@@ -42,7 +43,7 @@ logged() {
 # as they are in an old one.
 choose_parts() {
   local part
-  for part in APP PROGRAM TESTS EXAMPLES BENCH; do
+  for part in APP PROGRAM PYTHON TESTS EXAMPLES BENCH; do
     case " ${parts[*]} " in
       *" $part "*) options+=("-DCAYSPIN_BUILD_$part=ON") ;;
       *) [ -f "$build_dir/CMakeCache.txt" ] || options+=("-DCAYSPIN_BUILD_$part=OFF") ;;
@@ -90,6 +91,17 @@ finish_installing_drawing() {
   fail "no python3 with h5py and matplotlib"
 }
 
+install_python_package() {
+  local venv=$root/build/venv
+  [ -x "$venv/bin/python" ] || logged venv python3 -m venv --system-site-packages "$venv"
+  say "pip install . into build/venv (all of it in build/logs/pip.log)"
+  mkdir -p "$logs"
+  "$venv/bin/python" -m pip install --verbose . 2>&1 | tee "$logs/pip.log" |
+    grep --line-buffered -oE '\[[0-9]+/[0-9]+\] .{0,80}|Successfully installed.*|(CMake Error|.*error:).*' ||
+    fail "pip failed: see $logs/pip.log"
+  say "import cayspin with $venv/bin/python; the program: $venv/bin/cayspin"
+}
+
 print_cmake_option() {
   say "everything is installed"
   if [ ${#kokkos_option[@]} -gt 0 ]; then
@@ -114,6 +126,8 @@ build_dir=$root/build/$preset
 case $verb in
   deps) packages=("${everything[@]}") parts=() ;;
   demo) packages=("${core[@]}" "${io[@]}") parts=(APP) ;;
+  python) packages=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}") parts=() ;;
+  kokkos-source) provide_kokkos_source; exit 0 ;; # for CMake, under pip
   build) packages=("${core[@]}" "${io[@]}" "${program[@]}") parts=(APP PROGRAM) ;;
   test) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES) ;;
   compile) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH) ;;
@@ -125,6 +139,7 @@ esac
 install_packages install "${packages[@]}"
 [ "$verb" = build ] || start_installing_drawing
 provide_kokkos
+[ "$verb $preset" != "test release" ] || provide_nanobind
 case $verb in
   deps) provide_style_tools; finish_installing_drawing; print_cmake_option ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
@@ -139,6 +154,7 @@ case $verb in
     build all
     ctest --preset "$preset" -j "$(nproc)"
     ;;
+  python) finish_installing_drawing; install_python_package ;;
   demo)
     build cayspin_demo
     finish_installing_drawing

@@ -11,6 +11,7 @@ carrier_sha256=e620f05c742905e2db705d875f1cac92ef0ed453f9e6734e9beda26cc0f9cce7
 kokkos_options=(
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=20 -DKokkos_ARCH_NATIVE=ON
   -DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_TESTS=OFF
+  -DCMAKE_POSITION_INDEPENDENT_CODE=ON # the Python module is a shared library
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 # a quarter of the processor time
 )
 

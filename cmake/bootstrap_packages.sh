@@ -6,10 +6,12 @@
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
 program=(libcli11-dev nlohmann-json3-dev)
+python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib)
-tests=(libgtest-dev nlohmann-json3-dev valgrind clang libomp-dev doxygen libfftw3-dev)
+tests=(libgtest-dev nlohmann-json3-dev valgrind clang libomp-dev doxygen libfftw3-dev pkg-config
+  python3-nbclient python3-ipykernel python3-xarray)
 bench=(libbenchmark-dev)
-everything=("${core[@]}" "${io[@]}" "${program[@]}" "${tests[@]}" "${bench[@]}") # but drawing
+everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
 
 is_installed() {
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
@@ -54,5 +56,22 @@ provide_style_tools() {
   else
     rm -rf "$tools"
     say "the Python package index is out of reach: there is no test style ($logs/style.log)"
+  fi
+}
+
+# Headers and CMake files that the module of the Python package is compiled with.
+provide_nanobind() {
+  local tools=$deps/nanobind pin=nanobind==3.1.0
+  parts+=(PYTHON)
+  [ "$(cat "$tools/installed" 2>/dev/null || true)" != "$pin" ] || return 0
+  say "fetch $pin"
+  rm -rf "$tools"
+  mkdir -p "$logs"
+  if python3 -m pip install --no-compile --target "$tools" "$pin" >"$logs/nanobind.log" 2>&1; then
+    printf '%s\n' "$pin" >"$tools/installed"
+  else
+    rm -rf "$tools"
+    say "the Python package index is out of reach: no Python package ($logs/nanobind.log)"
+    unset 'parts[-1]'
   fi
 }

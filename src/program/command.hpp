@@ -46,6 +46,7 @@ struct TradeOptions : TryOptions {
 struct AdviseOptions : TryOptions {
   double error = 0;
   std::optional<double> budget;  // seconds
+  bool json = false;
 };
 
 /// What a scene models, in words: headings and lines.

@@ -93,6 +93,7 @@ int perform(int argc, char** argv) {
           CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                 CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
       ->type_name("TIME");
+  advise_command->add_flag("--json", advise_options.json, "The answer as JSON");
   add_space_options(*advise_command, advise_options);
 
   auto* methods_command = app.add_subcommand("methods", "List the integrators and their options");

@@ -150,6 +150,45 @@ std::string command_of(AdviseOptions const& options, Resolved const& resolved,
   return command;
 }
 
+nlohmann::json as_json(Advised const& advised, Resolved const& resolved) {
+  auto const& choice = *advised.choice;
+  nlohmann::json all{{"method", choice.candidate.name()},
+                     {"precision", to_string(choice.candidate.precision)},
+                     {"dt", resolved.dt},
+                     {"steps", resolved.steps},
+                     {"tolerance", nullptr},
+                     {"error", choice.error},
+                     {"seconds", choice.seconds},
+                     {"memory", choice.memory},
+                     {"horizon", advised.horizon},
+                     {"overrides", resolved.overrides},
+                     {"others", nlohmann::json::array()}};
+  if (choice.candidate.method->adaptive) all["tolerance"] = choice.steps.tolerance;
+  for (std::size_t i = 1; i < advised.others.size(); ++i)
+    all["others"].push_back(
+        {{"method", advised.others[i].candidate.name()}, {"seconds", advised.others[i].seconds}});
+  return all;
+}
+
+void print_text(AdviseOptions const& options, Advised const& advised, Resolved const& resolved) {
+  auto const& choice = *advised.choice;
+  auto const& candidate = choice.candidate;
+  fmt::print("method      {}\n", candidate.name());
+  if (candidate.method->adaptive)
+    fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
+  else
+    fmt::print("dt          {:.9g}, {} steps\n", resolved.dt, resolved.steps);
+  fmt::print("error       {:.2g}, predicted{}\n", choice.error,
+             advised.why_shorter.empty() ? "" : " at the horizon");
+  fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
+  fmt::print("memory      {}\n", bytes_text(choice.memory));
+  fmt::print("run it      {}\n", command_of(options, resolved, candidate.precision));
+  fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
+  for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
+    fmt::print("  {:<33} {}\n", advised.others[i].candidate.name(),
+               duration_text(advised.others[i].seconds));
+}
+
 }  // namespace
 
 int trade_off(TradeOptions const& options) {
@@ -188,8 +227,10 @@ int advise_on(AdviseOptions const& options) {
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);
   auto const advised = advise(pilot, {options.error, options.budget, options.precision});
-  fmt::print("scene       {}\n", scene.path.string());
-  print_horizon(advised.horizon, pilot.end(), advised.why_shorter);
+  if (!options.json) {
+    fmt::print("scene       {}\n", scene.path.string());
+    print_horizon(advised.horizon, pilot.end(), advised.why_shorter);
+  }
   if (!advised.choice) {
     if (advised.others.empty())
       throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g}", scene.path.string(),
@@ -199,23 +240,11 @@ int advise_on(AdviseOptions const& options) {
                                     scene.path.string(), first.candidate.name(),
                                     duration_text(first.seconds), duration_text(*options.budget)));
   }
-  auto const& choice = *advised.choice;
-  auto const& candidate = choice.candidate;
-  auto const resolved = resolve(scene, choice);
-  fmt::print("method      {}\n", candidate.name());
-  if (candidate.method->adaptive)
-    fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
+  auto const resolved = resolve(scene, *advised.choice);
+  if (options.json)
+    fmt::print("{}\n", as_json(advised, resolved).dump(1));
   else
-    fmt::print("dt          {:.9g}, {} steps\n", resolved.dt, resolved.steps);
-  fmt::print("error       {:.2g}, predicted{}\n", choice.error,
-             advised.why_shorter.empty() ? "" : " at the horizon");
-  fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
-  fmt::print("memory      {}\n", bytes_text(choice.memory));
-  fmt::print("run it      {}\n", command_of(options, resolved, candidate.precision));
-  fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
-  for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
-    fmt::print("  {:<33} {}\n", advised.others[i].candidate.name(),
-               duration_text(advised.others[i].seconds));
+    print_text(options, advised, resolved);
   return Status::done;
 }
 

@@ -36,18 +36,28 @@ RandomStart read_random(Item const& item, Scene& scene) {
                   accepted)};
 }
 
+GivenStart read_given(Item const& item, Scene const& scene) {
+  constexpr std::string_view accepted =
+      "uniform, expression, random or file; a run of such a scene has its start in its file";
+  if (!boolean(item)) item.fail("false has no meaning", "true, or another key");
+  if (!scene.given_spins)
+    item.fail("stands for spins that a program gives, and none did", accepted);
+  return {scene.given_spins};
+}
+
 }  // namespace
 
 Initial read_initial(Table const& root) {
   constexpr std::string_view accepted = "exactly one of uniform, expression, random, file";
   auto const table = root.table("initial", "a table [initial]");
-  table.accept_only({"uniform", "expression", "random", "file"});
+  table.accept_only({"uniform", "expression", "random", "file", "given"});
   if (auto const count = table.item().node->as_table()->size(); count != 1) {
     table.item().fail(fmt::format("has {} keys", count), accepted);
   }
   if (auto const item = table.find("uniform")) return UniformStart{direction(*item)};
   if (auto const item = table.find("expression")) return read_expressions(*item);
   if (auto const item = table.find("random")) return read_random(*item, root.scene());
+  if (auto const item = table.find("given")) return read_given(*item, root.scene());
   return FileStart{input_file(table, "file")};
 }
 

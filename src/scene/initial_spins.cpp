@@ -102,9 +102,21 @@ struct Start {
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }
+    set_all(values, "initial.file");
+  }
+
+  void operator()(GivenStart const& start) const {
+    if (start.spins->size() != spins.size())
+      throw scene_error(scene, "initial.given",
+                        fmt::format("{} numbers were given; accepted: {}, three for each site",
+                                    start.spins->size(), spins.size()));
+    set_all(*start.spins, "initial.given");
+  }
+
+  void set_all(std::vector<double> const& values, std::string_view key) const {
     for (std::size_t site = 0; site < size(); ++site) {
       auto const* const m = values.data() + 3 * site;
-      set_normalised(site, {m[0], m[1], m[2]}, "initial.file");
+      set_normalised(site, {m[0], m[1], m[2]}, key);
     }
   }
 };

@@ -45,10 +45,14 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-Scene read(std::string text, std::filesystem::path const& path,
-           std::vector<std::string> const& overrides) {
+}  // namespace
+
+Scene parse_scene(std::string text, std::filesystem::path const& path,
+                  std::vector<std::string> const& overrides,
+                  std::shared_ptr<std::vector<double> const> given_spins) {
   Scene scene;
   scene.path = path;
+  scene.given_spins = std::move(given_spins);
   scene.text = std::move(text);
   auto document = parse(scene.text, path);
   for (auto const& assignment : overrides) detail::apply_override(document, assignment);
@@ -70,14 +74,13 @@ Scene read(std::string text, std::filesystem::path const& path,
   return scene;
 }
 
-}  // namespace
-
-Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides) {
-  return read(read_text(path), path, overrides);
+Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides,
+                 std::shared_ptr<std::vector<double> const> given_spins) {
+  return parse_scene(read_text(path), path, overrides, std::move(given_spins));
 }
 
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
-  auto changed = read(scene.text, scene.path, overrides);
+  auto changed = parse_scene(scene.text, scene.path, overrides, scene.given_spins);
   changed.places = scene.places;
   changed.field.own = scene.field.own;
   return changed;

@@ -27,7 +27,9 @@ class Guard {
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
         epsilon_(epsilon),
-        period_(io::sites(scene) <= 4096 ? 1 : 10) {}
+        period_(period_of(io::sites(scene))) {}
+
+  static constexpr std::int64_t period_of(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
 
   bool due(Step const& step) const { return step.number % period_ == 0; }
 

@@ -7,8 +7,8 @@
 // device, as far as Kokkos has them. CAYSPIN_FOR_EACH_*(apply, ...) expands apply(Space, ...).
 #define CAYSPIN_ON_HOST(apply, ...) apply(Kokkos::DefaultHostExecutionSpace, __VA_ARGS__)
 
-#if defined(KOKKOS_ENABLE_SERIAL) &&                                    \
-    (defined(KOKKOS_ENABLE_OPENMP) || defined(KOKKOS_ENABLE_THREADS) || \
+#if defined(KOKKOS_ENABLE_SERIAL) && !defined(CAYSPIN_WITHOUT_SERIAL) && \
+    (defined(KOKKOS_ENABLE_OPENMP) || defined(KOKKOS_ENABLE_THREADS) ||  \
      defined(KOKKOS_ENABLE_HPX))
 #define CAYSPIN_ON_SERIAL(apply, ...) apply(Kokkos::Serial, __VA_ARGS__)
 #else

@@ -53,6 +53,27 @@ TEST(Scene, EveryKeyArrives) {
   EXPECT_EQ(scene.path, folder / "scene.toml");
 }
 
+TEST(Scene, TextIsAFile) {
+  Folder const folder;
+  auto const typed = parse_scene(std::string(llg_scene), folder / "scene.toml");
+  auto const read = read_text(folder, llg_scene);
+  EXPECT_EQ(typed.text, read.text);
+  EXPECT_EQ(typed.places, read.places);
+  EXPECT_EQ(initial_spins(typed), initial_spins(read));
+}
+
+TEST(Scene, GivenStartIsNormalised) {
+  auto const text = replaced(replaced(llg_scene, "uniform = [0.3, 0.5, 0.8]", "given = true"),
+                             "[4, 3]", "[1, 2]");
+  auto const given =
+      std::make_shared<std::vector<double> const>(std::vector<double>{0, 3, 4, -2, 0, 0});
+  auto const scene = parse_scene(text, "given", {}, given);
+  EXPECT_EQ(initial_spins(scene), (std::vector<double>{0, 0.6, 0.8, -1, 0, 0}));
+  EXPECT_EQ(initial_spins(with_overrides(scene, {"integrator.dt=0.02"})), initial_spins(scene));
+  EXPECT_THROW(parse_scene(text, "given"), SceneError);
+  EXPECT_THROW(initial_spins(parse_scene(text, "given", {"lattice.shape=[3]"}, given)), SceneError);
+}
+
 TEST(Scene, DefaultsAreTheDocumentedOnes) {
   Folder const folder;
   auto const scene = read_text(folder, least_scene);

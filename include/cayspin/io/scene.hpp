@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -65,7 +66,11 @@ struct RandomStart {
 struct FileStart {
   std::filesystem::path path;  ///< dataset /spins
 };
-using Initial = std::variant<UniformStart, ExpressionStart, RandomStart, FileStart>;
+/// A start that a program gives beside the text of its scene, normalised per spin.
+struct GivenStart {
+  std::shared_ptr<std::vector<double> const> spins;  ///< sites x 3, x fastest
+};
+using Initial = std::variant<UniformStart, ExpressionStart, RandomStart, FileStart, GivenStart>;
 
 /// A key that is true or false. The scene reader goes through the lists of these.
 template <class Section>
@@ -119,15 +124,23 @@ struct Scene {
   Integrator integrator;
   Output output;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
-  std::filesystem::path path;  ///< the scene file
+  std::filesystem::path path;  ///< the scene file, or the name of a text without one
+  std::shared_ptr<std::vector<double> const> given_spins;  ///< for initial.given = true
   std::map<std::string, std::string, std::less<>>
       places;  ///< key -> "FILE:LINE" or "--set key=value"
 };
 
 /// Reads and validates a scene. Each override is "key.path=VALUE" with a TOML value, applied in
 /// order. Files that the scene names are not opened: check_files, initial_spins and inertia do
-/// that. Throws SceneError.
-Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {});
+/// that. `given_spins`: the start of a scene with initial.given = true. Throws SceneError.
+Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {},
+                 std::shared_ptr<std::vector<double> const> given_spins = {});
+
+/// The same for a text in memory. Messages name it `name`, and its files lie in the folder of
+/// `name`.
+Scene parse_scene(std::string text, std::filesystem::path const& name,
+                  std::vector<std::string> const& overrides = {},
+                  std::shared_ptr<std::vector<double> const> given_spins = {});
 
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Lie-group time integration of spin fields.
+
+    import cayspin
+    sim = cayspin.Simulation(cayspin.Scene.from_file("film.toml"))
+    sim.run()
+    sim.spins  # (nz, ny, nx, 3)
+
+Arrays of vectors have the shape (nz, ny, nx, 3). All numbers are in the units of the scene.
+"""
+
+from cayspin._cayspin import CayspinError, NumbersFailed, SceneError
+from cayspin._cayspin import version as __version__
+from cayspin.scene import Scene
+from cayspin.simulation import Simulation
+from cayspin.trade import Advice, Trade, advise, trade
+from cayspin.trajectory import Trajectory, open
+
+__all__ = ["Advice", "CayspinError", "NumbersFailed", "Scene", "SceneError", "Simulation", "Trade",
+           "Trajectory", "__version__", "advise", "open", "trade"]

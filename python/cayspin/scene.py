@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""What is to be modelled."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+
+from cayspin import _cayspin, toml_text
+
+_OWN = ("applied", "nonlocal")
+
+
+def _as_vectors(array):
+    """A numpy array of float32 or float64 with four axes; of these it is no copy."""
+    array = np.asarray(array)
+    if array.dtype not in (np.float32, np.float64):
+        array = array.astype(np.float64)
+    if array.ndim != 4 or array.shape[-1] != 3:
+        raise _cayspin.SceneError(f"an array of shape {array.shape}; accepted: (nz, ny, nx, 3)")
+    return array
+
+
+def _split(tables):
+    """The tables without what no text holds: the spins of the start, and functions of the field."""
+    tables = {name: table for name, table in tables.items() if table is not None}
+    spins, own = None, {}
+    initial = tables.get("initial")
+    if initial is not None and not isinstance(initial, dict):
+        spins = _as_vectors(initial)
+        tables["initial"] = {"given": True}
+    if isinstance(tables.get("field"), dict):
+        own = {key: f for key, f in tables["field"].items() if key in _OWN and callable(f)}
+        tables["field"] = {key: f for key, f in tables["field"].items() if key not in own}
+    return tables, spins, own
+
+
+class Scene:
+    """A scene: the tables of a scene file, as docs/reference/scene.md describes them.
+
+        Scene(system={"kind": "llg", "damping": 0.1}, lattice={"shape": [100]},
+              field={"exchange": 1.0, "applied": [0.5, 0, 0]}, initial={"uniform": [0, 0, 1]},
+              integrator={"method": "rkmk4", "dt": 0.05, "end": 60})
+
+    `initial` may also be an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
+    `field["applied"]` may be a function of t that returns three numbers: the uniform field.
+    `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites as an array
+    (nz, ny, nx, 3). It is called before each stage with a copy of the spins, and H has to be linear
+    in them and symmetric: its energy is -sum m.H / 2.
+    Without `end` and `steps` in `integrator` the scene has no end.
+
+    Raises SceneError with one line that names the key, what is wrong and what is accepted.
+    """
+
+    def __init__(self, *, system: dict, lattice: dict, integrator: dict, initial: Any,
+                 field: dict | None = None, output: dict | None = None, **tables: Any):
+        if not {"end", "steps"} & set(integrator):
+            integrator = {**integrator, "steps": 0}
+        typed, spins, own = _split({**tables, "system": system, "lattice": lattice, "field": field,
+                                    "initial": initial, "integrator": integrator, "output": output})
+        text = "".join(f"# field.{key}: a function of the program that ran this scene\n"
+                       for key in own) + toml_text.document(typed)
+        self._finish(_cayspin.Scene.parse(text, "Scene", [], spins), own, None)
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
+        """The scene of a TOML file, with keys changed: from_file("film.toml",
+        integrator={"dt": 0.1}). `initial` replaces the whole table; it may be an array."""
+        typed, spins, own = _split(overrides)
+        self = cls.__new__(cls)
+        changed = toml_text.overrides(typed)
+        try:
+            scene = _cayspin.Scene.read(os.fspath(path), changed, spins)
+        except _cayspin.SceneError as error:
+            raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
+        self._finish(scene, own, changed)
+        return self
+
+    def _finish(self, scene, own, overrides):
+        if own:
+            scene.set_own_field(own.get("applied"), own.get("nonlocal"))
+        self._scene, self._overrides = scene, overrides
+        self._only_here = ["a function in field"] * bool(own)
+        if scene.given_start:
+            self._only_here.append("an array as initial")
+
+    def _with(self, overrides):
+        changed = Scene.__new__(Scene)
+        changed._scene = self._scene.with_overrides(overrides)
+        changed._overrides = None if self._overrides is None else self._overrides + overrides
+        changed._only_here = self._only_here
+        return changed
+
+    @property
+    def text(self) -> str:
+        """The TOML text, which the program `cayspin` runs unless a function or an array is in it."""
+        return self._scene.text
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(nz, ny, nx)"""
+        return self._scene.shape
+
+    @property
+    def method(self) -> str:
+        """integrator.method"""
+        return self._scene.method
+
+    @property
+    def dt(self) -> float:
+        """The time step; of adaptive methods the time from one look at the spins to the next."""
+        return self._scene.dt
+
+    @property
+    def steps(self) -> int:
+        """Steps to the end; 0 for a scene without end."""
+        return self._scene.steps
+
+    def __repr__(self):
+        nz, ny, nx = self.shape
+        return f"<cayspin.Scene {nx} x {ny} x {nz}, {self.method}, dt {self.dt:g}>"

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""A scene that runs."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Callable
+
+import numpy as np
+
+from cayspin import _cayspin
+from cayspin.scene import Scene
+
+_GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
+
+
+class Simulation:
+    """A scene in memory.
+
+    `precision` is "double" or "single", `space` one of the execution spaces compiled in (default:
+    that of Kokkos), `threads` their number: the first simulation of a process decides that.
+
+    While it steps, other Python threads run. Ctrl-C stops it between two steps with
+    KeyboardInterrupt, and it can go on from there. N calls of step() give the bits of one step(N),
+    and those of `cayspin run`.
+
+    Raises SceneError, CayspinError, and NumbersFailed when the numbers of a run fail.
+    """
+
+    def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
+                 threads: int | None = None):
+        self._run = _cayspin.Run(scene._scene, precision, space, threads)
+        self._scene = scene
+        self._observers: list[tuple[int, Callable[[Simulation], Any]]] = []
+
+    def step(self, n: int = 1) -> None:
+        """Takes n steps of dt, or fewer when an observer returns True."""
+        if not self._observers:
+            self._run.advance(n, _GUARD_PERIOD, False)
+            return
+        self._advance(self._run.steps + n, _GUARD_PERIOD, False, None)
+
+    def run(self, until: float | None = None, output: str | os.PathLike | bool | None = None,
+            overwrite: bool = False) -> None:
+        """Steps to time `until`, or to the scene's end, as `cayspin run` does.
+
+        Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
+        none. The run ends early where the scene's until_torque or an observer says so.
+        """
+        if until is None and self._scene.steps == 0:
+            raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
+                                        "integrator.end in the scene")
+        end = self._scene.steps if until is None else self._run.step_at(until)
+        if end < self.steps:
+            raise _cayspin.CayspinError(f"run: until t = {end * self._scene.dt:g}, and the time is "
+                                        f"{self.time:g}; accepted: a later time")
+        if output is None:
+            output = self._scene._scene.output
+        if output is None or output is False:
+            self._advance(end, self._scene._scene.guard_period, True, None)
+            return
+        recorder = _cayspin.Recorder(self._run, end, os.fspath(output), overwrite)
+        try:
+            recorder.look(False)
+            self._advance(end, self._scene._scene.guard_period, True, recorder)
+            recorder.look(True)
+        except KeyboardInterrupt:
+            recorder.look(True)
+            recorder.finish(False)
+            raise
+        except BaseException:
+            recorder.finish(False)
+            raise
+        recorder.finish(True)
+
+    def _advance(self, end, guard_period, until_torque, recorder):
+        run = self._run
+        while run.steps < end:
+            due = min([(run.steps // every + 1) * every for every, _ in self._observers] + [end])
+            if recorder:
+                due = min(due, recorder.next)
+            at_rest = run.advance(due - run.steps, guard_period, until_torque)
+            if recorder:
+                recorder.look(at_rest)
+            stop = [f(self) is True for every, f in self._observers if run.steps % every == 0]
+            if at_rest or any(stop):
+                return
+
+    def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:
+        """Calls f(simulation) after each step whose number is a multiple of `every`. Where it
+        returns True, the current step(n) or run() ends."""
+        if every < 1:
+            raise _cayspin.CayspinError(f"observe: every {every} steps; accepted: at least 1")
+        self._observers.append((every, f))
+
+    @property
+    def spins(self) -> np.ndarray:
+        """The spins now, (nz, ny, nx, 3): a read-only view of the library's memory, no copy.
+
+        A view never changes. When the simulation goes on while someone holds one, it moves to
+        other memory. Assigning to `spins` sets them: any array that broadcasts to the shape,
+        normalised. Methods that remember earlier steps begin again.
+        """
+        return self._run.spins()
+
+    @spins.setter
+    def spins(self, values) -> None:
+        values = np.asarray(values)
+        if values.dtype not in (np.float32, np.float64):
+            values = values.astype(np.float64)
+        shape = (*self._scene.shape, 3)
+        try:
+            values = np.broadcast_to(values, shape)
+        except ValueError:
+            raise _cayspin.CayspinError(f"spins: an array of shape {values.shape}; accepted: one "
+                                        f"that broadcasts to {shape}") from None
+        self._run.set_spins(values)
+
+    def field(self) -> np.ndarray:
+        """The effective field H of every site now, (nz, ny, nx, 3), read-only."""
+        return self._run.field()
+
+    def energy(self) -> float:
+        """The energy, summed over sites; of rigid bodies that of their rotation."""
+        return self._run.sample()[0]
+
+    def energies(self) -> dict[str, float]:
+        """The energy of each term of the scene: exchange, dmi, anisotropy, applied, slab_demag,
+        nonlocal; of rigid bodies: rotation."""
+        return self._run.energies()
+
+    def magnetization(self) -> np.ndarray:
+        """The mean spin, (3,)."""
+        return np.array(self._run.sample()[2])
+
+    def norm_defect(self) -> float:
+        """The largest | |m| - 1 | of all sites."""
+        return self._run.sample()[1]
+
+    @property
+    def time(self) -> float:
+        """The time now: steps times dt."""
+        return self._run.time
+
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return self._run.steps
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of the field of all sites so far."""
+        return self._run.evaluations
+
+    @property
+    def step_seconds(self) -> float:
+        """Seconds of stepping alone so far."""
+        return self._run.step_seconds
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that runs."""
+        return self._scene
+
+    @property
+    def precision(self) -> str:
+        """"double" or "single"."""
+        return self._run.precision
+
+    @property
+    def space(self) -> str:
+        """The execution space."""
+        return self._run.space
+
+    @property
+    def threads(self) -> int:
+        """Threads of the space; 1 for a device."""
+        return self._run.threads
+
+    def __repr__(self):
+        return (f"<cayspin.Simulation step {self.steps}, t = {self.time:g}, {self.precision}, "
+                f"{self.space}>")

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Tables of a scene as TOML text."""
+
+import json
+import os
+import re
+
+import numpy as np
+
+from cayspin._cayspin import SceneError
+
+
+def _key(name):
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
+
+
+def value(thing, key):
+    """One TOML value on one line. `key` names it in the message of a SceneError."""
+    if isinstance(thing, (np.generic, np.ndarray)):
+        thing = thing.tolist()
+    if isinstance(thing, bool):
+        return "true" if thing else "false"
+    if isinstance(thing, (int, float)):
+        return repr(thing)
+    if isinstance(thing, os.PathLike):
+        thing = os.fspath(thing)
+    if isinstance(thing, str):
+        return json.dumps(thing, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(thing, (list, tuple)):
+        return "[" + ", ".join(value(entry, key) for entry in thing) + "]"
+    if isinstance(thing, dict):
+        pairs = (f"{_key(name)} = {value(entry, f'{key}.{name}')}" for name, entry in thing.items())
+        return "{ " + ", ".join(pairs) + " }"
+    raise SceneError(f"{key}: is of type {type(thing).__name__}; accepted: bool, int, float, str, "
+                     "lists and dicts of them, and a function of t for field.applied")
+
+
+def document(tables):
+    """The text of a scene: keys without a table first, then [table] after [table]."""
+    lines = [f"{_key(name)} = {value(entry, name)}" for name, entry in tables.items()
+             if not isinstance(entry, dict)]
+    for name, table in tables.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{_key(name)}]"]
+            lines += [f"{_key(key)} = {value(entry, f'{name}.{key}')}"
+                      for key, entry in table.items()]
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def overrides(tables):
+    """Tables and dotted keys as key.path=VALUE. A table [initial] replaces the scene's."""
+    assignments = []
+    for name, entry in tables.items():
+        if isinstance(entry, dict) and name != "initial":
+            assignments += [f"{name}.{_key(key)}={value(one, f'{name}.{key}')}"
+                            for key, one in entry.items()]
+        else:
+            assignments.append(f"{name}={value(entry, name)}")
+    return assignments

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Error against time: the commands `trade` and `advise` of the program."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+from typing import Any
+
+from cayspin._cayspin import CayspinError, NumbersFailed
+from cayspin.scene import Scene
+
+
+def program() -> str:
+    """The program `cayspin` of this package, or the one that CAYSPIN_PROGRAM names."""
+    named = os.environ.get("CAYSPIN_PROGRAM")
+    return named or str(pathlib.Path(__file__).resolve().parent / "bin" / "cayspin")
+
+
+def _ask(command: str, scene: Scene, *options: str) -> dict:
+    if scene._only_here:
+        raise CayspinError(f"{command}: the scene has {scene._only_here[0]}, which the program "
+                           "cannot run; accepted: a scene of text alone")
+    with tempfile.TemporaryDirectory() as folder:
+        if scene._overrides is None:
+            file = pathlib.Path(folder, "scene.toml")
+            file.write_text(scene.text, encoding="utf-8")
+            changed = []
+        else:
+            file = scene._scene.path
+            changed = [part for one in scene._overrides for part in ("--set", one)]
+        try:
+            done = subprocess.run([program(), command, str(file), *changed, *options, "--json"],
+                                  capture_output=True, text=True)
+        except OSError as error:
+            raise CayspinError(f"{command}: the program {program()} does not run: {error.strerror}"
+                               ) from None
+    if done.returncode:
+        raise (NumbersFailed if done.returncode == 3 else CayspinError)(done.stderr.strip())
+    return json.loads(done.stdout)
+
+
+def _options(precision, space, threads):
+    given = {"--precision": precision, "--space": space, "--threads": threads}
+    return [str(part) for key, value in given.items() if value is not None for part in (key, value)]
+
+
+class Trade(list):
+    """A list of dicts, one for each run: method, baseline, dt or tolerance, error (the largest
+    distance of any spin), seconds, evaluations, front. pandas.DataFrame(trade) takes it."""
+
+    def __init__(self, answer: dict):
+        super().__init__({"method": method["method"], "baseline": method["baseline"], **rung}
+                         for method in answer["methods"] for rung in method["rungs"])
+        self.horizon: float = answer["horizon"]  #: the time up to which errors are known
+
+    def plot(self, axes: Any = None, cost: str = "seconds"):
+        """Draws error over `cost` ("seconds" or "evaluations") into matplotlib axes, which it
+        returns. Methods on the Pareto front have names."""
+        if axes is None:
+            import matplotlib.pyplot
+
+            axes = matplotlib.pyplot.subplots(figsize=(8, 6))[1]
+        for name in dict.fromkeys(run["method"] for run in self):
+            runs = [run for run in self if run["method"] == name and run["error"] > 0]
+            if not runs:
+                continue
+            points = [run[cost] for run in runs], [run["error"] for run in runs]
+            if any(run["front"] for run in runs):
+                axes.loglog(*points, "o-", markersize=3, label=name)
+            else:
+                axes.loglog(*points, color="0.75", linewidth=0.7, zorder=1)
+        axes.set_xlabel("seconds of stepping" if cost == "seconds" else "evaluations of the field")
+        axes.set_ylabel("largest distance of any spin")
+        axes.legend(fontsize="small")
+        return axes
+
+
+@dataclasses.dataclass
+class Advice:
+    """The cheapest method for an error, and its steps."""
+
+    method: str
+    error: float  #: predicted
+    seconds: float  #: predicted, of the whole run
+    memory: int  #: bytes
+    precision: str
+    dt: float
+    steps: int
+    tolerance: float | None  #: of adaptive methods
+    horizon: float  #: the time up to which the error is predicted
+    scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
+    others: list[dict]  #: method and seconds of the next ones
+
+
+def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
+          space: str | None = None, threads: int | None = None) -> Trade:
+    """Runs every method that can run the scene, each for at most `seconds`. Takes minutes."""
+    return Trade(_ask("trade", scene, "--seconds", str(seconds),
+                      *_options(precision, space, threads)))
+
+
+def advise(scene: Scene, error: float, precision: str | None = None, space: str | None = None,
+           threads: int | None = None) -> Advice:
+    """The cheapest method for a largest distance `error` of any spin, 1e-13 to 1. Raises
+    NumbersFailed where no method gets there."""
+    answer = _ask("advise", scene, "--error", repr(float(error)),
+                  *_options(precision, space, threads))
+    return Advice(scene=scene._with(answer.pop("overrides")), **answer)

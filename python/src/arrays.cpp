@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "arrays.hpp"
+
+#include "simulation/failure.hpp"
+
+#include <nanobind/stl/array.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace cayspin::python {
+namespace {
+
+using simulation::UsageError;
+
+// A Python object that any thread may let go.
+std::shared_ptr<nb::object> kept(nb::object object) {
+  return {new nb::object(std::move(object)), [](nb::object* held) {
+            if (!nb::is_alive()) return;
+            nb::gil_scoped_acquire const gil;
+            delete held;
+          }};
+}
+
+template <class To, class From>
+void copy_vectors(io::HostVectors const& from, io::HostVectors const& to) {
+  auto const* source = static_cast<From const*>(from.data);
+  auto* target = static_cast<To*>(to.data);
+  auto const at = [](std::array<std::int64_t, 4> const& s, std::int64_t k, std::int64_t j,
+                     std::int64_t i,
+                     std::int64_t c) { return k * s[0] + j * s[1] + i * s[2] + c * s[3]; };
+  for (std::int64_t k = 0; k < to.shape[0]; ++k)
+    for (std::int64_t j = 0; j < to.shape[1]; ++j)
+      for (std::int64_t i = 0; i < to.shape[2]; ++i)
+        for (std::int64_t c = 0; c < 3; ++c)
+          target[at(to.strides, k, j, i, c)] =
+              static_cast<To>(source[at(from.strides, k, j, i, c)]);
+}
+
+template <class To>
+void copy_vectors(io::HostVectors const& from, io::HostVectors const& to) {
+  from.is_double ? copy_vectors<To, double>(from, to) : copy_vectors<To, float>(from, to);
+}
+
+template <class Real>
+NumbersOut copy_of(io::HostVectors const& vectors) {
+  auto numbers = std::make_shared<std::vector<Real>>(simulation::packed<Real>(vectors));
+  auto const& [nz, ny, nx] = vectors.shape;
+  return array_of(
+      {{numbers->data(), vectors.is_double, vectors.shape, {3 * nx * ny, 3 * nx, 3, 1}}, numbers});
+}
+
+}  // namespace
+
+io::HostVectors vectors_of(NumbersIn const& array) {
+  bool const is_double = array.dtype() == nb::dtype<double>();
+  if (!is_double && array.dtype() != nb::dtype<float>())
+    throw UsageError("an array of another type; accepted: float64 or float32");
+  if (array.shape(3) != 3)
+    throw UsageError("the last extent is not 3; accepted: an array (nz, ny, nx, 3)");
+  io::HostVectors vectors{const_cast<void*>(array.data()), is_double, {}, {}};
+  for (std::size_t axis = 0; axis < 4; ++axis) {
+    if (axis < 3) vectors.shape[axis] = static_cast<std::int64_t>(array.shape(axis));
+    vectors.strides[axis] = array.stride(axis);
+  }
+  return vectors;
+}
+
+NumbersOut array_of(simulation::LentVectors const& lent) {
+  using Owner = std::shared_ptr<void const>;
+  auto const& vectors = lent.vectors;
+  nb::capsule const owner(new Owner(lent.owner),
+                          [](void* held) noexcept { delete static_cast<Owner*>(held); });
+  std::size_t shape[4] = {0, 0, 0, 3};
+  std::copy_n(vectors.shape.begin(), 3, shape);
+  return NumbersOut(vectors.data, 4, shape, owner, vectors.strides.data(),
+                    vectors.is_double ? nb::dtype<double>() : nb::dtype<float>());
+}
+
+io::OwnField own_field(nb::object uniform, nb::object nonlocal) {
+  io::OwnField own;
+  if (!uniform.is_none())
+    own.uniform = [function = kept(std::move(uniform))](double t) {
+      nb::gil_scoped_acquire const gil;
+      auto const result = (*function)(t);
+      std::array<double, 3> field{};
+      if (nb::len(result) != 3)
+        throw UsageError(
+            "field.applied: the function returned another number of components; "
+            "accepted: three numbers");
+      for (std::size_t c = 0; c < 3; ++c) field[c] = nb::cast<double>(nb::float_(result[c]));
+      return field;
+    };
+  if (!nonlocal.is_none())
+    own.nonlocal = [function = kept(std::move(nonlocal))](io::HostVectors const& spins,
+                                                          io::HostVectors const& field, double t) {
+      nb::gil_scoped_acquire const gil;
+      auto const result = (*function)(
+          nb::cast(spins.is_double ? copy_of<double>(spins) : copy_of<float>(spins)), t);
+      NumbersIn array;
+      if (!nb::try_cast(result, array))
+        throw UsageError(
+            "field.nonlocal: the function returned no array; accepted: float64 or "
+            "float32 of shape (nz, ny, nx, 3)");
+      auto const vectors = vectors_of(array);
+      if (vectors.shape != field.shape)
+        throw UsageError(
+            "field.nonlocal: the function returned an array of another shape; "
+            "accepted: (nz, ny, nx, 3)");
+      field.is_double ? copy_vectors<double>(vectors, field) : copy_vectors<float>(vectors, field);
+    };
+  return own;
+}
+
+}  // namespace cayspin::python

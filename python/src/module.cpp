@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The module _cayspin: scenes and runs as the package python/cayspin wraps them.
+#include "arrays.hpp"
+#include "cayspin_git_commit.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/guard.hpp"
+#include "simulation/run_recorder.hpp"
+
+#include <cayspin/version.hpp>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+namespace cayspin::python {
+namespace {
+
+using namespace simulation;
+using namespace nb::literals;
+
+using Overrides = std::vector<std::string>;
+
+std::shared_ptr<std::vector<double> const> given(std::optional<NumbersIn> const& spins) {
+  if (!spins) return nullptr;
+  return std::make_shared<std::vector<double> const>(packed<double>(vectors_of(*spins)));
+}
+
+Precision precision_of(std::string const& name) {
+  for (auto const known : {Precision::double_precision, Precision::single_precision})
+    if (to_string(known) == name) return known;
+  throw UsageError("precision \"" + name + "\"; accepted: \"double\", \"single\"");
+}
+
+// True with Python's exception set, which the caller raises.
+bool interrupted() {
+  nb::gil_scoped_acquire const gil;
+  return PyErr_CheckSignals() != 0;
+}
+
+bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_torque) {
+  Advanced ended;
+  {
+    nb::gil_scoped_release const released;
+    ended = run.advance(count, {period, until_torque, interrupted});
+  }
+  if (ended == Advanced::interrupted) throw nb::python_error();
+  return ended == Advanced::at_rest;
+}
+
+template <auto Member>
+auto without_gil(SceneRun& run) {
+  nb::gil_scoped_release const released;
+  return (run.*Member)();
+}
+
+void define_scene(nb::module_& module) {
+  nb::class_<io::Scene>(module, "Scene")
+      .def_static(
+          "read",
+          [](std::filesystem::path const& path, Overrides const& overrides,
+             std::optional<NumbersIn> const& spins) {
+            return io::read_scene(path, overrides, given(spins));
+          },
+          "path"_a, "overrides"_a, "spins"_a.none())
+      .def_static(
+          "parse",
+          [](std::string const& text, std::filesystem::path const& name, Overrides const& overrides,
+             std::optional<NumbersIn> const& spins) {
+            return io::parse_scene(text, name, overrides, given(spins));
+          },
+          "text"_a, "name"_a, "overrides"_a, "spins"_a.none())
+      .def("with_overrides",
+           [](io::Scene const& scene, Overrides const& overrides) {
+             return io::with_overrides(scene, overrides);
+           })
+      .def(
+          "set_own_field",
+          [](io::Scene& scene, nb::object uniform, nb::object nonlocal) {
+            scene.field.own = own_field(std::move(uniform), std::move(nonlocal));
+            io::check_combination(scene);
+          },
+          "uniform"_a.none(), "nonlocal_"_a.none())
+      .def_prop_ro("given_start",
+                   [](io::Scene const& scene) {
+                     return std::holds_alternative<io::GivenStart>(scene.initial);
+                   })
+      .def_ro("text", &io::Scene::text)
+      .def_ro("path", &io::Scene::path)
+      .def_prop_ro("shape",
+                   [](io::Scene const& scene) {
+                     auto const& [nx, ny, nz] = scene.lattice.shape;
+                     return nb::make_tuple(nz, ny, nx);
+                   })
+      .def_prop_ro(
+          "method",
+          [](io::Scene const& scene) { return std::string(scene.integrator.method->word); })
+      .def_prop_ro("dt", [](io::Scene const& scene) { return scene.integrator.dt; })
+      .def_prop_ro("steps", [](io::Scene const& scene) { return scene.integrator.steps; })
+      .def_prop_ro("output", [](io::Scene const& scene) { return scene.output.file; })
+      .def_prop_ro("guard_period",
+                   [](io::Scene const& scene) { return Guard::period_of(io::sites(scene)); });
+}
+
+void define_run(nb::module_& module) {
+  nb::class_<SceneRun>(module, "Run", nb::is_weak_referenceable())
+      .def(nb::new_([](io::Scene const& scene, std::string const& precision,
+                       std::optional<std::string> const& space, std::optional<int> threads) {
+             RunSettings const settings{precision_of(precision), space, threads};
+             nb::gil_scoped_release const released;
+             return SceneRun::open(scene, settings);
+           }),
+           "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none())
+      .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
+      .def("step_at", &SceneRun::step_at)
+      .def("spins", [](SceneRun& run) { return array_of(without_gil<&SceneRun::spins>(run)); })
+      .def("set_spins",
+           [](SceneRun& run, NumbersIn const& spins) {
+             auto const vectors = vectors_of(spins);
+             nb::gil_scoped_release const released;
+             run.set_spins(vectors);
+           })
+      .def("field", [](SceneRun& run) { return array_of(without_gil<&SceneRun::field>(run)); })
+      .def("energies",
+           [](SceneRun& run) {
+             nb::dict all;
+             for (auto const& [name, value] : without_gil<&SceneRun::energies>(run))
+               all[name.c_str()] = value;
+             return all;
+           })
+      .def("sample",
+           [](SceneRun& run) {
+             auto const now = without_gil<&SceneRun::sample>(run);
+             auto const& m = now.magnetization;
+             return nb::make_tuple(now.energy.value, now.norm_defect,
+                                   nb::make_tuple(m.x, m.y, m.z));
+           })
+      .def_prop_ro("steps", &SceneRun::steps)
+      .def_prop_ro("time", &SceneRun::time)
+      .def_prop_ro("evaluations", &SceneRun::evaluations)
+      .def_prop_ro("step_seconds", &SceneRun::step_seconds)
+      .def_prop_ro("space", &SceneRun::space)
+      .def_prop_ro("threads", &SceneRun::threads)
+      .def_prop_ro("precision",
+                   [](SceneRun const& run) { return std::string(to_string(run.precision())); });
+}
+
+// HDF5 has its lock in h5py, which holds the GIL: so do these.
+void define_recorder(nb::module_& module) {
+  auto const as_error = [](auto const& work) {
+    try {
+      return work();
+    } catch (UsageError const&) {
+      throw;
+    } catch (std::runtime_error const& error) {
+      throw UsageError(error.what());
+    }
+  };
+  nb::class_<RunRecorder>(module, "Recorder")
+      .def(nb::new_([as_error](SceneRun& run, std::int64_t end, std::filesystem::path const& path,
+                               bool overwrite) {
+             return as_error([&] {
+               return std::make_unique<RunRecorder>(run, end, path, overwrite, CAYSPIN_GIT_COMMIT);
+             });
+           }),
+           "run"_a, "end"_a, "path"_a, "overwrite"_a, nb::keep_alive<0, 1>())
+      .def_prop_ro("next", &RunRecorder::next)
+      .def("look",
+           [as_error](RunRecorder& recorder, bool last) { as_error([&] { recorder.look(last); }); })
+      .def("finish", [as_error](RunRecorder& recorder, bool as_planned) {
+        as_error([&] { recorder.finish(as_planned); });
+      });
+}
+
+}  // namespace
+}  // namespace cayspin::python
+
+NB_MODULE(_cayspin, module) {
+  using namespace cayspin;
+  namespace nb = nanobind;
+  nb::set_leak_warnings(false);  // a field that refers to its own simulation is one
+  nb::exception<simulation::UsageError> const base(module, "CayspinError");
+  nb::exception<io::SceneError>(module, "SceneError", base);
+  nb::exception<simulation::NumbersFailed>(module, "NumbersFailed", base);
+  module.attr("version") = CAYSPIN_VERSION_STRING;
+  module.attr("git_commit") = CAYSPIN_GIT_COMMIT;
+  python::define_scene(module);
+  python::define_run(module);
+  python::define_recorder(module);
+}

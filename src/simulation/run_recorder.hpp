@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "scene_run.hpp"
+
+#include <cayspin/io/trajectory.hpp>
+
+#include <filesystem>
+
+namespace cayspin::simulation {
+
+/// Writes a run, from its present step to another, into a trajectory file, as `cayspin run` does:
+///   RunRecorder recorder(run, end, "run.h5", false, commit);
+///   for (recorder.look(); recorder.next() > run.steps(); recorder.look())
+///     run.advance(recorder.next() - run.steps());
+///   recorder.finish();
+class RunRecorder {
+ public:
+  /// Throws std::runtime_error for a file that cannot be, or exists and `overwrite` is false.
+  RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path, bool overwrite,
+              std::string const& git_commit);
+
+  /// The step at which the file next wants a frame or a sample; the present one at the end.
+  std::int64_t next() const;
+  /// Writes what is due at the present step; with `last`, a frame in any case.
+  void look(bool last = false);
+  /// Closes the file: as one of a run that went as planned, or of another.
+  void finish(bool as_planned = true);
+
+ private:
+  SceneRun& run_;
+  std::int64_t first_, end_, written_ = -1;
+  std::int64_t evaluations_before_;
+  double seconds_before_;
+  Kokkos::Timer clock_;
+  io::TrajectoryFile file_;
+};
+
+}  // namespace cayspin::simulation

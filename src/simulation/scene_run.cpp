@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "scene_run.hpp"
+
+#include "scene_run_in_space.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <mutex>
+
+namespace cayspin::simulation {
+namespace {
+
+// One for all runs: a space of Kokkos takes work from one thread at a time.
+class Turn {
+ public:
+  Turn() : lock_(mutex()) {
+    if (taken_)
+      throw UsageError("a field or an observer's question may not use a run that is stepping");
+    taken_ = true;
+  }
+  ~Turn() { taken_ = false; }
+  Turn(Turn const&) = delete;
+  Turn& operator=(Turn const&) = delete;
+
+ private:
+  static std::recursive_mutex& mutex() {
+    static std::recursive_mutex one;
+    return one;
+  }
+  static inline bool taken_ = false;
+  std::lock_guard<std::recursive_mutex> lock_;
+};
+
+void start_kokkos(std::optional<int> threads) {
+  if (Kokkos::is_initialized()) return;
+  static KokkosSession* session = nullptr;
+  session = new KokkosSession("", threads, {});
+  std::atexit([] { delete session; });
+}
+
+std::string space_of(std::optional<std::string> const& asked) {
+  try {
+    return chosen_space(asked);
+  } catch (UsageError const& error) {
+    throw UsageError(std::string(error.what()).substr(2));  // without the dashes of the option
+  }
+}
+
+Plan plan_of(io::Scene const& scene, Precision precision) {
+  if (scene.integrator.method->automatic)
+    throw io::scene_error(scene, "integrator.method",
+                          "\"auto\" is chosen by the program; accepted: the method and dt or "
+                          "tolerance that `cayspin advise` names");
+  auto plan = make_plan(scene, precision);
+  // A scene of no steps has no end.
+  if (scene.integrator.steps == 0) plan.options.steps.end = std::numeric_limits<double>::infinity();
+  require_memory(scene, plan);
+  return plan;
+}
+
+template <class From, class Real>
+std::vector<Real> packed_from(io::HostVectors const& vectors) {
+  auto const& [nz, ny, nx] = vectors.shape;
+  auto const* data = static_cast<From const*>(vectors.data);
+  auto const& strides = vectors.strides;
+  std::vector<Real> numbers;
+  numbers.reserve(static_cast<std::size_t>(3 * nz * ny * nx));
+  for (std::int64_t k = 0; k < nz; ++k)
+    for (std::int64_t j = 0; j < ny; ++j)
+      for (std::int64_t i = 0; i < nx; ++i)
+        for (std::int64_t c = 0; c < 3; ++c)
+          numbers.push_back(static_cast<Real>(
+              data[k * strides[0] + j * strides[1] + i * strides[2] + c * strides[3]]));
+  return numbers;
+}
+
+}  // namespace
+
+template <class Real>
+std::vector<Real> packed(io::HostVectors const& vectors) {
+  return vectors.is_double ? packed_from<double, Real>(vectors) : packed_from<float, Real>(vectors);
+}
+template std::vector<double> packed(io::HostVectors const&);
+template std::vector<float> packed(io::HostVectors const&);
+
+SceneRun::SceneRun(io::Scene const& scene, Plan const& plan, Precision precision, std::string space)
+    : scene_(scene), plan_(plan), precision_(precision), space_(std::move(space)) {}
+
+std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings const& settings) {
+  Turn const turn;
+  io::check_files(scene);
+  auto const space = space_of(settings.space);
+  start_kokkos(settings.threads);
+  auto const plan = plan_of(scene, settings.precision);
+  return in_space(space, settings.precision,
+                  [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
+                    return std::make_unique<SceneRunInSpace<Real, Space>>(
+                        scene, plan, settings.precision, space);
+                  });
+}
+
+std::int64_t SceneRun::step_at(double t) const {
+  double const steps = t / plan_.times.dt, whole = std::round(steps);
+  if (!(std::abs(steps - whole) <= 1e-9 * std::max(1.0, 1e-6 * whole)) || !(whole >= 0) ||
+      !(whole <= 0x1p53))
+    throw UsageError(
+        fmt::format("t = {} is {:.12g} steps of dt = {}; accepted: a whole number of "
+                    "steps, such as t = {:.12g}",
+                    t, steps, plan_.times.dt, std::max(0.0, whole) * plan_.times.dt));
+  return static_cast<std::int64_t>(whole);
+}
+
+Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
+  if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
+  Turn const turn;
+  std::int64_t const target = number_ + count;
+  if (std::isfinite(plan_.options.steps.end) && plan_.variant.method->adaptive &&
+      target > scene_.integrator.steps)
+    throw UsageError(fmt::format(
+        "step {} lies beyond step {}, t = {:.9g}, where the scene ends and its adaptive method "
+        "stops; accepted: a later integrator.end, or integrator.steps = 0 for a run without end",
+        target, scene_.integrator.steps, plan_.times.at(scene_.integrator.steps)));
+  return advance_to(target, looks);
+}
+
+LentVectors SceneRun::spins() {
+  Turn const turn;
+  return lend_spins();
+}
+
+void SceneRun::set_spins(io::HostVectors const& from) {
+  Turn const turn;
+  auto const& [nx, ny, nz] = scene_.lattice.shape;
+  if (from.shape != std::array{nz, ny, nx})
+    throw UsageError(fmt::format("spins of shape ({}, {}, {}, 3); accepted: ({}, {}, {}, 3)",
+                                 from.shape[0], from.shape[1], from.shape[2], nz, ny, nx));
+  auto as_start = scene_;
+  as_start.initial =
+      io::GivenStart{std::make_shared<std::vector<double> const>(packed<double>(from))};
+  replace_spins(io::initial_spins(as_start));
+}
+
+Sample SceneRun::sample() {
+  Turn const turn;
+  return look();
+}
+
+std::vector<std::pair<std::string, double>> SceneRun::energies() {
+  Turn const turn;
+  return term_energies();
+}
+
+LentVectors SceneRun::field() {
+  Turn const turn;
+  if (scene_.system.kind != io::SystemKind::llg)
+    throw UsageError("rigid bodies have no field; accepted: a scene with system.kind = \"llg\"");
+  return evaluated_field();
+}
+
+}  // namespace cayspin::simulation

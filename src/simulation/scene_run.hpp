@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "plan.hpp"
+
+#include <cayspin/io/own_field.hpp>
+#include <cayspin/io/scene.hpp>
+#include <cayspin/observer/record.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cayspin::simulation {
+
+struct RunSettings {
+  Precision precision = Precision::double_precision;
+  std::optional<std::string> space = {};  // default: Kokkos' default
+  std::optional<int> threads = {};        // of host spaces; only the first run of a process has it
+};
+
+/// Vectors of all sites in host memory, which stays there and unchanged as long as `owner` does.
+struct LentVectors {
+  io::HostVectors vectors;
+  std::shared_ptr<void const> owner;
+};
+
+/// When a run looks at its numbers, and why it may end early.
+struct Looks {
+  std::int64_t period = 100;               // steps from one look of the guard to the next
+  bool until_torque = false;               // ends where the scene's until_torque says so
+  std::function<bool()> interrupted = {};  // asked between steps, about twenty times a second
+};
+
+enum class Advanced { whole, interrupted, at_rest };
+
+/// A run of a scene, its types erased: what other languages hold. Calls of several threads, also on
+/// several runs, take turns. Kokkos starts with the first run of a process, unless the program has
+/// started it, and ends with the process.
+///
+/// N calls of advance(1) give the bits of one advance(N), and those of `cayspin run`.
+class SceneRun {
+ public:
+  /// Throws io::SceneError, or UsageError for a space that is not compiled in.
+  static std::unique_ptr<SceneRun> open(io::Scene const& scene, RunSettings const& settings);
+
+  virtual ~SceneRun() = default;
+  SceneRun(SceneRun const&) = delete;
+  SceneRun& operator=(SceneRun const&) = delete;
+
+  io::Scene const& scene() const { return scene_; }
+  Precision precision() const { return precision_; }
+  std::string const& space() const { return space_; }
+  int threads() const { return threads_; }  // 1 on devices
+
+  /// Steps taken, and the time after them.
+  std::int64_t steps() const { return number_; }
+  double time() const { return plan_.times.at(number_); }
+  std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
+  double step_seconds() const { return step_seconds_; }      // stepping alone
+
+  /// The step at time t. Throws UsageError when t is no whole number of steps.
+  std::int64_t step_at(double t) const;
+
+  /// Takes `count` more steps, less when it ends early. Throws UsageError when an adaptive method
+  /// would go beyond the scene's end, NumbersFailed when the numbers do, and what a field of the
+  /// program throws. steps() and the spins are then those before the step that failed.
+  Advanced advance(std::int64_t count, Looks const& looks = {});
+
+  /// The spins. Memory that is still lent when the run goes on is left as it is: the run moves to
+  /// other memory, by one copy.
+  LentVectors spins();
+  /// Normalised in double like any start. Methods that remember steps begin again. Throws
+  /// io::SceneError for a zero or non-finite spin, UsageError for another shape.
+  void set_spins(io::HostVectors const& from);
+
+  /// Energy, norm defect and magnetization now.
+  Sample sample();
+  /// The energy of each term of the scene, which it names; of rigid bodies "rotation".
+  std::vector<std::pair<std::string, double>> energies();
+  /// The effective field now. Throws UsageError for rigid bodies.
+  LentVectors field();
+
+ protected:
+  SceneRun(io::Scene const& scene, Plan const& plan, Precision precision, std::string space);
+
+  virtual Advanced advance_to(std::int64_t target, Looks const& looks) = 0;
+  virtual LentVectors lend_spins() = 0;
+  virtual void replace_spins(std::vector<double> const& start) = 0;
+  virtual Sample look() = 0;
+  virtual std::vector<std::pair<std::string, double>> term_energies() = 0;
+  virtual LentVectors evaluated_field() = 0;
+
+  io::Scene scene_;
+  Plan plan_;
+  std::int64_t number_ = 0, evaluations_ = 0;
+  double step_seconds_ = 0;
+  int threads_ = 1;
+
+ private:
+  Precision precision_;
+  std::string space_;
+};
+
+/// Vectors packed as (nz, ny, nx, 3).
+template <class Real>
+std::vector<Real> packed(io::HostVectors const& vectors);
+
+}  // namespace cayspin::simulation

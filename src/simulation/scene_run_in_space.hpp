@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "guard.hpp"
+#include "interrupt_poll.hpp"
+#include "scene_run.hpp"
+
+#include <cayspin/evaluate.hpp>
+#include <cayspin/observer/energy_control.hpp>
+
+#include <limits>
+
+namespace cayspin::simulation {
+
+/// The terms of a field, each alone, under the names of their keys.
+std::vector<std::pair<std::string, io::Field>> single_terms(io::Field const& field);
+
+/// A SceneRun in one precision and execution space.
+template <class Real, class Space>
+class SceneRunInSpace final
+    : public SceneRun,
+      private RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+  using Vectors = SiteField<Real, 3, typename Space::memory_space>;
+
+ public:
+  SceneRunInSpace(io::Scene const& scene, Plan const& plan, Precision precision,
+                  std::string const& space)
+      : SceneRun(scene, plan, precision, space),
+        simulation_(scene, plan.lattice, plan.times, io::initial_spins(scene)),
+        method_(plan.variant.open(&simulation_, plan.options)),
+        guard_(scene, epsilon) {
+    if (on_host) threads_ = simulation_.exec.concurrency();
+    if (scene.integrator.energy_control) control_.emplace(simulation_.generator, simulation_.spins);
+    if (scene.integrator.until_torque) torque_.emplace(simulation_.generator.precession_alone());
+  }
+
+ private:
+  static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+
+  Advanced advance_to(std::int64_t target, Looks const& looks) override {
+    leave_lent_memory(true);
+    looks_ = looks;
+    next_look_ = std::min(next_look_, looked_ + looks.period);
+    interrupt_.emplace(looks.interrupted);
+    failure_.reset();
+    ended_ = Advanced::whole;
+    seen_ = number_;
+    simulation_.times = {0, plan_.times.dt, target, number_, continues_};
+    // What throws may have left the method's memory within a step.
+    continues_ = false;
+    Ending ending;
+    try {
+      ending = simulation_.advance(*method_, *this);
+    } catch (...) {
+      number_ = seen_;
+      throw;
+    }
+    if (ending.failure) {
+      number_ = seen_;
+      throw NumbersFailed(scene_.path.string() + ": " + *ending.failure);
+    }
+    number_ += ending.summary.steps;
+    evaluations_ += ending.summary.evaluations;
+    step_seconds_ += ending.summary.step_seconds;
+    if (failure_) throw NumbersFailed(scene_.path.string() + ": " + *failure_);
+    continues_ = true;
+    return ended_;
+  }
+
+  // RunObserver
+  bool due(Step const& step) const override {
+    seen_ = step.number;
+    return control_ || step.number >= next_look_ || (*interrupt_)();
+  }
+  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    if (step.number >= next_look_ && judge(exec, step, spins) == Next::stop) return Next::stop;
+    if (step.last) return Next::proceed;
+    if ((*interrupt_)()) {
+      ended_ = Advanced::interrupted;
+      return Next::stop;
+    }
+    if (control_) {
+      auto const before = control_->evaluations_done();
+      (*control_)(exec, step, spins);
+      evaluations_ += control_->evaluations_done() - before;
+    }
+    return Next::proceed;
+  }
+
+  Next judge(Space const& exec, Step const& step, Spins const& spins) {
+    bool const first = looked_ < 0;
+    looked_ = step.number;
+    next_look_ = step.number + looks_.period;
+    auto const now = torque_ && looks_.until_torque
+                         ? cayspin::sample(exec, simulation_.generator, step, spins, *torque_)
+                         : cayspin::sample(exec, simulation_.generator, step, spins);
+    failure_ = guard_.judge(step, now.energy, now.norm_defect);
+    if (failure_) return Next::stop;
+    if (!torque_ || !looks_.until_torque || first) return Next::proceed;
+    if (!(now.energy.value < guard_.first_energy() &&
+          now.largest_rate < *scene_.integrator.until_torque))
+      return Next::proceed;
+    ended_ = Advanced::at_rest;
+    return Next::stop;
+  }
+
+  LentVectors lend_spins() override {
+    if constexpr (on_host) {
+      if (!lent_) lent_ = std::make_shared<Spins>(simulation_.spins);
+      return {host_vectors(*lent_), lent_};
+    } else {
+      return lend_copy(simulation_.spins);
+    }
+  }
+  void leave_lent_memory(bool copy_spins) {
+    if (lent_.use_count() > 1) {
+      Spins const other("spins", plan_.lattice);
+      if (copy_spins)
+        Kokkos::deep_copy(simulation_.exec, other.allocation(), simulation_.spins.allocation());
+      simulation_.exec.fence("cayspin::SceneRun: spins moved");
+      simulation_.spins = other;
+    }
+    lent_.reset();
+  }
+
+  void replace_spins(std::vector<double> const& start) override {
+    leave_lent_memory(false);
+    copy_from_host(start, simulation_.spins);
+    continues_ = false;
+    guard_ = Guard(scene_, epsilon);
+    looked_ = -1;
+    next_look_ = number_;
+    if (control_) control_->reset();
+  }
+
+  Sample look() override {
+    return cayspin::sample(simulation_.exec, simulation_.generator, now(), simulation_.spins);
+  }
+
+  std::vector<std::pair<std::string, double>> term_energies() override {
+    std::vector<std::pair<std::string, double>> energies;
+    if (scene_.system.kind == io::SystemKind::rigid_body) {
+      energies.emplace_back("rotation", look().energy.value);
+      return energies;
+    }
+    if (terms_.empty())
+      for (auto const& [name, field] : single_terms(scene_.field)) {
+        auto alone = scene_;
+        alone.field = field;
+        terms_.emplace_back(name, SceneGenerator<Spins>(alone, plan_.lattice));
+      }
+    for (auto const& [name, generator] : terms_)
+      energies.emplace_back(
+          name,
+          cayspin::sample(simulation_.exec, generator, now(), simulation_.spins).energy.value);
+    return energies;
+  }
+
+  LentVectors evaluated_field() override {
+    Vectors const field("field", plan_.lattice);
+    evaluate_field(simulation_.exec, simulation_.generator.landau_lifshitz().field(),
+                   simulation_.spins, time(), field);
+    simulation_.exec.fence("cayspin::SceneRun: field evaluated");
+    if constexpr (on_host)
+      return {host_vectors(field), std::make_shared<Vectors>(field)};
+    else
+      return lend_copy(field);
+  }
+
+  static constexpr bool on_host = cayspin::detail::is_host_execution<Space>;
+
+  // Of vectors on a device.
+  template <class Field>
+  LentVectors lend_copy(Field const& field) {
+    auto const numbers = std::make_shared<std::vector<Real>>(copy_to_host(field));
+    auto const& [nx, ny, nz] = scene_.lattice.shape;
+    return {
+        {numbers->data(), std::is_same_v<Real, double>, {nz, ny, nx}, {3 * nx * ny, 3 * nx, 3, 1}},
+        numbers};
+  }
+
+  Step now() const { return {number_, time(), plan_.times.dt, false}; }
+
+  Simulation<Real, Space> simulation_;
+  std::unique_ptr<OpenMethod> method_;
+  Guard guard_;
+  std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
+  std::optional<SceneGenerator<Spins>> torque_;
+  std::vector<std::pair<std::string, SceneGenerator<Spins>>> terms_;
+  std::shared_ptr<Spins> lent_;
+
+  Looks looks_;
+  mutable std::optional<InterruptPoll> interrupt_;
+  std::optional<std::string> failure_;
+  Advanced ended_ = Advanced::whole;
+  bool continues_ = false;
+  std::int64_t looked_ = -1, next_look_ = 0;  // steps of the guard's looks
+  mutable std::int64_t seen_ = 0;             // the step from which the method last set out
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""trade and advise as records, through the program."""
+
+import json
+import subprocess
+import unittest
+
+import cayspin
+import matplotlib
+import numpy as np
+from package_test import PROGRAM, PackageTest, scene
+
+matplotlib.use("Agg")
+
+SPIN = {"lattice": {"shape": [1], "spacing": None, "boundary": None},
+        "field": {"exchange": None, "slab_demag": None},
+        "integrator": {"method": "rkmk4", "dt": 0.05, "steps": 40}}
+
+
+class Advice(PackageTest):
+    def test_what_is_advised_runs(self):
+        advice = cayspin.advise(scene(**SPIN), error=1e-4, precision="double", threads=1)
+        self.assertEqual(advice.precision, "double")
+        self.assertLessEqual(advice.error, 1e-4)
+        sim = cayspin.Simulation(advice.scene, advice.precision)
+        sim.run()
+        self.assertEqual(sim.steps, advice.steps)
+        reference = cayspin.Simulation(scene(**{**SPIN, "integrator": {
+            "method": "rkmk8", "dt": 0.05}}))
+        reference.run()
+        distance = np.linalg.norm(sim.spins - reference.spins, axis=-1).max()
+        self.assertGreater(distance, 0)
+        self.assertLess(distance, 4e-4)
+        self.assertLessEqual(advice.seconds, min(one["seconds"] for one in advice.others))
+
+    def test_text_and_json_say_the_same(self):
+        file = self.folder / "scene.toml"
+        file.write_text(scene(**SPIN).text, encoding="utf-8")
+        command = [PROGRAM, "advise", file, "--error", "1e-3", "--threads", "1"]
+        keys = set(json.loads(subprocess.run([*command, "--json"], check=True, text=True,
+                                             capture_output=True).stdout))
+        self.assertEqual(keys, {"method", "precision", "dt", "steps", "tolerance", "error",
+                                "seconds", "memory", "horizon", "overrides", "others"})
+        text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        for word in ("scene ", "method ", "error ", "memory ", "run it ", "next to it"):
+            self.assertIn(word, text)
+
+    def test_what_only_this_program_can_run(self):
+        for of in (scene(field={"applied": lambda t: (0, 0, 1)}),
+                   scene(initial=np.ones((2, 3, 7, 3)))):
+            self.assert_refused(cayspin.CayspinError, "the program cannot run", cayspin.advise,
+                                of, error=1e-3)
+        self.assert_refused(cayspin.CayspinError, "--error", cayspin.advise, scene(), error=5)
+
+
+class Trade(PackageTest):
+    def test_records_and_picture(self):
+        trade = cayspin.trade(scene(**SPIN), seconds=0.01, precision="double", threads=1)
+        for run in trade:
+            self.assertEqual({"dt", "tolerance"} & set(run), {"dt"} if "dt" in run
+                             else {"tolerance"})
+            self.assertGreater(run["evaluations"], 0)
+        self.assertGreater(len({run["method"] for run in trade}), 10)
+        named = {run["method"] for run in trade if run["front"]}
+        axes = trade.plot(cost="evaluations")
+        self.assertEqual({text.get_text() for text in axes.get_legend().get_texts()}, named)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""What the tests of the package share."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import cayspin
+import h5py
+
+PROGRAM = os.environ["CAYSPIN_PROGRAM"]
+
+TABLES = {
+    "system": {"kind": "llg", "damping": 0.1},
+    "lattice": {"shape": [7, 3, 2], "spacing": [1.0, 0.9, 1.1],
+                "boundary": ["periodic", "open", "open"]},
+    "field": {"exchange": 0.7, "anisotropy": {"constant": 0.4, "axis": [0, 1, 2]},
+              "applied": [0.3, 0.2, -0.1],
+              "slab_demag": {"normal": [0, 0, 1], "strength": 0.8, "average": "layer"},
+              "mu0": 1.5},
+    "initial": {"random": {"seed": 3}},
+    "integrator": {"method": "rkmk4", "dt": 0.05, "steps": 40},
+}
+
+
+def scene(**tables):
+    """The scene of TABLES, with keys of its tables replaced; None removes a key."""
+    changed = {**TABLES}
+    for name, table in tables.items():
+        if isinstance(table, dict) and name != "initial":
+            table = {**TABLES.get(name, {}), **table}
+            table = {key: value for key, value in table.items() if value is not None}
+        changed[name] = table
+    return cayspin.Scene(**changed)
+
+
+class PackageTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_program(self, of_scene, *options):
+        """What `cayspin run` writes of a scene: the open file."""
+        text, output = self.folder / "program.toml", self.folder / "program.h5"
+        text.write_text(of_scene.text, encoding="utf-8")
+        subprocess.run([PROGRAM, "run", text, "--output", output, "--quiet", "--overwrite",
+                        *options], check=True)
+        file = h5py.File(output)
+        self.addCleanup(file.close)
+        return file
+
+    def assert_refused(self, error, part, call, *arguments, **options):
+        with self.assertRaises(error) as caught:
+            call(*arguments, **options)
+        message = str(caught.exception)
+        self.assertIn(part, message)
+        self.assertNotIn("\n", message)

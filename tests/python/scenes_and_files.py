@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Scenes from tables and files, fields and observers of the program, trajectory files."""
+
+import importlib.util
+import math
+import unittest
+
+import cayspin
+import h5py
+import numpy as np
+from package_test import TABLES, PackageTest, scene
+
+CLOCKS = {"wall_seconds", "step_seconds"}
+
+
+class Scenes(PackageTest):
+    def test_tables_are_a_file(self):
+        of = scene()
+        file = self.folder / "scene.toml"
+        file.write_text(of.text, encoding="utf-8")
+        again = cayspin.Scene.from_file(file)
+        self.assertEqual((again.shape, again.method, again.dt, again.steps),
+                         ((2, 3, 7), "rkmk4", 0.05, 40))
+        sims = [cayspin.Simulation(one) for one in (of, again)]
+        for sim in sims:
+            sim.step(3)
+        np.testing.assert_array_equal(sims[0].spins, sims[1].spins)
+
+    def test_changed_keys(self):
+        file = self.folder / "scene.toml"
+        file.write_text(scene().text, encoding="utf-8")
+        changed = cayspin.Scene.from_file(file, integrator={"dt": 0.025, "steps": 8},
+                                          initial={"uniform": [0, 0, 1]})
+        self.assertEqual((changed.dt, changed.steps, changed.method), (0.025, 8, "rkmk4"))
+        self.assertTrue((cayspin.Simulation(changed).spins == [0, 0, 1]).all())
+        array = np.tile([0, 1.0, 0], (2, 3, 7, 1))
+        given = cayspin.Scene.from_file(file, initial=array)
+        np.testing.assert_array_equal(cayspin.Simulation(given).spins, array)
+        self.assert_refused(cayspin.SceneError, "integrator.dt=0: integrator.dt: 0 is not",
+                            cayspin.Scene.from_file, file, integrator={"dt": 0})
+
+    def test_every_kind_of_value(self):
+        of = cayspin.Scene(**{**TABLES, "system": {"kind": 'llg', "damping": np.float32(0.5),
+                                                   "precession": np.bool_(False)},
+                              "lattice": {"shape": np.array([2, 3]), "spacing": (1e-9, 2e-9)},
+                              "field": {"anisotropy": [{"constant": 1, "axis": [0, 0, 1]},
+                                                       {"constant": 2, "axis": (1, 0, 0)}],
+                                        "applied": [0, "0.1*cos(t)", 1e-7]},
+                              "output": {"file": self.folder / 'a "quoted" name.h5'}})
+        self.assertIn('"0.1*cos(t)"', of.text)
+        self.assertEqual(of.shape, (1, 3, 2))
+
+    def test_messages(self):
+        for part, tables in {
+                "field.anisotropy.konstant: unknown key, did you mean \"constant\"?":
+                    {"field": {"anisotropy": {"konstant": 1, "axis": [0, 0, 1]}}},
+                "integrator.dt: 0 is not positive; accepted: a number > 0":
+                    {"integrator": {"dt": 0}},
+                "system.damping: is of type object; accepted: bool":
+                    {"system": {"damping": object()}},
+                "initial.given: stands for spins": {"initial": {"given": True}},
+                "thermic: unknown key": {"thermic": {"temperature": 1}}}.items():
+            self.assert_refused(cayspin.SceneError, part, scene, **tables)
+        self.assert_refused(cayspin.SceneError, "cannot be read", cayspin.Scene.from_file,
+                            self.folder / "missing.toml")
+        self.assertTrue(issubclass(cayspin.SceneError, cayspin.CayspinError))
+        of = scene()
+        self.assert_refused(cayspin.CayspinError, "space abacus: not compiled in; accepted: ",
+                            cayspin.Simulation, of, space="abacus")
+        self.assert_refused(cayspin.CayspinError, "accepted: \"double\", \"single\"",
+                            cayspin.Simulation, of, precision="half")
+        self.assert_refused(cayspin.SceneError, "\"auto\" is chosen by the program",
+                            cayspin.Simulation,
+                            scene(integrator={"method": "auto", "error": 1e-3}))
+
+
+class OwnFields(PackageTest):
+    def test_uniform_field_is_its_expression(self):
+        own = scene(field={"applied": lambda t: (0.1 * math.cos(t), 0, t)})
+        typed = scene(field={"applied": ["0.1*cos(t)", 0, "t"]})
+        self.assertIn("# field.applied: a function", own.text)
+        for precision in ("double", "single"):
+            sims = [cayspin.Simulation(one, precision) for one in (own, typed)]
+            for sim in sims:
+                sim.step(20)
+            np.testing.assert_array_equal(sims[0].spins, sims[1].spins)
+            self.assertEqual(sims[0].energies(), sims[1].energies())
+
+    def test_nonlocal_field_is_that_of_the_slab(self):
+        def slab(spins, t):
+            self.assertTrue(spins.flags.c_contiguous)
+            return -1.2 * spins.mean(axis=(1, 2), keepdims=True) * [0, 0, 1] + 0 * spins
+
+        own = scene(field={"slab_demag": None, "nonlocal": slab})
+        sims = [cayspin.Simulation(one) for one in (own, scene())]
+        for sim in sims:
+            sim.step(40)
+        np.testing.assert_allclose(sims[0].spins, sims[1].spins, rtol=0, atol=40 * 64 * 2.0**-52)
+        self.assertAlmostEqual(sims[0].energies()["nonlocal"], sims[1].energies()["slab_demag"])
+
+    def test_what_a_function_raises_and_returns(self):
+        def failing(t):
+            if t > 0.5:
+                raise ZeroDivisionError("at half past")
+            return 0, 0, 1
+
+        sim = cayspin.Simulation(scene(field={"applied": failing}))
+        self.assert_refused(ZeroDivisionError, "at half past", sim.step, 40)
+        self.assertEqual(sim.steps, 10)
+        other = cayspin.Simulation(scene(field={"applied": [0, 0, "1"]}))
+        other.step(10)
+        np.testing.assert_array_equal(sim.spins, other.spins)
+        for part, function in {"another number of components": lambda t: (1, 2),
+                               "not finite": lambda t: (0, 0, math.nan)}.items():
+            with self.subTest(part):
+                self.assert_refused(cayspin.CayspinError, part, lambda f=function:
+                                    cayspin.Simulation(scene(field={"applied": f})).step())
+        self.assert_refused(cayspin.CayspinError, "another shape", lambda: cayspin.Simulation(
+            scene(field={"slab_demag": None, "nonlocal": lambda m, t: m[:1]})).step())
+
+    def test_a_function_may_not_step(self):
+        sims = []
+        of = scene(field={"applied": lambda t: sims[0].step() if sims else (0, 0, 1)})
+        sims.append(cayspin.Simulation(of))
+        self.assert_refused(cayspin.CayspinError, "may not use a run that is stepping",
+                            sims[0].step)
+
+
+class Observers(PackageTest):
+    def test_steps_of_the_calls(self):
+        sim, seen = cayspin.Simulation(scene()), []
+        sim.observe(4, lambda s: seen.append((s.steps, s.spins)))
+        sim.step(10)
+        sim.step(3)
+        sim.run()
+        self.assertEqual([step for step, _ in seen], list(range(4, 41, 4)))
+        other = cayspin.Simulation(scene())
+        for _, spins in seen:
+            other.step(4)
+            np.testing.assert_array_equal(spins, other.spins)
+
+    def test_true_ends_the_run(self):
+        sim = cayspin.Simulation(scene())
+        sim.observe(3, lambda s: s.steps == 9)
+        sim.run()
+        self.assertEqual(sim.steps, 9)
+        self.assert_refused(cayspin.CayspinError, "at least 1", sim.observe, 0, print)
+
+
+class Files(PackageTest):
+    def test_the_file_of_the_program(self):
+        for precision in ("double", "single"):
+            of = scene(output={"every": 7, "scalars_every": 3})
+            program = self.run_program(of, "--precision", precision)
+            output = self.folder / f"{precision}.h5"
+            cayspin.Simulation(of, precision).run(output=output)
+            with h5py.File(output) as here:
+                attributes = {key: (here.attrs[key], value) for key, value in program.attrs.items()}
+                for key, (mine, theirs) in attributes.items():
+                    if key not in CLOCKS | {"threads", "git_commit"}:
+                        self.assertEqual(mine, theirs, key)
+                program.visititems(lambda name, node: isinstance(node, h5py.Group) or
+                                   np.testing.assert_array_equal(here[name], node, name))
+
+    def test_scene_names_the_file(self):
+        output = self.folder / "named.h5"
+        of = scene(output={"file": output})
+        cayspin.Simulation(of).run(output=False)
+        self.assertFalse(output.exists())
+        cayspin.Simulation(of).run()
+        self.assert_refused(cayspin.CayspinError, "named.h5", cayspin.Simulation(of).run)
+        cayspin.Simulation(of).run(overwrite=True)
+
+    def test_open(self):
+        output = self.folder / "run.h5"
+        sim = cayspin.Simulation(scene(output={"every": 10}))
+        sim.run(output=output)
+        with cayspin.open(output) as run:
+            self.assertIsInstance(run.spins, h5py.Dataset)
+            self.assertEqual((len(run), run.spins.shape), (5, (5, 2, 3, 7, 3)))
+            self.assertTrue(run.complete)
+            np.testing.assert_array_equal(run.time[:], [0, 0.5, 1, 1.5, 2])
+            np.testing.assert_array_equal(run.spins[-1], sim.spins)
+            self.assertEqual(run.energy[-1], sim.energy())
+            self.assertEqual(run.scene, sim.scene.text)
+            if importlib.util.find_spec("xarray"):
+                data = run.to_xarray()
+                self.assertEqual(dict(data.sizes)["frame"], 5)
+                np.testing.assert_array_equal(data.spins.isel(frame=-1), sim.spins)
+        self.assert_refused(cayspin.CayspinError, "cannot be opened", cayspin.open,
+                            self.folder / "missing.h5")
+        with h5py.File(self.folder / "other.h5", "w"):
+            pass
+        self.assert_refused(cayspin.CayspinError, "it has no spins", cayspin.open,
+                            self.folder / "other.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()

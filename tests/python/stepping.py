@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Simulation steps to the bits of the program, whole after Ctrl-C, beside other threads."""
+
+import os
+import signal
+import threading
+import unittest
+
+import cayspin
+import numpy as np
+from package_test import PackageTest, scene
+
+METHODS = {
+    "rkmk4": {},
+    "ab2": {"method": "ab2"},
+    "tsit5": {"method": "tsit5", "tolerance": 1e-5},
+    "compensated": {"compensated": True},
+    "lagged": {"method": "heun", "isotropy": "finite_difference_backward"},
+}
+
+
+class Bits(PackageTest):
+    def test_pieces_are_one_run_and_the_program(self):
+        for name, keys in METHODS.items():
+            for precision in ("double", "single"):
+                with self.subTest(name, precision=precision):
+                    of = scene(integrator=keys)
+                    whole, pieces = (cayspin.Simulation(of, precision) for _ in range(2))
+                    whole.step(40)
+                    for _ in range(40):
+                        pieces.step()
+                    ran = self.run_program(of, "--precision", precision)["spins"][-1]
+                    self.assertEqual(ran.dtype, {"double": "f8", "single": "f4"}[precision])
+                    np.testing.assert_array_equal(whole.spins, ran)
+                    np.testing.assert_array_equal(pieces.spins, ran)
+                    self.assertEqual(pieces.evaluations, whole.evaluations)
+
+    def test_energy_control_in_pieces(self):
+        of = scene(system={"damping": 0}, integrator={"energy_control": True})
+        sim = cayspin.Simulation(of)
+        for _ in range(8):
+            sim.step(5)
+        np.testing.assert_array_equal(sim.spins, self.run_program(of)["spins"][-1])
+
+    def test_many_small_steps(self):
+        of = scene(lattice={"shape": [5], "spacing": 1, "boundary": "open"},
+                   field={"slab_demag": None}, integrator={"steps": 3000, "dt": 0.01})
+        pieces, whole = cayspin.Simulation(of), cayspin.Simulation(of)
+        for _ in range(3):
+            pieces.step(1000)
+        whole.run()
+        self.assertEqual((whole.steps, whole.time), (3000, 30))
+        np.testing.assert_array_equal(pieces.spins, whole.spins)
+
+
+class Time(PackageTest):
+    def test_until(self):
+        sim = cayspin.Simulation(scene())
+        sim.run(until=0.5)
+        self.assertEqual((sim.steps, sim.time), (10, 0.5))
+        self.assert_refused(cayspin.CayspinError, "whole number of steps", sim.run, until=0.52)
+        self.assert_refused(cayspin.CayspinError, "accepted: a later time", sim.run, until=0.25)
+
+    def test_scene_without_end(self):
+        for keys in ({}, {"method": "tsit5", "tolerance": 1e-5}):
+            endless = cayspin.Simulation(scene(integrator={"steps": None, **keys}))
+            self.assert_refused(cayspin.CayspinError, "no end", endless.run)
+            endless.step(50)
+            self.assertEqual(endless.steps, 50)
+
+    def test_adaptive_method_ends_where_its_scene_ends(self):
+        sim = cayspin.Simulation(scene(integrator=METHODS["tsit5"]))
+        self.assert_refused(cayspin.CayspinError, "lies beyond step 40", sim.step, 41)
+        sim.step(40)
+
+    def test_failing_numbers(self):
+        unstable = scene(system={"damping": 1.0},
+                         integrator={"method": "classical_euler", "dt": 50.0, "steps": 4000})
+        sim = cayspin.Simulation(unstable)
+        self.assert_refused(cayspin.NumbersFailed, "not finite any more", sim.step, 4000)
+        self.assertGreater(sim.steps, 0)
+        self.assertLess(sim.steps, 4000)
+
+
+class OtherThreads(PackageTest):
+    def setUp(self):
+        super().setUp()
+        self.large = scene(lattice={"shape": [32, 32, 32]}, integrator={"steps": None})
+
+    def test_another_thread_runs_while_stepping(self):
+        sim, count, done = cayspin.Simulation(self.large), [0], threading.Event()
+
+        def counting():
+            while not done.is_set():
+                count[0] += 1
+
+        thread = threading.Thread(target=counting)
+        thread.start()
+        before = count[0]
+        sim.step(20)
+        counted = count[0] - before
+        done.set()
+        thread.join()
+        self.assertGreater(counted, 1000)
+
+    def test_two_simulations_in_two_threads(self):
+        alone = cayspin.Simulation(scene())
+        alone.step(40)
+        sims = [cayspin.Simulation(scene()) for _ in range(2)]
+        threads = [threading.Thread(target=lambda sim=sim: [sim.step() for _ in range(40)])
+                   for sim in sims]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for sim in sims:
+            np.testing.assert_array_equal(sim.spins, alone.spins)
+
+
+class Interrupt(PackageTest):
+    def interrupted(self, call):
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        self.assertRaises(KeyboardInterrupt, call)
+        timer.join()
+
+    def test_state_is_whole(self):
+        for keys in ({}, METHODS["ab2"], {"method": "tsit5", "tolerance": 1e-5}):
+            for shape in ([7, 3, 2], [24, 24, 24]):
+                with self.subTest(keys, shape=shape):
+                    of = scene(lattice={"shape": shape}, integrator={"steps": None, **keys})
+                    sim, whole = cayspin.Simulation(of), cayspin.Simulation(of)
+                    self.interrupted(lambda: sim.step(10**9))
+                    self.assertGreater(sim.steps, 0)
+                    sim.step(3)
+                    whole.step(sim.steps)
+                    np.testing.assert_array_equal(sim.spins, whole.spins)
+
+    def test_file_is_whole(self):
+        sim = cayspin.Simulation(scene(integrator={"steps": 10**9}, output={"every": 10**8}))
+        file = self.folder / "run.h5"
+        self.interrupted(lambda: sim.run(output=file))
+        with cayspin.open(file) as run:
+            self.assertFalse(run.complete)
+            self.assertEqual(run.step[-1], sim.steps)
+            np.testing.assert_array_equal(run.spins[-1], sim.spins)
+
+
+if __name__ == "__main__":
+    unittest.main()
