@@ -1,33 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A generator of your own: any A(m, t) with m' = A x m. This one adds the torque of a
-// spin-polarised current to a Landau-Lifshitz generator, whatever that is made of.
+// A generator of your own: any A(m, t) with m' = A x m. This one adds Slonczewski's torque of a
+// spin-polarised current to a Landau-Lifshitz generator, whatever that is made of. The currents
+// that switch a magnetic layer come out as Slonczewski's formula says.
 #include <cayspin/cayspin.hpp>
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <utility>
-#include <vector>
 
-/// m' = A x m + strength m x (m x p): spins turn away from the polarisation p.
-/// Forwarding makes the inner generator ready before each stage, so that its field may depend on
-/// time or come from the host.
+struct Current {
+  double strength, degree, asymmetry;
+  cayspin::Vec3<double> polarisation;  // p, a unit vector
+};
+
+/// Gilbert's equation with the torque -a m x (m x p): spins turn to the polarisation p.
+/// a = strength P L^2 / ((L^2 + 1) + (L^2 - 1) m.p), with the polarisation's degree P and the
+/// asymmetry L. Its own damping adds the field -damping a p. Forwarding makes the inner generator
+/// ready before each stage, so that its field may depend on time or come from the host.
 template <class Inner>
 class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
  public:
-  SpinTorque(Inner inner, double strength, cayspin::Vec3<double> const& polarisation)
-      : inner_(std::move(inner)), strength_(strength), polarisation_(polarisation) {}
+  SpinTorque(Inner inner, double damping, Current const& current)
+      : inner_(std::move(inner)), damping_(damping), current_(current) {}
 
   template <class Stencil>
   KOKKOS_FUNCTION auto operator()(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    auto const p = cayspin::as_value<Value>(polarisation_);
-    return inner_(stencil) - strength_ * cross(stencil.center(), p);
+    auto const m = stencil.center(), p = cayspin::as_value<Value>(current_.polarisation);
+    double const square = current_.asymmetry * current_.asymmetry;
+    Value const a =
+        cayspin::as_value<Value>(current_.strength * current_.degree * square) /
+        (cayspin::as_value<Value>(square + 1) + cayspin::as_value<Value>(square - 1) * dot(m, p));
+    return inner_(stencil) + a * (cross(m, p) - damping_ * p);
   }
 
   template <class Make>
   auto with_parts(Make const& make) const {
     auto prepared = make(inner_);
-    return SpinTorque<decltype(prepared)>(std::move(prepared), strength_, polarisation_);
+    return SpinTorque<decltype(prepared)>(std::move(prepared), damping_, current_);
   }
   template <class Test>
   bool all_parts(Test const& test) const {
@@ -36,32 +47,53 @@ class SpinTorque : public cayspin::Forwarding<SpinTorque<Inner>, Inner> {
 
  private:
   Inner inner_;
-  double strength_;
-  cayspin::Vec3<double> polarisation_;
+  double damping_;
+  Current current_;
 };
+
+// A free layer with a perpendicular easy axis, in SI; p is +z.
+constexpr double mu0 = 4e-7 * std::numbers::pi, electron = 1.602176634e-19, hbar = 1.054571817e-34;
+constexpr double saturation = 1e6, anisotropy = 8e5, thickness = 1.2e-9;  // A/m, J/m^3, m
+constexpr double damping = 0.01, degree = 0.6, asymmetry = 1.5;
+constexpr double constant = 2 * anisotropy / (mu0 * saturation * saturation) - 1;  // less demag
+/// Strength, in units of Ms, of one A/m^2.
+constexpr double strength_of_unit = hbar / (mu0 * electron * saturation * saturation * thickness);
+
+/// Does a spin close to z or -z leave it?
+bool leaves(bool down, double current) {
+  Kokkos::DefaultExecutionSpace const exec;
+  auto const one = cayspin::Lattice::chain(1);
+  cayspin::SpinField<double> spins("spins", one);
+  double const tilt = 1e-3;
+  cayspin::copy_from_host<double>({std::sin(tilt), 0, (down ? -1 : 1) * std::cos(tilt)}, spins);
+  cayspin::LandauLifshitz const inner(
+      cayspin::EffectiveField(cayspin::UniaxialAnisotropy(constant, {0, 0, 1})), damping);
+  SpinTorque const generator(inner, damping,
+                             Current{current * strength_of_unit, degree, asymmetry, {0, 0, 1}});
+  cayspin::Rkmk4 stepper(spins);
+  cayspin::integrate(exec, stepper, generator, spins, {0, 0.1, 2000});
+  auto const m = cayspin::copy_to_host(spins);
+  return std::atan2(std::hypot(m[0], m[1]), down ? -m[2] : m[2]) > tilt;
+}
+
+/// By bisection, in A/m^2.
+double critical_current(bool down) {
+  double stays = 0, goes = down ? 1e12 : -1e12;
+  for (int halving = 0; halving < 40; ++halving) {
+    double const middle = 0.5 * (stays + goes);
+    (leaves(down, middle) ? goes : stays) = middle;
+  }
+  return 0.5 * (stays + goes);
+}
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard kokkos(argc, argv);
-  Kokkos::DefaultExecutionSpace exec;
-  auto const lattice = cayspin::Lattice::square(16, 16);
-  double const damping = 0.1;
-  cayspin::EffectiveField const field(cayspin::Exchange(lattice, 1.0),
-                                      cayspin::UniaxialAnisotropy(1.0, {0, 0, 1}));
-  cayspin::LandauLifshitz const without_current(field, damping);
-
-  // Above strength = damping * constant the current beats the damping, and the spins switch.
-  auto const m_z_after = [&](double strength) {
-    cayspin::SpinField<double> spins("spins", lattice);
-    std::vector<double> start;
-    for (int site = 0; site < 256; ++site)
-      start.insert(start.end(), {std::sin(0.1), 0.0, std::cos(0.1)});
-    cayspin::copy_from_host(start, spins);
-    SpinTorque const generator(without_current, strength, {0, 0, 1});
-    cayspin::Rkmk4 stepper(spins);
-    cayspin::integrate(exec, stepper, generator, spins, {0, 0.05, 4000});
-    return cayspin::magnetization(exec, spins).z;
-  };
-  double const weak = m_z_after(0.05), strong = m_z_after(0.15);
-  std::printf("m_z = %.6f at half the critical current, %.6f at 1.5 times it\n", weak, strong);
-  return weak > 0.999 && strong < -0.999 ? 0 : 1;
+  // a = -+ damping H_k, with m.p = +-1.
+  double const predicted_up = -2 * damping * constant / (strength_of_unit * degree);
+  double const predicted_down = -predicted_up / (asymmetry * asymmetry);
+  double const up = critical_current(false), down = critical_current(true);
+  std::printf("from parallel      %.6e A/m^2, predicted %.6e\n", up, predicted_up);
+  std::printf("from antiparallel  %.6e A/m^2, predicted %.6e\n", down, predicted_down);
+  return std::abs(up / predicted_up - 1) < 1e-5 && std::abs(down / predicted_down - 1) < 1e-5 ? 0
+                                                                                              : 1;
 }
