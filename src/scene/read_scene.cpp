@@ -76,6 +76,10 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
   return read(read_text(path), path, overrides);
 }
 
+Scene parse_scene(std::string text, std::filesystem::path const& path) {
+  return read(std::move(text), path, {});
+}
+
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
   auto changed = read(scene.text, scene.path, overrides);
   changed.places = scene.places;

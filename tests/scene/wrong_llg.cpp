@@ -142,7 +142,8 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongScene{"seed_real", "uniform = [0.3, 0.5, 0.8]", "random = { seed = 1.5 }",
                                ":19: initial.random.seed: 1.5", "a whole number"},
                     WrongScene{"file_empty", "uniform = [0.3, 0.5, 0.8]", "file = \"\"",
-                               ":19: initial.file: the file name is empty", "HDF5 file"}),
+                               ":19: initial.file: the file name is empty",
+                               "HDF5 or OVF 2.0 file"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(

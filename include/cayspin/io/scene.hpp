@@ -61,9 +61,9 @@ struct ExpressionStart {
 struct RandomStart {
   std::int64_t seed = 0;
 };
-/// A start from the last frame of an HDF5 file, normalised per spin.
+/// A start from the last frame of an HDF5 file, or from an OVF file, normalised per spin.
 struct FileStart {
-  std::filesystem::path path;  ///< dataset /spins
+  std::filesystem::path path;  ///< dataset /spins, or OVF 2.0
 };
 using Initial = std::variant<UniformStart, ExpressionStart, RandomStart, FileStart>;
 
@@ -128,6 +128,10 @@ struct Scene {
 /// order. Files that the scene names are not opened: check_files, initial_spins and inertia do
 /// that. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {});
+
+/// Reads and validates the text of a scene, such as a trajectory file holds. `path` stands for it
+/// in messages, and files that the scene names are looked for beside it. Throws SceneError.
+Scene parse_scene(std::string text, std::filesystem::path const& path);
 
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.
