@@ -76,8 +76,9 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
   return read(read_text(path), path, overrides);
 }
 
-Scene parse_scene(std::string text, std::filesystem::path const& path) {
-  return read(std::move(text), path, {});
+Scene parse_scene(std::string text, std::filesystem::path const& name,
+                  std::vector<std::string> const& overrides) {
+  return read(std::move(text), name, overrides);
 }
 
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {

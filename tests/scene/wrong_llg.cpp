@@ -212,6 +212,12 @@ INSTANTIATE_TEST_SUITE_P(
                                "a whole number of steps"},
                     WrongScene{"scalars_negative", "every = 100", "scalars_every = -3",
                                ":31: output.scalars_every: -3", ">= 1"},
+                    WrongScene{"compression_10", "every = 100", "compression = 10",
+                               ":31: output.compression: 10 is too large", "0 (none) to 9"},
+                    WrongScene{"chunk_zero", "every = 100", "chunk = 0",
+                               ":31: output.chunk: 0 is too small", "planes along z"},
+                    WrongScene{"xdmf_type", "every = 100", "xdmf = 1", ":31: output.xdmf: 1",
+                               "true, false"},
                     WrongScene{"every_is_a_date", "every = 100", "every = 2001-02-03",
                                ":31: output.every: 2001-02-03 is a date or time", ""}),
     name_of);

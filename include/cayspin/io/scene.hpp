@@ -106,8 +106,14 @@ struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
   std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
   std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
+  int compression = 0;             ///< of /spins: 0 (none) to 9
+  std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all
+  bool xdmf = false;               ///< FILE.xdmf for viewers
+  bool table = false;              ///< FILE.txt with the scalar samples
 
-  static constexpr std::array<Flag<Output>, 0> flags() { return {}; }
+  static constexpr auto flags() {
+    return std::to_array<Flag<Output>>({{"xdmf", &Output::xdmf}, {"table", &Output::table}});
+  }
 };
 
 /// A scene: one member for each table, and where each key stands.
@@ -129,9 +135,10 @@ struct Scene {
 /// that. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {});
 
-/// Reads and validates the text of a scene, such as a trajectory file holds. `path` stands for it
-/// in messages, and files that the scene names are looked for beside it. Throws SceneError.
-Scene parse_scene(std::string text, std::filesystem::path const& path);
+/// The same for a text in memory, such as that in a trajectory file. Messages name it `name`, and
+/// its files lie in the folder of `name`.
+Scene parse_scene(std::string text, std::filesystem::path const& name,
+                  std::vector<std::string> const& overrides = {});
 
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.
