@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "variant.hpp"
 
+#include <cayspin/io/scene.hpp>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
