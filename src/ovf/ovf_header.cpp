@@ -173,8 +173,6 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path) {
     if (!trimmed(*text).empty() && !trimmed(*text).starts_with('#'))
       refuse_ovf(path, "a line of its header does not begin with #");
     auto line = split_line(*text);
-    if (line.label == "segmentcount" && line.value != "1")
-      records.refuse("Segment count", line.value, "1");
     if (line.label == "desc") {
       header.field.description.push_back(line.value);
     } else if (line.label != "begin") {
@@ -183,6 +181,8 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path) {
       auto const format = format_of(block);
       if (!format) records.refuse("Begin", line.value, "Data Text, Data Binary 4, Data Binary 8");
       header.format = *format;
+      if (records.find("segmentcount") && records.count("segmentcount") != 1)
+        records.refuse("segmentcount", *records.find("segmentcount"), "1");
       header.field.title = records.find("title").value_or("");
       header.field.mesh = mesh_of(records);
       auto const units = records.find("valueunits").value_or("1");

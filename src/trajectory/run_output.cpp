@@ -65,7 +65,7 @@ class RunOutput::Implementation {
     std::size_t bytes = 3 * (single_ ? sizeof(float) : sizeof(double));
     for (auto const extent : header.shape) bytes *= static_cast<std::size_t>(extent);
     for (auto& buffer : buffers_) {
-      buffer.reset(new std::byte[bytes]);  // untouched, so that only those in use take memory
+      buffer = std::make_unique<std::byte[]>(bytes);  // zeroed: all memory is taken before a run
       free_.push_back(buffer.get());
     }
     thread_ = std::jthread([this](std::stop_token const& stop) { write_parts(stop); });
@@ -208,6 +208,8 @@ RunOutput::RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
     : implementation_(std::make_unique<Implementation>(std::move(path), header, options)) {}
 
 RunOutput::~RunOutput() = default;
+RunOutput::RunOutput(RunOutput&&) noexcept = default;
+RunOutput& RunOutput::operator=(RunOutput&&) noexcept = default;
 
 template <class Real>
 Real* RunOutput::frame() {

@@ -9,7 +9,7 @@ import unittest
 
 import h5py
 
-PROGRAM, PACKAGES = map(pathlib.Path, sys.argv[1:3])
+PROGRAM, PACKAGES = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
 sys.path.insert(0, str(PACKAGES))
 
 # Extents and spacings that differ along every axis.

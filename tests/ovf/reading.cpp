@@ -37,6 +37,7 @@ TEST_F(OvfTest, BinaryBlocksAreLittleEndianAfterTheirCheckValue) {
 TEST_F(OvfTest, LabelsAreReadInAnyCaseWithBlanksAndComments) {
   auto text = small_text();
   text = replaced(text, "# xnodes: 2", "#\tX Nodes :2  ## along x\r\n##\n#\n\n# a remark");
+  text = replaced(text, "# Segment count: 1", "# segment Count: 000001");
   text = replaced(text, "# Begin: Data Text", "# begin: data TEXT\r");
   text = replaced(text, "# End: Data Text", "# a remark\n# END: Data  text");
   text = replaced(text, "0 0.6 -8e-1", "  0\t+0.6 # half way\n -.8  \r");

@@ -42,7 +42,7 @@ TEST_F(OvfRefusal, AnotherKindOfField) {
   expect_refused(replaced(text, "rectangular", "irregular"),
                  "meshtype is \"irregular\"; accepted: rectangular");
   expect_refused(replaced(text, "valuedim: 3", "valuedim: 1"), "valuedim is \"1\"; accepted: 3");
-  expect_refused(replaced(text, "count: 1", "count: 2"), "Segment count is \"2\"; accepted: 1");
+  expect_refused(replaced(text, "count: 1", "count: 2"), "segmentcount is \"2\"; accepted: 1");
   expect_refused(replaced(text, "Begin: Data Text", "Begin: Data Binary 2"),
                  "accepted: Data Text, Data Binary 4, Data Binary 8");
 }

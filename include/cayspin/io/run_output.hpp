@@ -30,6 +30,8 @@ class RunOutput {
 
   /// Writes what was handed over. Without finish() before, the trajectory is not complete.
   ~RunOutput();
+  RunOutput(RunOutput&&) noexcept;
+  RunOutput& operator=(RunOutput&&) noexcept;
 
   /// Room for the next frame, packed as (nz, ny, nx, 3) in the precision of the header; the other
   /// one throws std::logic_error. Waits while two frames are under way.
