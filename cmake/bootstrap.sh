@@ -141,7 +141,12 @@ install_packages install "${packages[@]}"
 provide_kokkos
 [ "$verb $preset" != "test release" ] || provide_nanobind
 case $verb in
-  deps) provide_style_tools; finish_installing_drawing; print_cmake_option ;;
+  deps)
+    provide_style_tools
+    finish_installing_drawing
+    provide_interchange_tools
+    print_cmake_option
+    ;;
   build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
   compile)
     finish_installing_drawing
@@ -151,6 +156,7 @@ case $verb in
   test)
     provide_style_tools
     finish_installing_drawing
+    provide_interchange_tools
     build all
     ctest --preset "$preset" -j "$(nproc)"
     ;;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2034,SC2154
 # Sourced by bootstrap.sh. The Debian packages by what needs them, install_packages for them, and
-# provide_style_tools for what the test `style` runs.
+# provide_style_tools and provide_interchange_tools for what tests of these names run.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
@@ -44,34 +44,35 @@ install_packages() {
     apt-get install -y --no-install-recommends "${missing[@]}"
 }
 
-# The versions that tests/style/requirements.txt pins, from the Python package index.
-provide_style_tools() {
-  local tools=$deps/style pins=$root/tests/style/requirements.txt
+# provide_tools NAME PYTHON PINS: the versions that the file PINS names, from the Python package
+# index, in .deps/NAME.
+provide_tools() {
+  local name=$1 python=$2 pins=$3
+  local tools=$deps/$name
   ! cmp -s "$pins" "$tools/installed" || return 0
-  say "fetch clang-format, cmake-format and typos"
+  say "fetch $(sed 's/==.*//' "$pins" | paste -sd ' ')"
   rm -rf "$tools"
   mkdir -p "$logs"
-  if python3 -m pip install --no-compile --target "$tools" -r "$pins" >"$logs/style.log" 2>&1; then
+  if "$python" -m pip install --no-compile --no-deps --target "$tools" -r "$pins" \
+    >"$logs/$name.log" 2>&1; then
     cp "$pins" "$tools/installed"
   else
     rm -rf "$tools"
-    say "the Python package index is out of reach: there is no test style ($logs/style.log)"
+    say "the Python package index is out of reach: what needs $name is left out ($logs/$name.log)"
   fi
+}
+
+# What the test `style` runs.
+provide_style_tools() { provide_tools style python3 "$root/tests/style/requirements.txt"; }
+
+# The programs of others that the tests `interchange` hold files to: for the Python of the tests,
+# which has the packages that they need.
+provide_interchange_tools() {
+  provide_tools interchange "$PYTHON" "$root/tests/interchange/requirements.txt"
 }
 
 # Headers and CMake files that the module of the Python package is compiled with.
 provide_nanobind() {
-  local tools=$deps/nanobind pin=nanobind==3.1.0
-  parts+=(PYTHON)
-  [ "$(cat "$tools/installed" 2>/dev/null || true)" != "$pin" ] || return 0
-  say "fetch $pin"
-  rm -rf "$tools"
-  mkdir -p "$logs"
-  if python3 -m pip install --no-compile --target "$tools" "$pin" >"$logs/nanobind.log" 2>&1; then
-    printf '%s\n' "$pin" >"$tools/installed"
-  else
-    rm -rf "$tools"
-    say "the Python package index is out of reach: no Python package ($logs/nanobind.log)"
-    unset 'parts[-1]'
-  fi
+  provide_tools nanobind python3 "$root/python/build_requirements.txt"
+  [ ! -d "$deps/nanobind" ] || parts+=(PYTHON)
 }

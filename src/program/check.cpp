@@ -47,6 +47,16 @@ std::string stability_text(Plan const& plan) {
                      plan.times.dt > plan.stable_dt ? ", which is too large" : "");
 }
 
+std::string output_text(io::Scene const& scene, Plan const& plan) {
+  auto const& output = scene.output;
+  auto text = fmt::format("{} frames, {}, to {}", plan.frames, bytes_text(plan.file_bytes),
+                          output.file ? output.file->string() : "the file that --output names");
+  if (output.compression > 0) text += fmt::format(", compressed at level {}", output.compression);
+  if (output.xdmf) text += ", described by an XDMF file";
+  if (output.table) text += ", samples also in a text table";
+  return text;
+}
+
 // Every number of the start and of the inertia, where that is a matter of seconds.
 constexpr std::int64_t most_sites_checked = 10'000'000;
 
@@ -82,9 +92,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
                               bytes_text(memory.files), bytes_text(memory.total())));
   if (!is_start_checked(plan)) print("", "the start's numbers are not checked: too many sites");
   if (!fits(plan)) print("", "more memory than is available now");
-  print("output", fmt::format("{} frames, {}, to {}", plan.frames, bytes_text(plan.file_bytes),
-                              scene.output.file ? scene.output.file->string()
-                                                : std::string("the file that --output names")));
+  print("output", output_text(scene, plan));
 }
 
 }  // namespace

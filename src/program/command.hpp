@@ -3,6 +3,8 @@
 
 #include "simulation/plan.hpp"
 
+#include <cayspin/io/ovf.hpp>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -49,6 +51,13 @@ struct AdviseOptions : TryOptions {
   bool json = false;
 };
 
+struct ExportOptions {
+  std::filesystem::path file, folder;
+  std::optional<io::OvfFormat> format;  // default: the one that keeps the bits of /spins
+  std::string frames = "last";          // or "all", or a number counted from 0
+  bool overwrite = false;
+};
+
 /// What a scene models, in words: headings and lines.
 std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene);
 
@@ -62,6 +71,7 @@ int trade_off(TradeOptions const& options);
 int advise_on(AdviseOptions const& options);
 int methods();
 int info(std::filesystem::path const& file);
+int export_ovf(ExportOptions const& options);
 
 /// Becomes the program of this name that lies beside this one, with the arguments after the
 /// command. Throws UsageError when it cannot.

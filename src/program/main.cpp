@@ -13,6 +13,11 @@ Precision precision(std::string const& name) {
   throw UsageError(fmt::format("--precision {}: accepted: double, single", name));
 }
 
+io::OvfFormat ovf_format(std::string const& name) {
+  if (auto const* const known = io::find_word<io::OvfFormat>(name)) return known->value;
+  throw UsageError(fmt::format("--format {}: accepted: text, binary4, binary8", name));
+}
+
 template <class Options>
 void add_scene_options(CLI::App& command, Options& options, char const* precisions) {
   command.add_option("SCENE", options.scene, "Scene file (TOML)")->required();
@@ -102,6 +107,22 @@ int perform(int argc, char** argv) {
   auto* info_command = app.add_subcommand("info", "Say what a trajectory file holds");
   info_command->add_option("FILE", info_file, "Trajectory file (HDF5)")->required();
 
+  ExportOptions export_options;
+  auto* export_command =
+      app.add_subcommand("export", "Write frames of a trajectory file for other programs");
+  export_command->add_option("FILE", export_options.file, "Trajectory file (HDF5)")->required();
+  export_command
+      ->add_option("--ovf", export_options.folder, "Folder for OVF 2.0 files, one per frame")
+      ->required()
+      ->type_name("DIR");
+  export_command
+      ->add_option_function<std::string>(
+          "--format", [&](std::string const& name) { export_options.format = ovf_format(name); },
+          "text, binary4 or binary8 (default: the binary one that keeps the bits)")
+      ->type_name("NAME");
+  export_command->add_option("--frames", export_options.frames, "last (default), all or a number");
+  export_command->add_flag("--overwrite", export_options.overwrite, "Replace files that exist");
+
   // Programs of their own, which read their own options.
   app.add_subcommand("reproduce",
                      "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's");
@@ -116,6 +137,7 @@ int perform(int argc, char** argv) {
   if (*trade_command) return trade_off(trade_options);
   if (*advise_command) return advise_on(advise_options);
   if (*methods_command) return methods();
+  if (*export_command) return export_ovf(export_options);
   return info(info_file);
 }
 

@@ -51,6 +51,15 @@ io::TrajectoryHeader make_header(io::Scene const& typed, io::Scene const& scene,
   return header;
 }
 
+io::RunOutputOptions output_options(io::Scene const& scene, RunOptions const& options) {
+  auto const& output = scene.output;
+  return {options.overwrite,
+          {output.compression, output.chunk},
+          output.xdmf,
+          output.table,
+          scene.lattice.spacing};
+}
+
 template <class Real, class Space>
 int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
            RunOptions const& options, Restart const* restart) {
@@ -64,8 +73,8 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   Watch<Real, Space> watch(
       scene, simulation.generator, simulation.spins, times.first,
       [&] {
-        return io::TrajectoryFile(
-            path, make_header(typed, scene, options.precision, simulation.exec), options.overwrite);
+        return io::RunOutput(path, make_header(typed, scene, options.precision, simulation.exec),
+                             output_options(scene, options));
       },
       options.quiet);
   std::optional<ControlledWatch<Real, Space>> controlled;

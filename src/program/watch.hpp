@@ -5,8 +5,8 @@
 #include "simulation/guard.hpp"
 #include "simulation/simulate.hpp"
 
+#include <cayspin/io/run_output.hpp>
 #include <cayspin/io/scene.hpp>
-#include <cayspin/io/trajectory.hpp>
 #include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/record.hpp>
 
@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 
 namespace cayspin::program {
 
@@ -29,10 +30,14 @@ inline io::Scalars as_scalars(Sample const& sample) {
 template <class Real, class Space>
 class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
-  using Frame = Kokkos::View<Real* [3], Kokkos::LayoutRight, typename Space::memory_space>;
+  using Memory = typename Space::memory_space;
+  using Frame = Kokkos::View<Real* [3], Kokkos::LayoutRight, Memory>;
+  using HostFrame = Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace,
+                                 Kokkos::MemoryTraits<Kokkos::Unmanaged>>;
+  static constexpr bool on_host = std::is_same_v<Memory, Kokkos::HostSpace>;
 
  public:
-  using OpenFile = std::function<io::TrajectoryFile()>;
+  using OpenFile = std::function<io::RunOutput()>;
 
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
   /// `first`: the step after which the run begins.
@@ -45,8 +50,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
         open_file_(std::move(open_file)),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
         progress_(first, scene.integrator.steps, spins.sites(), quiet),
-        frame_("cayspin::frame", static_cast<std::size_t>(spins.sites())),
-        host_frame_(Kokkos::create_mirror_view(frame_)) {
+        frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())) {
     if (until_torque_) torque_.emplace(generator.precession_alone());
   }
 
@@ -78,7 +82,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   std::optional<std::string> const& failure() const { return failure_; }
   bool interrupted() const { return interrupted_; }
   Sample const& last_frame() const { return last_frame_; }
-  std::optional<io::TrajectoryFile>& file() { return file_; }
+  std::optional<io::RunOutput>& file() { return file_; }
   Progress& progress() { return progress_; }
 
  private:
@@ -92,10 +96,15 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     if (!file_) file_.emplace(open_file_());
     if (scalars) file_->write_scalars(now.step, now.time, as_scalars(now));
     if (!frame) return;
-    copy(exec, spins, frame_);
-    Kokkos::deep_copy(exec, host_frame_, frame_);
+    HostFrame const host(file_->template frame<Real>(), static_cast<std::size_t>(spins.sites()));
+    if constexpr (on_host) {
+      copy(exec, spins, host);
+    } else {
+      copy(exec, spins, frame_);
+      Kokkos::deep_copy(exec, host, frame_);
+    }
     exec.fence("cayspin::Watch: frame copied");
-    file_->write_frame(now.step, now.time, as_scalars(now), host_frame_.data());
+    file_->write_frame(now.step, now.time, as_scalars(now));
     last_frame_ = now;
   }
 
@@ -105,11 +114,10 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   io::Output output_;
   std::optional<double> until_torque_;
   OpenFile open_file_;
-  std::optional<io::TrajectoryFile> file_;
+  std::optional<io::RunOutput> file_;
   Guard guard_;
   Progress progress_;
-  Frame frame_;
-  typename Frame::HostMirror host_frame_;
+  Frame frame_;  // on its way from a device
   Sample last_frame_;
   std::optional<std::string> failure_;
   bool interrupted_ = false, at_rest_ = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "hdf5/real_dataset.hpp"
 #include "sections.hpp"
-#include "trajectory/stored_spins.hpp"
+#include "start_file.hpp"
 
 #include <cayspin/io/scene.hpp>
 
@@ -70,7 +70,7 @@ std::optional<std::string> detail::inertia_fault(InertiaTensor const& tensor, do
 void check_files(Scene const& scene) {
   if (auto const* const start = std::get_if<FileStart>(&scene.initial)) {
     try {
-      StoredSpins(start->path, scene.lattice.shape);
+      detail::check_start_file(start->path, scene.lattice.shape);
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }

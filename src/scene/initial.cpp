@@ -58,7 +58,7 @@ Initial read_initial(Table const& root) {
   if (auto const item = table.find("expression")) return read_expressions(*item);
   if (auto const item = table.find("random")) return read_random(*item, root.scene());
   if (auto const item = table.find("given")) return read_given(*item, root.scene());
-  return FileStart{input_file(table, "file")};
+  return FileStart{input_file(table, "file", "the name of an HDF5 or OVF 2.0 file")};
 }
 
 }  // namespace cayspin::io::detail

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "start.hpp"
+#include "start_file.hpp"
 
 #include <cayspin/io/expression.hpp>
 #include <cayspin/io/scene.hpp>
-#include <cayspin/io/trajectory.hpp>
 
 #include <fmt/format.h>
 
@@ -98,7 +98,7 @@ struct Start {
   void operator()(FileStart const& file) const {
     std::vector<double> values;
     try {
-      values = read_spins(file.path, scene.lattice.shape);
+      values = detail::read_start_file(file.path, scene.lattice.shape);
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace cayspin::io::detail {
@@ -11,7 +13,7 @@ Output read_output(Table const& root, std::int64_t steps) {
   auto const found = root.find("output");
   if (!found) return output;
   Table const table(*found, root.scene());
-  table.accept_only(with_flags<Output>({"file", "every", "scalars_every"}));
+  table.accept_only(with_flags<Output>({"file", "every", "scalars_every", "compression", "chunk"}));
   constexpr std::string_view accepted = "the name of an HDF5 file";
   constexpr std::string_view period = "a whole number of steps >= 1";
   if (auto const item = table.find("file")) {
@@ -24,6 +26,15 @@ Output read_output(Table const& root, std::int64_t steps) {
   }
   if (auto const item = table.find("scalars_every")) {
     output.scalars_every = integer(*item, 1, period);
+  }
+  if (auto const item = table.find("compression")) {
+    constexpr std::string_view levels = "a level from 0 (none) to 9";
+    auto const level = integer(*item, 0, levels);
+    if (level > 9) item->fail(fmt::format("{} is too large", level), levels);
+    output.compression = static_cast<int>(level);
+  }
+  if (auto const item = table.find("chunk")) {
+    output.chunk = integer(*item, 1, "a whole number of planes along z >= 1");
   }
   read_flags(table, output);
   return output;

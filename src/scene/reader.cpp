@@ -205,8 +205,8 @@ void unknown_word(Item const& item, std::string_view name,
   item.fail(fmt::format("\"{}\" is not known{}", name, did_you_mean(name, known)), accepted);
 }
 
-std::filesystem::path input_file(Table const& table, std::string_view name) {
-  constexpr std::string_view accepted = "the name of an HDF5 file";
+std::filesystem::path input_file(Table const& table, std::string_view name,
+                                 std::string_view accepted) {
   auto const item = table.required(name, accepted);
   auto const file = string(item, accepted);
   if (file.empty()) item.fail("the file name is empty", accepted);

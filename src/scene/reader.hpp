@@ -77,7 +77,8 @@ Triple triple(Item const& item);
 Triple direction(Item const& item);
 
 /// A file name relative to the scene file's folder.
-std::filesystem::path input_file(Table const& table, std::string_view name);
+std::filesystem::path input_file(Table const& table, std::string_view name,
+                                 std::string_view accepted = "the name of an HDF5 file");
 
 template <class Value>
 std::string all_words() {

@@ -3,6 +3,7 @@
 
 #include "hdf5/handle.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -12,11 +13,13 @@ inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
 
-/// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame, or,
-/// where that passes `limit` bytes, the frame cut into equal slabs along z, then y, then x.
+/// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame or at
+/// most `planes` of it along z, and where that passes `limit` bytes, the frame cut into equal slabs
+/// along z, then y, then x.
 /// HDF5 stores a chunk's length in 32 bits, the 4 bytes of the checksum included.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
+                                          std::int64_t planes = 0,
                                           std::uint64_t limit = 0xFFFFFFFFu - 4u) {
   std::array<hsize_t, 5> chunk{1, 1, 1, 1, 3};
   std::uint64_t inner = 3 * bytes_per_component;
@@ -27,6 +30,7 @@ inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& sha
     chunk[3 - axis] = (extent + pieces - 1) / pieces;
     inner *= extent;
   }
+  if (planes > 0) chunk[1] = std::min(chunk[1], static_cast<hsize_t>(planes));
   return chunk;
 }
 

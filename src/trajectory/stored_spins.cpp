@@ -46,9 +46,23 @@ StoredSpins::StoredSpins(std::filesystem::path const& path,
 
 std::vector<double> StoredSpins::last() const { return dataset_.read(begin_, frame_); }
 
+std::vector<double> StoredSpins::frame(std::int64_t frame) const {
+  if (frame_.size() != 5) dataset_.refuse("it has no frames");
+  auto begin = begin_;
+  if (frame < 0 || static_cast<hsize_t>(frame) > begin[0])
+    dataset_.refuse(fmt::format("it has no frame {}; accepted: 0 to {}", frame, begin[0]));
+  begin[0] = static_cast<hsize_t>(frame);
+  return dataset_.read(begin, frame_);
+}
+
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape) {
   return StoredSpins(path, shape).last();
+}
+
+std::vector<double> read_spins(std::filesystem::path const& path,
+                               std::array<std::int64_t, 3> const& shape, std::int64_t frame) {
+  return StoredSpins(path, shape).frame(frame);
 }
 
 }  // namespace cayspin::io

@@ -19,6 +19,9 @@ class StoredSpins {
   /// The state or the last whole frame, packed as (nz, ny, nx, 3).
   std::vector<double> last() const;
 
+  /// Whole frame number `frame`. Throws where there is none.
+  std::vector<double> frame(std::int64_t frame) const;
+
  private:
   RealDataset dataset_;
   Extents begin_, frame_;

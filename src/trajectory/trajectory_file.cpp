@@ -46,40 +46,50 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
 
 // A frame that never reached the disk reads as NaN, not as zeros.
 DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
-                           std::filesystem::path const& path) {
+                           TrajectoryStorage const& storage, std::filesystem::path const& path) {
   bool const single = header.precision == single_precision;
-  auto const chunk = frame_chunk(header.shape, single ? sizeof(float) : sizeof(double));
+  auto const chunk =
+      frame_chunk(header.shape, single ? sizeof(float) : sizeof(double), storage.chunk);
   std::array<hsize_t, 4> inner{0, 0, 0, 3};
   for (int axis = 0; axis < 3; ++axis) inner[2 - axis] = static_cast<hsize_t>(header.shape[axis]);
   PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
   auto const missing = std::numeric_limits<double>::quiet_NaN();
   check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path,
         "cannot create dataset spins");
+  if (storage.compression > 0) {
+    check(H5Pset_shuffle(properties.get()), path, "cannot create dataset spins");
+    check(H5Pset_deflate(properties.get(), static_cast<unsigned>(storage.compression)), path,
+          "cannot create dataset spins");
+  }
   check(H5Pset_fletcher32(properties.get()), path, "cannot create dataset spins");
   return create_growing_dataset(file, "spins", single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, chunk,
                                 std::move(properties), path, inner);
 }
 
-void require_valid(TrajectoryHeader const& header) {
+void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& storage) {
   if (header.precision != single_precision && header.precision != double_precision)
     throw std::invalid_argument("precision is '" + header.precision +
                                 "'; accepted are single and double");
   for (auto const extent : header.shape)
     if (extent < 1) throw std::invalid_argument("an extent of the lattice is below 1");
+  if (storage.compression < 0 || storage.compression > 9)
+    throw std::invalid_argument("compression is not in 0 to 9");
+  if (storage.chunk < 0) throw std::invalid_argument("chunk is negative");
 }
 
 }  // namespace
 
 class TrajectoryFile::Implementation {
  public:
-  Implementation(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite)
+  Implementation(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
+                 TrajectoryStorage const& storage)
       : path_(std::move(path)), single_(header.precision == single_precision) {
-    require_valid(header);
+    require_valid(header, storage);
     NewFile file(path_, overwrite);
     space_ = OpenFileSpace(file.get(), path_);
     space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
     write_attributes(file.get(), header, path_);
-    create_datasets(file.get(), header);
+    create_datasets(file.get(), header, storage);
     check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");
     file_ = file.commit();
   }
@@ -133,8 +143,9 @@ class TrajectoryFile::Implementation {
   std::filesystem::path const& path() const { return path_; }
 
  private:
-  void create_datasets(hid_t file, TrajectoryHeader const& header) {
-    spins_ = create_spins(file, header, path_);
+  void create_datasets(hid_t file, TrajectoryHeader const& header,
+                       TrajectoryStorage const& storage) {
+    spins_ = create_spins(file, header, storage, path_);
     frame_extents_ = dataset_extents(spins_.get(), path_);
     frame_extents_[0] = 1;
     frame_bytes_ = single_ ? sizeof(float) : sizeof(double);
@@ -183,9 +194,9 @@ class TrajectoryFile::Implementation {
 };
 
 TrajectoryFile::TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header,
-                               bool overwrite) {
+                               bool overwrite, TrajectoryStorage const& storage) {
   QuietErrors const quiet;
-  implementation_ = std::make_unique<Implementation>(std::move(path), header, overwrite);
+  implementation_ = std::make_unique<Implementation>(std::move(path), header, overwrite, storage);
 }
 
 TrajectoryFile::~TrajectoryFile() = default;

@@ -32,7 +32,8 @@ LIBRARY = [
 PROGRAMS = [
     ("list of methods", ["src/simulation/method_list.hpp"]),  # data that all others read
     ("the paper's steppers", ["paper/include/"]),  # headers on the library alone
-    ("reader and writer", ["src/io/", "src/hdf5/", "src/scene/", "src/trajectory/"]),
+    ("reader and writer", ["src/io/", "src/files/", "src/hdf5/", "src/ovf/", "src/scene/",
+                           "src/trajectory/"]),
     ("simulation", ["src/simulation/"]),
     ("program", ["src/program/"]),
     ("paper and extremes", ["paper/", "tests/extremes/"]),

@@ -2,6 +2,8 @@
 #include "hdf5_file.hpp"
 #include "scene_file.hpp"
 
+#include <cayspin/io/ovf.hpp>
+
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -149,6 +151,36 @@ TEST(Start, FileOfFloatFramesGivesTheLastFrame) {
   for (std::size_t n = 0; n < last.size(); ++n) EXPECT_NEAR(back[n], last[n], rounding);
 }
 
+TEST(Start, OvfFileComesBackNormalised) {
+  Folder const folder;
+  auto const spins = start(folder, "{random={seed=7}}");
+  OvfField field;
+  field.mesh.nodes = {4, 3, 2};
+  for (auto const value : spins) field.values.push_back(4 * value);
+  for (auto const& [name, format] : words<OvfFormat>()) {
+    write_ovf(folder / "state.ovf", field, format, true);
+    auto const back = start(folder, "{file=\"state.ovf\"}");
+    double const rounding = format == OvfFormat::binary4 ? 1e-7 : 2 * eps;
+    for (std::size_t n = 0; n < spins.size(); ++n) EXPECT_NEAR(back[n], spins[n], rounding) << name;
+  }
+}
+
+// Both are normalised in the same way, so the start does not depend on the kind of file.
+TEST(Start, OvfAndHdf5FilesGiveTheSameBits) {
+  Folder const folder;
+  auto values = start(folder, "{random={seed=9}}");
+  for (std::size_t n = 0; n < values.size(); ++n) values[n] *= 1 + 1e-9 * static_cast<double>(n);
+  OvfField field;
+  field.mesh.nodes = {4, 3, 2};
+  field.values = values;
+  write_dataset(folder / "state.h5", "/spins", {2, 3, 4, 3}, values);
+  auto const expected = start(folder, "{file=\"state.h5\"}");
+  for (auto const format : {OvfFormat::text, OvfFormat::binary8}) {
+    write_ovf(folder / "state.omf", field, format, true);
+    EXPECT_EQ(start(folder, "{file=\"state.omf\"}"), expected);
+  }
+}
+
 TEST(Start, WrongFilesAreRefusedInOneLine) {
   Folder const folder;
   std::vector<double> const spins(72, 1);
@@ -165,6 +197,17 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
   write_dataset(folder / "integer.h5", "/spins", {2, 3, 4, 3}, spins, H5T_STD_I32LE);
   write_dataset(folder / "zero.h5", "/spins", {2, 3, 4, 3}, zero);
   write_dataset(folder / "nan.h5", "/spins", {2, 3, 4, 3}, nan);
+  OvfField field;
+  field.mesh.nodes = {3, 4, 2};
+  field.values = spins;
+  write_ovf(folder / "shape.ovf", field, OvfFormat::binary8, false);
+  field.mesh.nodes = {4, 3, 2};
+  field.values = zero;
+  write_ovf(folder / "zero.ovf", field, OvfFormat::text, false);
+  std::filesystem::copy(folder / "zero.ovf", folder / "short.ovf");
+  std::filesystem::resize_file(folder / "short.ovf",
+                               std::filesystem::file_size(folder / "short.ovf") - 60);
+  folder.write("# OOMMF: rectangular mesh v1.0\n", "old.ovf");
   struct Case {
     std::string file;
     std::string message;
@@ -182,6 +225,11 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
            {"flat.h5", "dataset /spins: its extents are (72)", true},
            {"empty.h5", "dataset /spins: it holds no frame", true},
            {"integer.h5", "dataset /spins: its type is neither float nor double", true},
+           {"none.ovf", "cannot open the file: No such file or directory", true},
+           {"shape.ovf", "its mesh has 3 x 4 x 2 nodes; accepted: 4 x 3 x 2, the lattice's", true},
+           {"old.ovf", "it is OVF 1.0; accepted: OVF 2.0", true},
+           {"short.ovf", "it is truncated", false},
+           {"zero.ovf", "the spin of site (1, 1, 0) is (0, 0, 0)", false},
            {"zero.h5", "the spin of site (1, 1, 0) is (0, 0, 0)", false},
            {"nan.h5", "the spin of site (3, 2, 1) is (1, 1, nan)", false}}) {
     auto const initial = "{file=\"" + wrong.file + "\"}";

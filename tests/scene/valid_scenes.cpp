@@ -95,6 +95,10 @@ TEST(Scene, DefaultsAreTheDocumentedOnes) {
   EXPECT_FALSE(scene.output.file);
   EXPECT_EQ(scene.output.every, 6000);
   EXPECT_EQ(scene.output.scalars_every, 6000);
+  EXPECT_EQ(scene.output.compression, 0);
+  EXPECT_EQ(scene.output.chunk, 0);
+  EXPECT_FALSE(scene.output.xdmf);
+  EXPECT_FALSE(scene.output.table);
 }
 
 TEST(Scene, DemagnetizationStrengthDefaultsToOne) {

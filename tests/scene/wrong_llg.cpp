@@ -142,7 +142,8 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongScene{"seed_real", "uniform = [0.3, 0.5, 0.8]", "random = { seed = 1.5 }",
                                ":19: initial.random.seed: 1.5", "a whole number"},
                     WrongScene{"file_empty", "uniform = [0.3, 0.5, 0.8]", "file = \"\"",
-                               ":19: initial.file: the file name is empty", "HDF5 file"}),
+                               ":19: initial.file: the file name is empty",
+                               "HDF5 or OVF 2.0 file"}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -211,6 +212,12 @@ INSTANTIATE_TEST_SUITE_P(
                                "a whole number of steps"},
                     WrongScene{"scalars_negative", "every = 100", "scalars_every = -3",
                                ":31: output.scalars_every: -3", ">= 1"},
+                    WrongScene{"compression_10", "every = 100", "compression = 10",
+                               ":31: output.compression: 10 is too large", "0 (none) to 9"},
+                    WrongScene{"chunk_zero", "every = 100", "chunk = 0",
+                               ":31: output.chunk: 0 is too small", "planes along z"},
+                    WrongScene{"xdmf_type", "every = 100", "xdmf = 1", ":31: output.xdmf: 1",
+                               "true, false"},
                     WrongScene{"every_is_a_date", "every = 100", "every = 2001-02-03",
                                ":31: output.every: 2001-02-03 is a date or time", ""}),
     name_of);

@@ -66,6 +66,25 @@ TEST_F(TrajectoryTest, SpinsAreOneCheckedChunkPerFrame) {
   }
 }
 
+// A uniform state, so that compression shows.
+TEST_F(TrajectoryTest, SpinsAreCompressedAndCutWhereAsked) {
+  auto header = small_header();
+  header.shape = {64, 32, 10};
+  std::vector<double> const spins(3 * 64 * 32 * 10, 0.5);
+  auto const path = folder_ / "a.h5";
+  TrajectoryFile file(path, header, false, {.compression = 4, .chunk = 3});
+  file.write_frame(0, 0, {}, spins.data());
+  file.finish({});
+  auto const layout = layout_of(path, "/spins");
+  EXPECT_EQ(layout.filters, (std::vector<H5Z_filter_t>{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE,
+                                                       H5Z_FILTER_FLETCHER32}));
+  EXPECT_EQ(layout.chunk, (Sizes{1, 3, 32, 64, 3}));
+  EXPECT_EQ(read_spins(path, header.shape), spins);
+  EXPECT_LT(std::filesystem::file_size(path), sizeof(double) * spins.size() / 4);
+  EXPECT_THROW(TrajectoryFile(path, header, true, {.compression = 10}), std::invalid_argument);
+  EXPECT_THROW(TrajectoryFile(path, header, true, {.chunk = -1}), std::invalid_argument);
+}
+
 TEST_F(TrajectoryTest, ScalarsAreDoublesAndStepsAreIntegers) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 2).finish({});
@@ -128,12 +147,20 @@ TEST_F(TrajectoryTest, FrameAboveTheChunkLimitIsSplit) {
 TEST(FrameChunk, CutsTheSlowestAxisThatSuffices) {
   using Chunk = std::array<hsize_t, 5>;
   constexpr std::uint64_t site = 3 * 8;
-  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 60 * site), (Chunk{1, 3, 4, 5, 3}));
-  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 59 * site), (Chunk{1, 2, 4, 5, 3}));
-  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 39 * site), (Chunk{1, 1, 4, 5, 3}));
-  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 19 * site), (Chunk{1, 1, 2, 5, 3}));
-  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 4 * site), (Chunk{1, 1, 1, 3, 3}));
-  EXPECT_EQ(frame_chunk({5, 4, 3}, 4, 59 * site), (Chunk{1, 3, 4, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 0, 60 * site), (Chunk{1, 3, 4, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 0, 59 * site), (Chunk{1, 2, 4, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 0, 39 * site), (Chunk{1, 1, 4, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 0, 19 * site), (Chunk{1, 1, 2, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 0, 4 * site), (Chunk{1, 1, 1, 3, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 4, 0, 59 * site), (Chunk{1, 3, 4, 5, 3}));
+}
+
+TEST(FrameChunk, HoldsAtMostThePlanesAskedFor) {
+  using Chunk = std::array<hsize_t, 5>;
+  constexpr std::uint64_t site = 3 * 8;
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 2), (Chunk{1, 2, 4, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 7), (Chunk{1, 3, 4, 5, 3}));
+  EXPECT_EQ(frame_chunk({5, 4, 3}, 8, 2, 39 * site), (Chunk{1, 1, 4, 5, 3}));
 }
 
 }  // namespace

@@ -49,6 +49,20 @@ TEST_F(TrajectoryTest, SpinsOfTheLastFrame) {
   EXPECT_EQ(read_spins(path, row), expected);
 }
 
+TEST_F(TrajectoryTest, SpinsOfOneFrame) {
+  auto const path = folder_ / "frames.h5";
+  write_frames(path, 3).finish({});
+  auto const shape = small_header().shape;
+  for (int frame = 0; frame < 3; ++frame)
+    EXPECT_EQ(read_spins(path, shape, frame), numbered_spins<double>(small_header(), frame));
+  for (int const frame : {-1, 3})
+    EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, shape, frame); }),
+                         "it has no frame " + std::to_string(frame) + "; accepted: 0 to 2"));
+  auto const state = folder_ / "state.h5";
+  write_dataset(state, "spins", {1, 1, 4, 3});
+  EXPECT_TRUE(contains(error_line(state, [&] { read_spins(state, row, 0); }), "it has no frames"));
+}
+
 TEST_F(TrajectoryTest, SpinsOfAnotherShape) {
   auto const path = folder_ / "state.h5";
   for (auto const& extents :

@@ -62,9 +62,9 @@ struct ExpressionStart {
 struct RandomStart {
   std::int64_t seed = 0;
 };
-/// A start from the last frame of an HDF5 file, normalised per spin.
+/// A start from the last frame of an HDF5 file, or from an OVF file, normalised per spin.
 struct FileStart {
-  std::filesystem::path path;  ///< dataset /spins
+  std::filesystem::path path;  ///< dataset /spins, or OVF 2.0
 };
 /// A start that a program gives beside the text of its scene, normalised per spin.
 struct GivenStart {
@@ -111,8 +111,14 @@ struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
   std::int64_t every = 1;                     ///< steps between frames, >= 1; default: steps
   std::int64_t scalars_every = 1;  ///< steps between scalar samples, >= 1; default: every
+  int compression = 0;             ///< of /spins: 0 (none) to 9
+  std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all
+  bool xdmf = false;               ///< FILE.xdmf for viewers
+  bool table = false;              ///< FILE.txt with the scalar samples
 
-  static constexpr std::array<Flag<Output>, 0> flags() { return {}; }
+  static constexpr auto flags() {
+    return std::to_array<Flag<Output>>({{"xdmf", &Output::xdmf}, {"table", &Output::table}});
+  }
 };
 
 /// A scene: one member for each table, and where each key stands.
@@ -141,6 +147,11 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
 Scene parse_scene(std::string text, std::filesystem::path const& name,
                   std::vector<std::string> const& overrides = {},
                   std::shared_ptr<std::vector<double> const> given_spins = {});
+
+/// The same for a text in memory, such as that in a trajectory file. Messages name it `name`, and
+/// its files lie in the folder of `name`.
+Scene parse_scene(std::string text, std::filesystem::path const& name,
+                  std::vector<std::string> const& overrides = {});
 
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.

@@ -28,6 +28,12 @@ struct TrajectoryHeader {
   std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz
 };
 
+/// How /spins lies in the file.
+struct TrajectoryStorage {
+  int compression = 0;     ///< level of deflate with shuffle, 0 (none) to 9
+  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the whole frame
+};
+
 /// The observables of one instant, always in double.
 struct Scalars {
   double energy = 0;                      ///< reduced units, summed over the sites
@@ -49,7 +55,8 @@ class TrajectoryFile {
   /// Creates the file with everything but frames. An existing file is an error unless `overwrite`;
   /// it is then replaced only once the new one stands beside it (as PATH.partial) with its header.
   /// A failed creation changes nothing that was there and leaves no new file.
-  TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite);
+  TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
+                 TrajectoryStorage const& storage = {});
 
   /// Closes the file; without finish() before, it stays marked as not complete.
   ~TrajectoryFile();
@@ -101,5 +108,9 @@ TrajectoryInfo read_info(std::filesystem::path const& path);
 /// kept; the result is packed as (nz, ny, nx, 3).
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
+
+/// The same for frame number `frame`, counted from 0, of a file with frames.
+std::vector<double> read_spins(std::filesystem::path const& path,
+                               std::array<std::int64_t, 3> const& shape, std::int64_t frame);
 
 }  // namespace cayspin::io

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "ovf_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace cayspin::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "OVF 2.0 is little endian");
+
+namespace fs = std::filesystem;
+
+std::ifstream open(fs::path const& path) {
+  std::error_code ignored;
+  auto const status = fs::status(path, ignored);
+  auto const fail = [&](std::string const& reason) {
+    throw std::runtime_error(fmt::format("{}: cannot open the file: {}", path.string(), reason));
+  };
+  if (fs::exists(status) && !fs::is_regular_file(status)) fail("it is not a regular file");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail(errno == 0 ? "it cannot be read" : std::strerror(errno));
+  return stream;
+}
+
+std::uint64_t bytes_left(std::istream& stream) {
+  auto const here = stream.tellg();
+  stream.seekg(0, std::ios::end);
+  auto const end = stream.tellg();
+  stream.seekg(here);
+  return static_cast<std::uint64_t>(end - here);
+}
+
+/// The values of a file whose header has been read.
+class OvfValues {
+ public:
+  OvfValues(std::istream& stream, fs::path const& path, OvfHeader const& header)
+      : stream_(stream), path_(path), header_(header) {}
+
+  std::vector<double> read() {
+    require_room();
+    switch (header_.format) {
+      case OvfFormat::text:
+        read_text();
+        break;
+      case OvfFormat::binary4:
+        read_binary(check_value_4);
+        break;
+      default:
+        read_binary(check_value_8);
+    }
+    return std::move(values_);
+  }
+
+ private:
+  /// Before anything is allocated for nodes that the file cannot hold.
+  void require_room() {
+    auto const left = bytes_left(stream_);
+    auto const least = header_.format == OvfFormat::binary8   ? 3 * sizeof(double)
+                       : header_.format == OvfFormat::binary4 ? 3 * sizeof(float)
+                                                              : 3 * sizeof "0";
+    auto room = (left + 1) / least;
+    for (auto const count : header_.field.mesh.nodes) {
+      auto const nodes = static_cast<std::uint64_t>(count);
+      if (nodes > room) truncated();
+      room /= nodes;
+    }
+    auto const& [nx, ny, nz] = header_.field.mesh.nodes;
+    count_ = 3 * static_cast<std::size_t>(nx * ny * nz);
+    values_.reserve(count_);
+  }
+
+  template <class Real>
+  void read_binary(Real check) {
+    Real first{};
+    read_block(&first, 1);
+    if (first != check)
+      refuse_ovf(path_, fmt::format("its check value is {:.9g}; accepted: {:.15g}, little endian",
+                                    static_cast<double>(first), static_cast<double>(check)));
+    std::vector<Real> block(std::min<std::size_t>(count_, 65536));
+    while (values_.size() < count_) {
+      auto const size = std::min(block.size(), count_ - values_.size());
+      read_block(block.data(), size);
+      values_.insert(values_.end(), block.begin(),
+                     block.begin() + static_cast<std::ptrdiff_t>(size));
+    }
+    std::string line;
+    while (std::getline(stream_, line) && squeezed(line).empty()) continue;
+    if (!is_end(line))
+      refuse_ovf(path_, fmt::format("its values do not end with # End: Data {}",
+                                    representation(header_.format)));
+  }
+
+  template <class Real>
+  void read_block(Real* values, std::size_t count) {
+    auto const bytes = static_cast<std::streamsize>(count * sizeof(Real));
+    stream_.read(reinterpret_cast<char*>(values), bytes);
+    if (stream_.gcount() != bytes) truncated();
+  }
+
+  void read_text() {
+    for (std::string line; std::getline(stream_, line);) {
+      if (is_end(line)) {
+        if (values_.size() < count_) truncated();
+        return;
+      }
+      read_numbers(std::string_view(line).substr(0, line.find('#')));
+    }
+    truncated();
+  }
+
+  void read_numbers(std::string_view line) {
+    auto const* begin = line.data();
+    auto const* const end = begin + line.size();
+    while (true) {
+      while (begin != end && std::isspace(static_cast<unsigned char>(*begin))) ++begin;
+      if (begin == end) return;
+      if (values_.size() == count_)
+        refuse_ovf(path_, fmt::format("it has more values than its {} nodes", count_ / 3));
+      double value = 0;
+      auto const [stop, error] = std::from_chars(begin + (*begin == '+' ? 1 : 0), end, value);
+      bool const whole = stop == end || std::isspace(static_cast<unsigned char>(*stop));
+      if (error == std::errc::invalid_argument || !whole)
+        refuse_ovf(path_, fmt::format("value {} is \"{}\"; accepted: a number", values_.size(),
+                                      std::string_view(begin, end).substr(0, 40)));
+      values_.push_back(error == std::errc() ? value : std::strtod(begin, nullptr));
+      begin = stop;
+    }
+  }
+
+  bool is_end(std::string const& text) const {
+    auto const line = split_line(text);
+    return line.label == "end" &&
+           squeezed(line.value) == "data" + squeezed(representation(header_.format));
+  }
+
+  [[noreturn]] void truncated() const {
+    auto const& [nx, ny, nz] = header_.field.mesh.nodes;
+    refuse_ovf(path_, fmt::format("it is truncated: its header says {} x {} x {} nodes of three "
+                                  "values",
+                                  nx, ny, nz));
+  }
+
+  std::istream& stream_;
+  fs::path const& path_;
+  OvfHeader const& header_;
+  std::size_t count_ = 0;
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+bool is_ovf(fs::path const& path) {
+  auto const extension = squeezed(path.extension().string());
+  for (auto const* const known : {".ovf", ".omf", ".ohf", ".oef"})
+    if (extension == known) return true;
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  std::ifstream stream(path, std::ios::binary);
+  std::string begin(16, '\0');
+  stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return squeezed(begin).starts_with("#oommf");
+}
+
+OvfMesh read_ovf_mesh(fs::path const& path) {
+  auto stream = open(path);
+  return read_header(stream, path).field.mesh;
+}
+
+OvfField read_ovf(fs::path const& path) {
+  auto stream = open(path);
+  auto header = read_header(stream, path);
+  header.field.values = OvfValues(stream, path, header).read();
+  return std::move(header.field);
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "command.hpp"
+#include "simulation/failure.hpp"
+
+#include <cayspin/io/ovf.hpp>
+#include <cayspin/io/scene.hpp>
+#include <cayspin/io/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+namespace cayspin::program {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::int64_t> chosen_frames(ExportOptions const& options, std::int64_t frames) {
+  if (frames == 0)
+    throw std::runtime_error(fmt::format("{}: it holds no frame", options.file.string()));
+  auto const& text = options.frames;
+  if (text == "last") return {frames - 1};
+  if (text == "all") {
+    std::vector<std::int64_t> all(static_cast<std::size_t>(frames));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  std::int64_t number = -1;
+  auto const [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || stop != text.data() + text.size() || number < 0 || number >= frames)
+    throw UsageError(fmt::format("--frames {}: accepted: last, all, or 0 to {}, the frames of {}",
+                                 text, frames - 1, options.file.string()));
+  return {number};
+}
+
+// Nodes in the middle of cells of the lattice's spacing. The start is of no interest here, and may
+// be one that only the run's own program could give.
+io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
+  auto const scene =
+      io::parse_scene(info.header.scene_text, info.path, {"initial={uniform=[0,0,1]}"});
+  io::OvfMesh mesh;
+  mesh.nodes = info.header.shape;
+  mesh.step = scene.lattice.spacing;
+  for (std::size_t axis = 0; axis < 3; ++axis) mesh.base[axis] = mesh.step[axis] / 2;
+  return mesh;
+}
+
+io::OvfField field_of(io::TrajectoryInfo const& info, io::OvfMesh const& mesh, std::int64_t frame) {
+  auto const number = static_cast<std::size_t>(frame);
+  io::OvfField field;
+  field.title = "m";
+  field.description = {fmt::format("Total simulation time: {}", info.frame_times[number]),
+                       fmt::format("Step: {}", info.frame_steps[number]),
+                       fmt::format("Frame: {} of {}", frame, info.path.filename().string()),
+                       fmt::format("Written by cayspin {}", info.header.cayspin_version)};
+  field.mesh = mesh;
+  field.values = io::read_spins(info.path, info.header.shape, frame);
+  return field;
+}
+
+fs::path name_of(ExportOptions const& options, std::int64_t frame) {
+  return options.folder / fmt::format("{}_{:06}.ovf", options.file.stem().string(), frame);
+}
+
+void require_none_exists(ExportOptions const& options, std::vector<std::int64_t> const& frames) {
+  std::error_code ignored;
+  for (auto const frame : frames)
+    if (auto const path = name_of(options, frame); !options.overwrite && fs::exists(path, ignored))
+      throw std::runtime_error(fmt::format(
+          "{}: it exists (choose another folder, or overwrite with --overwrite)", path.string()));
+}
+
+void create_folder(fs::path const& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw std::runtime_error(fmt::format("{}: cannot create the folder: {}", folder.string(),
+                                         error ? error.message() : std::string("it is a file")));
+}
+
+}  // namespace
+
+int export_ovf(ExportOptions const& options) {
+  auto const info = io::read_info(options.file);
+  auto const frames = chosen_frames(options, info.frames);
+  auto const mesh = mesh_of(info);
+  auto const bits =
+      info.header.precision == "single" ? io::OvfFormat::binary4 : io::OvfFormat::binary8;
+  auto const format = options.format.value_or(bits);
+  require_none_exists(options, frames);
+  create_folder(options.folder);
+  for (auto const frame : frames)
+    io::write_ovf(name_of(options, frame), field_of(info, mesh, frame), format, options.overwrite);
+  auto const last = name_of(options, frames.back()).string();
+  if (frames.size() == 1)
+    fmt::print("{}\n", last);
+  else
+    fmt::print("{} to {}: {} files\n", name_of(options, frames.front()).string(), last,
+               frames.size());
+  return Status::done;
+}
+
+}  // namespace cayspin::program

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "start_file.hpp"
+
+#include "trajectory/stored_spins.hpp"
+
+#include <cayspin/io/ovf.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
+
+namespace cayspin::io::detail {
+namespace {
+
+void require_nodes(OvfMesh const& mesh, std::filesystem::path const& path,
+                   std::array<std::int64_t, 3> const& shape) {
+  if (mesh.nodes == shape) return;
+  throw std::runtime_error(fmt::format("{}: its mesh has {} nodes; accepted: {}, the lattice's",
+                                       path.string(), fmt::join(mesh.nodes, " x "),
+                                       fmt::join(shape, " x ")));
+}
+
+}  // namespace
+
+void check_start_file(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape) {
+  if (is_ovf(path))
+    require_nodes(read_ovf_mesh(path), path, shape);
+  else
+    StoredSpins(path, shape);
+}
+
+std::vector<double> read_start_file(std::filesystem::path const& path,
+                                    std::array<std::int64_t, 3> const& shape) {
+  if (!is_ovf(path)) return StoredSpins(path, shape).last();
+  require_nodes(read_ovf_mesh(path), path, shape);
+  return read_ovf(path).values;
+}
+
+}  // namespace cayspin::io::detail

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace cayspin::io::detail {
+
+/// Throws std::runtime_error unless an HDF5 or OVF file has spins for a lattice (nx, ny, nz). Only
+/// types and shapes are looked at.
+void check_start_file(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape);
+
+/// The spins as they stand in the file, packed as (nz, ny, nx, 3).
+std::vector<double> read_start_file(std::filesystem::path const& path,
+                                    std::array<std::int64_t, 3> const& shape);
+
+}  // namespace cayspin::io::detail

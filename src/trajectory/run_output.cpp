@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "files/file_beside.hpp"
+#include "format.hpp"
+#include "scalar_series.hpp"
+#include "scalar_table.hpp"
+#include "xdmf_file.hpp"
+
+#include <cayspin/io/run_output.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace cayspin::io {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto longest_hold = std::chrono::milliseconds(500);
+constexpr std::size_t most_samples = 512;
+constexpr std::size_t most_parts = 8;
+
+std::filesystem::path beside(std::filesystem::path path, char const* extension) {
+  return path.replace_extension(extension);
+}
+
+void require_free_beside(std::filesystem::path const& path, char const* extension, bool overwrite) {
+  auto const other = beside(path, extension);
+  if (other == path)
+    throw std::runtime_error(path.string() + ": the trajectory cannot end in " + extension +
+                             ", which is the name of a file beside it");
+  require_free(other, overwrite);
+}
+
+/// What the run hands over at once: samples, and then a frame or none.
+struct Part {
+  std::vector<Sample> samples;
+  std::optional<Sample> frame;
+  std::byte* spins = nullptr;
+};
+
+}  // namespace
+
+class RunOutput::Implementation {
+ public:
+  Implementation(std::filesystem::path path, TrajectoryHeader const& header,
+                 RunOutputOptions const& options)
+      : single_(header.precision == single_precision) {
+    if (options.xdmf) require_free_beside(path, ".xdmf", options.overwrite);
+    if (options.table) require_free_beside(path, ".txt", options.overwrite);
+    file_.emplace(path, header, options.overwrite, options.storage);
+    if (options.xdmf)
+      xdmf_.emplace(beside(path, ".xdmf"), path, header.shape, options.spacing, single_,
+                    options.overwrite);
+    if (options.table) table_.emplace(beside(path, ".txt"), options.overwrite);
+    std::size_t bytes = 3 * (single_ ? sizeof(float) : sizeof(double));
+    for (auto const extent : header.shape) bytes *= static_cast<std::size_t>(extent);
+    for (auto& buffer : buffers_) {
+      buffer = std::make_unique<std::byte[]>(bytes);  // zeroed: all memory is taken before a run
+      free_.push_back(buffer.get());
+    }
+    thread_ = std::jthread([this](std::stop_token const& stop) { write_parts(stop); });
+  }
+
+  ~Implementation() {
+    try {
+      hand_over_samples();
+    } catch (std::exception const&) {  // of the writer, which no call is left to throw
+    }
+  }
+
+  std::byte* frame(bool single) {
+    if (single != single_)
+      throw std::logic_error(path().string() + ": a frame in another precision than the file's");
+    require_open();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return !free_.empty() || error_; });
+    rethrow();
+    return free_.front();
+  }
+
+  void write_frame(Sample const& sample) {
+    require_open();
+    Part part{std::exchange(samples_, {}), sample, nullptr};
+    std::unique_lock lock(mutex_);
+    rethrow();
+    part.spins = free_.front();
+    free_.pop_front();
+    hand_over(std::move(part), lock);
+  }
+
+  void write_scalars(Sample const& sample) {
+    require_open();
+    samples_.push_back(sample);
+    if (samples_.size() >= most_samples || Clock::now() - handed_over_ > longest_hold)
+      hand_over_samples();
+  }
+
+  void end(RunCost const& cost, bool complete) {
+    require_open();
+    hand_over_samples();
+    wait();
+    ended_ = true;
+    if (xdmf_) xdmf_->finish();
+    complete ? file_->finish(cost) : file_->close(cost);
+  }
+
+  std::int64_t frames() {
+    wait();
+    return file_->frames();
+  }
+
+  std::filesystem::path const& path() const { return file_->path(); }
+
+ private:
+  void require_open() const {
+    if (ended_) throw std::logic_error(path().string() + ": the run has ended");
+  }
+
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+  void hand_over_samples() {
+    if (samples_.empty()) return;
+    std::unique_lock lock(mutex_);
+    hand_over({std::exchange(samples_, {}), std::nullopt, nullptr}, lock);
+  }
+
+  void hand_over(Part part, std::unique_lock<std::mutex>& lock) {
+    changed_.wait(lock, [&] { return parts_.size() < most_parts || error_; });
+    rethrow();
+    parts_.push_back(std::move(part));
+    changed_.notify_all();
+    handed_over_ = Clock::now();
+  }
+
+  void wait() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return (parts_.empty() && !writing_) || error_; });
+    rethrow();
+  }
+
+  // The thread: it writes all parts, also those that are left when it is asked to stop.
+  void write_parts(std::stop_token const& stop) {
+    std::unique_lock lock(mutex_);
+    while (changed_.wait(lock, stop, [&] { return !parts_.empty(); })) {
+      auto const part = std::move(parts_.front());
+      parts_.pop_front();
+      writing_ = true;
+      lock.unlock();
+      std::exception_ptr error;
+      try {
+        write(part);
+      } catch (...) {
+        error = std::current_exception();
+      }
+      lock.lock();
+      writing_ = false;
+      if (part.spins) free_.push_back(part.spins);
+      error_ = error;
+      changed_.notify_all();
+      if (error_) return;
+    }
+  }
+
+  void write(Part const& part) {
+    for (auto const& [step, time, scalars] : part.samples)
+      file_->write_scalars(step, time, scalars);
+    if (table_) table_->append(part.samples);
+    if (!part.frame) return;
+    auto const& [step, time, scalars] = *part.frame;
+    if (single_)
+      file_->write_frame(step, time, scalars, reinterpret_cast<float const*>(part.spins));
+    else
+      file_->write_frame(step, time, scalars, reinterpret_cast<double const*>(part.spins));
+    if (xdmf_) xdmf_->add_frame(time);
+  }
+
+  bool single_, ended_ = false;
+  std::optional<TrajectoryFile> file_;
+  std::optional<XdmfFile> xdmf_;
+  std::optional<ScalarTable> table_;
+  std::array<std::unique_ptr<std::byte[]>, 2> buffers_;
+  std::vector<Sample> samples_;
+  Clock::time_point handed_over_ = Clock::now();
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<std::byte*> free_;
+  std::deque<Part> parts_;
+  bool writing_ = false;
+  std::exception_ptr error_;
+  std::jthread thread_;  // last: joined before what it uses is gone
+};
+
+RunOutput::RunOutput(std::filesystem::path path, TrajectoryHeader const& header,
+                     RunOutputOptions const& options)
+    : implementation_(std::make_unique<Implementation>(std::move(path), header, options)) {}
+
+RunOutput::~RunOutput() = default;
+RunOutput::RunOutput(RunOutput&&) noexcept = default;
+RunOutput& RunOutput::operator=(RunOutput&&) noexcept = default;
+
+template <class Real>
+Real* RunOutput::frame() {
+  return reinterpret_cast<Real*>(implementation_->frame(std::is_same_v<Real, float>));
+}
+template float* RunOutput::frame<float>();
+template double* RunOutput::frame<double>();
+
+void RunOutput::write_frame(std::int64_t step, double time, Scalars const& scalars) {
+  implementation_->write_frame({step, time, scalars});
+}
+
+void RunOutput::write_scalars(std::int64_t step, double time, Scalars const& scalars) {
+  implementation_->write_scalars({step, time, scalars});
+}
+
+void RunOutput::finish(RunCost const& cost) { implementation_->end(cost, true); }
+void RunOutput::close(RunCost const& cost) { implementation_->end(cost, false); }
+std::int64_t RunOutput::frames() { return implementation_->frames(); }
+std::filesystem::path const& RunOutput::path() const { return implementation_->path(); }
+
+}  // namespace cayspin::io

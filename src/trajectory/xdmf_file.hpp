@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace cayspin::io {
+
+/// Describes /spins of a trajectory file to viewers such as ParaView: an XDMF time series of a
+/// vector field on a regular grid. It is replaced as a whole, so that it is valid at every moment.
+class XdmfFile {
+ public:
+  /// Creates the file, without frames. One that exists is an error unless `overwrite`.
+  XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
+           std::array<std::int64_t, 3> const& shape, std::array<double, 3> const& spacing,
+           bool single, bool overwrite);
+
+  /// Adds the next frame. Of more than a thousand, those of about a second are written together.
+  void add_frame(double time);
+
+  /// Writes what add_frame left for later.
+  void finish();
+
+ private:
+  void write(bool overwrite);
+
+  using Clock = std::chrono::steady_clock;
+  std::filesystem::path path_;
+  std::string grid_, spins_, frames_;
+  std::array<std::int64_t, 3> shape_;
+  std::int64_t count_ = 0, written_ = 0;
+  Clock::time_point last_write_;
+};
+
+}  // namespace cayspin::io

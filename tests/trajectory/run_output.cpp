@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The files of a run, written by a thread of their own.
+#include "trajectory_test.hpp"
+
+#include <cayspin/io/run_output.hpp>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+
+namespace cayspin::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(fs::path const& path) {
+  std::ifstream stream(path);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+template <class Real>
+void hand_over(RunOutput& output, int frame) {
+  output.write_scalars(10 * frame, 0.1 * frame, numbered_scalars(frame));
+  auto const spins = numbered_spins<Real>(small_header(), frame);
+  std::ranges::copy(spins, output.template frame<Real>());
+  output.write_frame(10 * frame, 0.1 * frame, numbered_scalars(frame));
+}
+
+template <class Real>
+void expect_frames(fs::path const& path, int frames) {
+  auto const info = read_info(path);
+  ASSERT_EQ(info.frames, frames);
+  EXPECT_EQ(info.samples, frames);
+  for (int frame = 0; frame < frames; ++frame) {
+    EXPECT_EQ(info.frame_steps[frame], 10 * frame);
+    EXPECT_EQ(info.frame_scalars[frame].energy, numbered_scalars(frame).energy);
+    auto const expected = numbered_spins<Real>(small_header(), frame);
+    EXPECT_EQ(read_spins(path, small_header().shape, frame),
+              std::vector<double>(expected.begin(), expected.end()));
+  }
+}
+
+template <class Real>
+void write_and_expect(fs::path const& path, std::string const& precision) {
+  RunOutput output(path, small_header(precision), {});
+  for (int frame = 0; frame < 100; ++frame) hand_over<Real>(output, frame);
+  EXPECT_EQ(output.frames(), 100);
+  output.finish({7, 2, 1});
+  expect_frames<Real>(path, 100);
+  EXPECT_TRUE(read_info(path).complete);
+  EXPECT_EQ(read_info(path).cost.evaluations, 7);
+}
+
+TEST_F(TrajectoryTest, OutputHoldsWhatWasHandedOver) {
+  write_and_expect<double>(folder_ / "double.h5", "double");
+  write_and_expect<float>(folder_ / "single.h5", "single");
+}
+
+TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {
+  auto const path = folder_ / "a.h5";
+  {
+    RunOutput output(path, small_header(), {.table = true});
+    for (int frame = 0; frame < 20; ++frame) hand_over<double>(output, frame);
+    output.write_scalars(200, 20, numbered_scalars(20));
+  }
+  EXPECT_FALSE(read_info(path).complete);
+  EXPECT_EQ(read_info(path).frames, 20);
+  EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 22);
+}
+
+TEST_F(TrajectoryTest, OutputHasRoomForTwoFrames) {
+  RunOutput output(folder_ / "a.h5", small_header(), {});
+  std::set<double*> rooms;
+  for (int frame = 0; frame < 50; ++frame) {
+    rooms.insert(output.frame<double>());
+    hand_over<double>(output, frame);
+  }
+  EXPECT_LE(rooms.size(), 2U);
+}
+
+TEST_F(TrajectoryTest, OutputThatHasEndedTakesNothing) {
+  RunOutput output(folder_ / "a.h5", small_header(), {});
+  EXPECT_THROW(output.frame<float>(), std::logic_error);
+  hand_over<double>(output, 0);
+  output.close({});
+  EXPECT_THROW(output.frame<double>(), std::logic_error);
+  EXPECT_THROW(output.write_scalars(1, 1, {}), std::logic_error);
+  EXPECT_THROW(output.finish({}), std::logic_error);
+  EXPECT_FALSE(read_info(folder_ / "a.h5").complete);
+}
+
+[[noreturn]] void hand_over_until_it_fails(fs::path const& path) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit const limit{1000000, 1000000};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    RunOutput output(path, small_header(), {});
+    for (int frame = 0; frame < 1000000; ++frame) hand_over<double>(output, frame);
+    std::exit(0);
+  } catch (std::runtime_error const& error) {
+    std::cerr << error.what() << std::flush;
+    std::exit(3);
+  }
+}
+
+TEST_F(TrajectoryTest, OutputOnAFullDiskThrowsAndKeepsTheFramesThatFitted) {
+  auto const path = folder_ / "a.h5";
+  EXPECT_EXIT(hand_over_until_it_fails(path), testing::ExitedWithCode(3),
+              "a.h5: cannot write the file: File too large$");
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  ASSERT_GT(info.frames, 10);
+  EXPECT_EQ(read_spins(path, small_header().shape),
+            numbered_spins<double>(small_header(), static_cast<int>(info.frames) - 1));
+}
+
+TEST_F(TrajectoryTest, OutputOfAKilledRunHasWholeFrames) {
+  auto const path = folder_ / "a.h5";
+  auto const die = [&] {
+    RunOutput output(path, small_header(), {.xdmf = true, .table = true});
+    for (int frame = 0; frame < 100; ++frame) hand_over<double>(output, frame);
+    if (output.frames() == 100) std::raise(SIGKILL);
+  };
+  EXPECT_EXIT(die(), testing::KilledBySignal(SIGKILL), "");
+  expect_frames<double>(path, 100);
+  EXPECT_TRUE(contains(text_of(folder_ / "a.xdmf"), "frame 99"));
+  EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 101);
+}
+
+TEST_F(TrajectoryTest, FilesBesideTheTrajectoryAreKeptUnlessOverwritten) {
+  auto const path = folder_ / "a.h5";
+  auto const all = RunOutputOptions{.xdmf = true, .table = true};
+  for (auto const* const name : {"a.txt", "a.xdmf"}) {
+    std::ofstream(folder_ / name) << "kept";
+    EXPECT_TRUE(contains(error_line(folder_ / name, [&] { RunOutput(path, small_header(), all); }),
+                         "it exists"));
+    EXPECT_EQ(text_of(folder_ / name), "kept");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+    fs::remove(folder_ / name);
+  }
+  std::ofstream(folder_ / "a.txt") << "old";
+  auto replacing = all;
+  replacing.overwrite = true;
+  { RunOutput const output(path, small_header(), replacing); }
+  EXPECT_EQ(text_of(folder_ / "a.txt"),
+            "# t ()\tmx ()\tmy ()\tmz ()\tE_total ()\tnorm_defect ()\n");
+  auto const named = folder_ / "b.txt";
+  EXPECT_TRUE(contains(error_line(named, [&] { RunOutput(named, small_header(), all); }),
+                       "cannot end in .txt"));
+}
+
+TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
+  RunOutput output(folder_ / "a.h5", small_header(), {.table = true});
+  Scalars const awkward{-1 / 3., 5e-324, {0.1, 1 - 1e-16, -1e300}};
+  output.write_scalars(1, 1 / 7., awkward);
+  output.finish({});
+  std::ifstream stream(folder_ / "a.txt");
+  std::string line;
+  std::getline(stream, line);
+  std::getline(stream, line);
+  double numbers[6];
+  char const* at = line.c_str();
+  for (auto& number : numbers) {
+    char* end = nullptr;
+    number = std::strtod(at, &end);
+    at = end;
+  }
+  EXPECT_EQ(*at, '\0');
+  EXPECT_EQ(std::ranges::count(line, '\t'), 5);
+  EXPECT_EQ((std::vector<double>(numbers, numbers + 6)),
+            (std::vector<double>{1 / 7., 0.1, 1 - 1e-16, -1e300, -1 / 3., 5e-324}));
+}
+
+TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
+  RunOutput output(folder_ / "a&b.h5", small_header("single"),
+                   {.xdmf = true, .spacing = {0.5, 1, 2}});
+  auto const path = folder_ / "a&b.xdmf";
+  EXPECT_TRUE(text_of(path).ends_with("</Xdmf>\n"));
+  for (int frame = 0; frame < 3; ++frame) {
+    hand_over<float>(output, frame);
+    ASSERT_EQ(output.frames(), frame + 1);
+    auto const text = text_of(path);
+    EXPECT_TRUE(text.ends_with("</Xdmf>\n"));
+    EXPECT_TRUE(contains(text, "<Grid Name=\"frame " + std::to_string(frame) + "\""));
+    EXPECT_FALSE(contains(text, "<Grid Name=\"frame " + std::to_string(frame + 1) + "\""));
+  }
+  auto const text = text_of(path);
+  for (auto const* const part : {"Dimensions=\"2 3 4\"/>", ">1 0.5 0.25</", ">2 1 0.5</",
+                                 "Precision=\"4\"", "a&amp;b.h5:/spins", "<Time Value=\"0.2\"/>"})
+    EXPECT_TRUE(contains(text, part));
+}
+
+}  // namespace
+}  // namespace cayspin::io
