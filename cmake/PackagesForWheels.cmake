@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Under pip, where nothing has installed them: one line names the libraries that are missing.
+enable_language(C) # FindHDF5 compiles a C program
+set(debian_of_HDF5 libhdf5-dev)
+set(debian_of_fmt libfmt-dev)
+set(debian_of_muparser libmuparser-dev)
+set(debian_of_tomlplusplus libtomlplusplus-dev)
+set(debian_of_Eigen3 libeigen3-dev)
+set(debian_of_CLI11 libcli11-dev)
+set(debian_of_nlohmann_json nlohmann-json3-dev)
+set(missing "")
+foreach(package HDF5 fmt muparser tomlplusplus Eigen3 CLI11 nlohmann_json)
+  find_package(${package} QUIET)
+  if(NOT ${package}_FOUND)
+    string(APPEND missing " ${debian_of_${package}}")
+  endif()
+endforeach()
+if(missing)
+  message(FATAL_ERROR "cayspin needs packages that are not installed: apt-get install${missing}")
+endif()
