@@ -31,6 +31,10 @@ Extents dataset_extents(hid_t dataset, std::filesystem::path const& path);
 void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                   void const* values, std::filesystem::path const& path);
 
+/// The same for a block that is one chunk, given as it is to stand in the file: filters applied.
+void append_raw_chunk(hid_t dataset, Extents const& begin, Extents const& extents,
+                      void const* stored, std::size_t bytes, std::filesystem::path const& path);
+
 /// Reads a block; `begin` and `extents` have the dataset's rank.
 void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                 void* values, std::filesystem::path const& path);

@@ -105,8 +105,9 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.field += field_bytes<Real>(lattice, 6);
     start += 8 * (9 + 6 + 6) * lattice.sites();
   }
-  // Two frames on their way, and the copies of one that a filter of the file reads and writes.
-  std::int64_t const frames = 4 * static_cast<std::int64_t>(sizeof(Real)) * numbers;
+  // Two frames on their way, and the copies of one that a compressing filter reads and writes.
+  bool const copies = scene.output.compression > 0 || scene.output.chunk > 0;
+  std::int64_t const frames = (copies ? 4 : 2) * static_cast<std::int64_t>(sizeof(Real)) * numbers;
   memory.files = std::max(start - memory.work, frames);
   return memory;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace cayspin::io {
@@ -12,6 +13,7 @@ namespace cayspin::io {
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
+inline constexpr std::size_t checksum_bytes = 4;
 
 /// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame or at
 /// most `planes` of it along z, and where that passes `limit` bytes, the frame cut into equal slabs

@@ -65,7 +65,8 @@ class RunOutput::Implementation {
     std::size_t bytes = 3 * (single_ ? sizeof(float) : sizeof(double));
     for (auto const extent : header.shape) bytes *= static_cast<std::size_t>(extent);
     for (auto& buffer : buffers_) {
-      buffer = std::make_unique<std::byte[]>(bytes);  // zeroed: all memory is taken before a run
+      buffer = std::make_unique<std::byte[]>(
+          bytes + checksum_bytes);  // zeroed: all memory is taken before a run
       free_.push_back(buffer.get());
     }
     thread_ = std::jthread([this](std::stop_token const& stop) { write_parts(stop); });
@@ -179,10 +180,7 @@ class RunOutput::Implementation {
     if (table_) table_->append(part.samples);
     if (!part.frame) return;
     auto const& [step, time, scalars] = *part.frame;
-    if (single_)
-      file_->write_frame(step, time, scalars, reinterpret_cast<float const*>(part.spins));
-    else
-      file_->write_frame(step, time, scalars, reinterpret_cast<double const*>(part.spins));
+    file_->write_frame_with_room(step, time, scalars, part.spins);
     if (xdmf_) xdmf_->add_frame(time);
   }
 

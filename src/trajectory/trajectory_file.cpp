@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "fletcher32.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
@@ -9,7 +10,10 @@
 
 #include <cayspin/io/trajectory.hpp>
 
+#include <algorithm>
+#include <bit>
 #include <chrono>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -99,15 +103,33 @@ class TrajectoryFile::Implementation {
     release();
   }
 
-  // Readers count a frame once its scalars are there, so those reach the disk after its spins.
   void write_frame(Sample const& sample, void const* spins, bool single) {
     if (single != single_)
       throw std::logic_error(path_.string() + ": spins given in another precision than the file's");
+    write_frame(sample, [&] {
+      append_block(spins_.get(), single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
+                   {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_, spins, path_);
+    });
+  }
+
+  // What the filter of HDF5 would do takes it two copies of the frame.
+  void write_frame_with_room(Sample const& sample, std::byte* spins) {
+    if (!raw_chunks_) return write_frame(sample, spins, single_);
+    write_frame(sample, [&] {
+      auto const checksum = fletcher32(spins, frame_bytes_);
+      std::memcpy(spins + frame_bytes_, &checksum, checksum_bytes);
+      append_raw_chunk(spins_.get(), {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_,
+                       spins, frame_bytes_ + checksum_bytes, path_);
+    });
+  }
+
+  // Readers count a frame once its scalars are there, so those reach the disk after its spins.
+  template <class WriteSpins>
+  void write_frame(Sample const& sample, WriteSpins const& write_spins) {
     require_open();
     space_.reserve(frame_bytes_ + overhead_bytes, path_);
     write_pending();
-    append_block(spins_.get(), single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
-                 {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_, spins, path_);
+    write_spins();
     flush();
     frame_series_.append({sample}, path_);
     flush();
@@ -150,6 +172,10 @@ class TrajectoryFile::Implementation {
     frame_extents_[0] = 1;
     frame_bytes_ = single_ ? sizeof(float) : sizeof(double);
     for (auto const extent : frame_extents_) frame_bytes_ *= extent;
+    auto const chunk =
+        frame_chunk(header.shape, single_ ? sizeof(float) : sizeof(double), storage.chunk);
+    raw_chunks_ = std::endian::native == std::endian::little && storage.compression == 0 &&
+                  std::ranges::equal(chunk, frame_extents_);
     frame_series_ = ScalarSeries::create(file, path_);
     scalars_ = GroupHandle(check(H5Gcreate2(file, "scalars", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                                  path_, "cannot create group scalars"));
@@ -188,6 +214,7 @@ class TrajectoryFile::Implementation {
   OpenFileSpace space_;
   Extents frame_extents_;
   std::uint64_t frame_bytes_ = 0;
+  bool raw_chunks_ = false;
   std::vector<Sample> pending_;
   Clock::time_point flushed_ = Clock::now();
   std::int64_t frames_ = 0;
@@ -213,6 +240,12 @@ void TrajectoryFile::write_frame(std::int64_t step, double time, Scalars const& 
                                  double const* spins) {
   QuietErrors const quiet;
   implementation_->write_frame({step, time, scalars}, spins, false);
+}
+
+void TrajectoryFile::write_frame_with_room(std::int64_t step, double time, Scalars const& scalars,
+                                           std::byte* spins) {
+  QuietErrors const quiet;
+  implementation_->write_frame_with_room({step, time, scalars}, spins);
 }
 
 void TrajectoryFile::write_scalars(std::int64_t step, double time, Scalars const& scalars) {

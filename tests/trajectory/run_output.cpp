@@ -7,6 +7,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -59,6 +61,34 @@ void write_and_expect(fs::path const& path, std::string const& precision) {
 TEST_F(TrajectoryTest, OutputHoldsWhatWasHandedOver) {
   write_and_expect<double>(folder_ / "double.h5", "double");
   write_and_expect<float>(folder_ / "single.h5", "single");
+}
+
+// Frames that are one chunk are written past HDF5's filters, others through them.
+TEST_F(TrajectoryTest, OutputIsTheSameWithAndWithoutChunks) {
+  auto const whole = folder_ / "whole.h5", cut = folder_ / "cut.h5";
+  for (auto const& [path, chunk] : {std::pair{whole, 0}, {cut, 1}}) {
+    RunOutput output(path, small_header(), {.storage = {.chunk = chunk}});
+    for (int frame = 0; frame < 3; ++frame) hand_over<double>(output, frame);
+    output.finish({});
+    expect_frames<double>(path, 3);
+  }
+}
+
+// Sums of a frame of zeros, of ones in all bits, and of more words than are added between folds.
+TEST_F(TrajectoryTest, ChecksumsAreThoseThatHdf5Expects) {
+  auto header = small_header("single");
+  header.shape = {100, 100, 100};
+  for (float const value : {0.0F, std::bit_cast<float>(0xffffffffU), 1 / 3.0F}) {
+    auto const path = folder_ / "a.h5";
+    RunOutput output(path, header, {.overwrite = true});
+    auto* const room = output.frame<float>();
+    for (std::size_t i = 0; i < 3000000; ++i) room[i] = i % 7 == 0 ? value : value * 0;
+    if (std::isnan(value)) std::fill_n(room, 3000000, value);
+    output.write_frame(0, 0, {});
+    output.finish({});
+    auto const back = read_spins(path, header.shape);
+    EXPECT_EQ(std::isnan(back.at(7)), std::isnan(value));
+  }
 }
 
 TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {

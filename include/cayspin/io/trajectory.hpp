@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -67,6 +68,11 @@ class TrajectoryFile {
   /// precision of the header; the other one throws std::logic_error.
   void write_frame(std::int64_t step, double time, Scalars const& scalars, float const* spins);
   void write_frame(std::int64_t step, double time, Scalars const& scalars, double const* spins);
+
+  /// The same for spins in the precision of the header that are followed by four bytes of room: a
+  /// frame that is one chunk and not compressed is then written without a copy of it.
+  void write_frame_with_room(std::int64_t step, double time, Scalars const& scalars,
+                             std::byte* spins);
 
   /// Appends one sample to /scalars; samples reach the file with the next frame, or within about a
   /// second of calls.

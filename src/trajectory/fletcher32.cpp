@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "fletcher32.hpp"
+
+#include <algorithm>
+
+namespace cayspin::io {
+namespace {
+
+// Modulo 65535, but a sum that is not 0 does not become 0.
+std::uint64_t folded(std::uint64_t sum) {
+  while (sum > 0xffff) sum = (sum & 0xffff) + (sum >> 16);
+  return sum;
+}
+
+}  // namespace
+
+std::uint32_t fletcher32(std::byte const* data, std::size_t bytes) {
+  constexpr std::size_t words_between_folds = std::size_t{1} << 20U;  // the sums stay below 2^57
+  std::uint64_t sum = 0, sum_of_sums = 0;
+  for (std::size_t left = bytes / 2; left > 0;) {
+    auto const words = std::min(left, words_between_folds);
+    left -= words;
+    for (auto const* const end = data + 2 * words; data != end; data += 2) {
+      sum +=
+          std::to_integer<std::uint64_t>(data[0]) << 8U | std::to_integer<std::uint64_t>(data[1]);
+      sum_of_sums += sum;
+    }
+    sum = folded(sum);
+    sum_of_sums = folded(sum_of_sums);
+  }
+  return static_cast<std::uint32_t>(sum_of_sums << 16U | sum);
+}
+
+}  // namespace cayspin::io
