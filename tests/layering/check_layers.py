@@ -34,6 +34,7 @@ PROGRAMS = [
     ("the paper's steppers", ["paper/include/"]),  # headers on the library alone
     ("reader and writer", ["src/io/", "src/hdf5/", "src/scene/", "src/trajectory/"]),
     ("simulation", ["src/simulation/"]),
+    ("C interface", ["src/c_interface/"]),
     ("program", ["src/program/"]),
     ("paper and extremes", ["paper/", "tests/extremes/"]),
 ]
