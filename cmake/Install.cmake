@@ -40,8 +40,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/PkgConfig.cmake)
 # What a target that links with cayspin gets.
 set(options $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_OPTIONS>)
 set(definitions $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_DEFINITIONS>)
-set(folders "")
-if(Kokkos_DIR) # otherwise Kokkos is installed with cayspin
+set(folders "-I\${prefix}/include/kokkos") # of a Kokkos that is installed with cayspin
+if(Kokkos_DIR)
   set(folders $<TARGET_PROPERTY:Kokkos::kokkos,INTERFACE_INCLUDE_DIRECTORIES>)
   set(folders $<REMOVE_DUPLICATES:$<FILTER:${folders},EXCLUDE,^/usr/include$>>)
   set(folders "-I$<JOIN:${folders}, -I>")
