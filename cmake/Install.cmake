@@ -35,3 +35,19 @@ write_basic_package_version_file(cayspinConfigVersion.cmake COMPATIBILITY SameMi
 install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
               ${PROJECT_BINARY_DIR}/cayspinConfigVersion.cmake cmake/cayspinOptimisation.cmake
         DESTINATION ${package_dir})
+
+include(${CMAKE_CURRENT_LIST_DIR}/PkgConfig.cmake)
+# What a target that links with cayspin gets.
+set(options $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_OPTIONS>)
+set(definitions $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_DEFINITIONS>)
+set(folders "-I\${prefix}/include/kokkos") # of a Kokkos that is installed with cayspin
+if(Kokkos_DIR)
+  set(folders $<TARGET_PROPERTY:Kokkos::kokkos,INTERFACE_INCLUDE_DIRECTORIES>)
+  set(folders $<REMOVE_DUPLICATES:$<FILTER:${folders},EXCLUDE,^/usr/include$>>)
+  set(folders "-I$<JOIN:${folders}, -I>")
+endif()
+set(flags "${CMAKE_CXX20_STANDARD_COMPILE_OPTION} ${folders} $<JOIN:${options}, >")
+string(APPEND flags " $<$<BOOL:${definitions}>:-D$<JOIN:${definitions}, -D>>")
+set(link_flags "")
+cayspin_link_flags(cayspin link_flags)
+cayspin_install_pkg_config(cayspin "${PROJECT_DESCRIPTION}" "${flags}" "${link_flags}")

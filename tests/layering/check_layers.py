@@ -35,6 +35,7 @@ PROGRAMS = [
     ("reader and writer", ["src/io/", "src/files/", "src/hdf5/", "src/ovf/", "src/scene/",
                            "src/trajectory/"]),
     ("simulation", ["src/simulation/"]),
+    ("C interface", ["src/c_interface/"]),
     ("program", ["src/program/"]),
     ("paper and extremes", ["paper/", "tests/extremes/"]),
 ]

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Files for pkg-config, for build systems other than CMake. Kokkos has none: its flags are stated in
+# ours, those of the Kokkos that cayspin was built with.
+
+# Calls itself along the libraries that a target is linked with; lists them in the order of a linker.
+function(cayspin_link_flags target flags)
+  if(NOT TARGET ${target})
+    if(target MATCHES "^cayspin_") # configured later: headers alone
+      return()
+    endif()
+    if(target MATCHES "^[A-Za-z0-9_.+]+$")
+      set(target -l${target})
+    endif()
+    set(${flags} ${${flags}} ${target} PARENT_SCOPE)
+    return()
+  endif()
+  get_target_property(aliased ${target} ALIASED_TARGET)
+  if(aliased)
+    set(target ${aliased})
+  endif()
+  get_target_property(type ${target} TYPE)
+  get_target_property(imported ${target} IMPORTED)
+  if(NOT type STREQUAL INTERFACE_LIBRARY)
+    if(imported)
+      list(APPEND ${flags} $<TARGET_FILE:${target}>)
+    else()
+      list(APPEND ${flags} \${libdir}/$<TARGET_FILE_NAME:${target}>)
+    endif()
+  endif()
+  get_target_property(libraries ${target} INTERFACE_LINK_LIBRARIES)
+  if(libraries)
+    foreach(library IN LISTS libraries)
+      string(REGEX REPLACE "^\\$<(LINK_ONLY|INSTALL_INTERFACE):(.*)>$" "\\2" library "${library}")
+      if(NOT library MATCHES "^\\$<|^::@")
+        cayspin_link_flags(${library} ${flags})
+      endif()
+    endforeach()
+  endif()
+  get_target_property(options ${target} INTERFACE_LINK_OPTIONS)
+  if(options)
+    list(APPEND ${flags} ${options})
+  endif()
+  list(REVERSE ${flags}) # of a library that stands there twice, the last one counts
+  list(REMOVE_DUPLICATES ${flags})
+  list(REVERSE ${flags})
+  set(${flags} ${${flags}} PARENT_SCOPE)
+endfunction()
+
+# cayspin_install_pkg_config(<name> <description> <compile flags> <link flags>)
+function(cayspin_install_pkg_config name description compile_flags link_flags)
+  # Flags are the language's: CMake writes a file for each one, and that of C++ is installed.
+  string(REPLACE "$<LINK_LANGUAGE:" "$<COMPILE_LANGUAGE:" link_flags "${link_flags}")
+  file(RELATIVE_PATH to_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
+  file(
+    GENERATE
+    OUTPUT ${PROJECT_BINARY_DIR}/$<COMPILE_LANGUAGE>/${name}.pc
+    CONTENT
+      "prefix=\${pcfiledir}/${to_prefix}
+includedir=\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}
+libdir=\${prefix}/${CMAKE_INSTALL_LIBDIR}
+cxx=${CMAKE_CXX_COMPILER}
+backends=${CAYSPIN_KOKKOS_BACKENDS}
+
+Name: ${name}
+Description: ${description}
+Version: ${PROJECT_VERSION}
+Cflags: -I\${includedir} ${compile_flags}
+Libs: $<JOIN:${link_flags}, >
+")
+  install(FILES ${PROJECT_BINARY_DIR}/CXX/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()

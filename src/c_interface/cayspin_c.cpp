@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "cayspin_git_commit.hpp"
+#include "simulation.hpp"
+#include "simulation/guard.hpp"
+#include "simulation/run_recorder.hpp"
+
+#include <cayspin/version.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+using namespace cayspin::c_interface;
+using namespace cayspin::simulation;
+namespace io = cayspin::io;
+
+namespace {
+
+Precision precision_of(cayspin_precision precision) {
+  if (precision == CAYSPIN_DOUBLE) return Precision::double_precision;
+  if (precision == CAYSPIN_SINGLE) return Precision::single_precision;
+  throw UsageError("precision " + std::to_string(precision) +
+                   "; accepted: CAYSPIN_SINGLE, CAYSPIN_DOUBLE");
+}
+
+cayspin_simulation* opened(io::Scene const& scene, cayspin_precision precision, char const* space) {
+  RunSettings settings;
+  settings.precision = precision_of(precision);
+  if (space != nullptr) settings.space = space;
+  auto simulation = std::make_unique<cayspin_simulation>();
+  simulation->run = SceneRun::open(scene, settings);
+  return simulation.release();
+}
+
+SceneRun& run_of(cayspin_simulation const* simulation) {
+  return *required(simulation, "simulation").run;
+}
+
+/// The run, with the spins that were borrowed given back.
+SceneRun& changing(cayspin_simulation* simulation) {
+  required(simulation, "simulation").borrowed.reset();
+  return *simulation->run;
+}
+
+void run_to_end(SceneRun& run, RunRecorder* recorder) {
+  std::int64_t const end = run.scene().integrator.steps;
+  Looks looks;
+  looks.period = Guard::period_of(io::sites(run.scene()));
+  looks.until_torque = true;
+  if (recorder != nullptr) recorder->look();
+  while (run.steps() < end) {
+    auto const due = recorder != nullptr ? std::min(recorder->next(), end) : end;
+    bool const at_rest = run.advance(due - run.steps(), looks) == Advanced::at_rest;
+    if (recorder != nullptr) recorder->look(at_rest);
+    if (at_rest) return;
+  }
+}
+
+void run_with_file(SceneRun& run, std::filesystem::path const& path, bool overwrite) {
+  RunRecorder recorder(run, run.scene().integrator.steps, path, overwrite, CAYSPIN_GIT_COMMIT);
+  try {
+    run_to_end(run, &recorder);
+  } catch (...) {
+    recorder.finish(false);
+    throw;
+  }
+  recorder.finish();
+}
+
+}  // namespace
+
+char const* cayspin_last_error(void) { return last_error().c_str(); }
+
+char const* cayspin_version(void) { return CAYSPIN_VERSION_STRING; }
+
+cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
+                                 cayspin_simulation** simulation) {
+  return guarded([&] {
+    auto& result = required(simulation, "simulation");
+    result = opened(io::read_scene(&required(path, "path")), precision, space);
+  });
+}
+
+cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_precision precision,
+                                 char const* space, cayspin_simulation** simulation) {
+  return guarded([&] {
+    auto& result = required(simulation, "simulation");
+    auto const scene = io::parse_scene(&required(text, "text"), name != nullptr ? name : "scene");
+    result = opened(scene, precision, space);
+  });
+}
+
+cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count) {
+  return guarded([&] { changing(simulation).advance(count); });
+}
+
+cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite) {
+  return guarded([&] {
+    auto& run = changing(simulation);
+    auto const& file = run.scene().output.file;
+    if (output == nullptr && !file)
+      throw UsageError("output is NULL and the scene has no output.file; accepted: either");
+    if (run.steps() > run.scene().integrator.steps || run.scene().integrator.steps == 0)
+      throw UsageError("the simulation is at step " + std::to_string(run.steps()) +
+                       " and the scene ends at step " +
+                       std::to_string(run.scene().integrator.steps) + "; accepted: a later end");
+    run_with_file(run, output != nullptr ? std::filesystem::path(output) : *file, overwrite != 0);
+  });
+}
+
+cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time) {
+  return guarded([&] {
+    auto const& run = run_of(simulation);
+    required(time, "time") = run.time();
+  });
+}
+
+cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps) {
+  return guarded([&] {
+    auto const& run = run_of(simulation);
+    required(steps, "steps") = run.steps();
+  });
+}
+
+cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins) {
+  return guarded([&] {
+    auto& run = run_of(simulation);
+    required(spins, "spins");
+    auto const lent = run.spins();
+    simulation->borrowed = lent;
+    auto const& [nz, ny, nx] = lent.vectors.shape;
+    *spins = {lent.vectors.data,
+              lent.vectors.is_double ? CAYSPIN_DOUBLE : CAYSPIN_SINGLE,
+              {nz, ny, nx, 3},
+              {}};
+    std::ranges::copy(lent.vectors.strides, spins->strides);
+  });
+}
+
+cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array const* spins) {
+  return guarded([&] {
+    auto& run = run_of(simulation);
+    required(spins, "spins");
+    required(static_cast<char const*>(spins->data), "spins->data");
+    if (spins->shape[3] != 3)
+      throw UsageError("spins of " + std::to_string(spins->shape[3]) +
+                       " components; accepted: shape[3] = 3");
+    io::HostVectors vectors;
+    vectors.data = const_cast<void*>(spins->data);  // is read
+    vectors.is_double = precision_of(spins->precision) == Precision::double_precision;
+    vectors.shape = {spins->shape[0], spins->shape[1], spins->shape[2]};
+    std::ranges::copy(spins->strides, vectors.strides.begin());
+    // They may be the ones that were borrowed: those stay until they are read.
+    try {
+      run.set_spins(vectors);
+    } catch (io::SceneError const& error) {
+      throw UsageError(error.what());
+    }
+    simulation->borrowed.reset();
+  });
+}
+
+cayspin_status cayspin_energy(cayspin_simulation* simulation, double* energy) {
+  return guarded([&] {
+    auto& run = run_of(simulation);
+    required(energy, "energy");
+    *energy = run.sample().energy.value;
+  });
+}
+
+cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magnetization[3]) {
+  return guarded([&] {
+    auto& run = run_of(simulation);
+    required(magnetization, "magnetization");
+    auto const m = run.sample().magnetization;
+    magnetization[0] = m.x;
+    magnetization[1] = m.y;
+    magnetization[2] = m.z;
+  });
+}
+
+cayspin_status cayspin_close(cayspin_simulation* simulation) {
+  return guarded([&] { delete simulation; });
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/cayspin.h>
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <type_traits>
+
+namespace cayspin::test {
+
+/// Two free spins that precess about z, with one turn in a time 2 pi. `more` comes before
+/// [initial].
+inline std::string scene_text(std::string const& more = {}, std::string const& end = "steps = 10") {
+  return "[system]\nkind = \"llg\"\ndamping = 0.0\n[lattice]\nshape = [2]\n"
+         "[field]\napplied = [0.0, 0.0, 1.0]\n" +
+         more + "[initial]\nuniform = [1.0, 0.0, 0.0]\n" +
+         "[integrator]\nmethod = \"rkmk4\"\ndt = 0.01\n" + end + "\n";
+}
+
+struct Close {
+  void operator()(cayspin_simulation* simulation) const { cayspin_close(simulation); }
+};
+using Simulation = std::unique_ptr<cayspin_simulation, Close>;
+
+inline Simulation open(std::string const& text, cayspin_precision precision = CAYSPIN_DOUBLE) {
+  cayspin_simulation* simulation = nullptr;
+  EXPECT_EQ(cayspin_open_text(text.c_str(), nullptr, precision, nullptr, &simulation), CAYSPIN_OK)
+      << cayspin_last_error();
+  return Simulation(simulation);
+}
+
+/// The call failed with this status, and its line has these words.
+inline void expect_failure(cayspin_status is, cayspin_status expected, std::string const& words) {
+  EXPECT_EQ(is, expected);
+  EXPECT_NE(std::string(cayspin_last_error()).find(words), std::string::npos)
+      << "\"" << cayspin_last_error() << "\" has no \"" << words << "\"";
+}
+
+}  // namespace cayspin::test

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "c_interface_test.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+
+using namespace cayspin::test;
+
+namespace {
+
+template <class Real>
+struct Type;
+template <>
+struct Type<float> {
+  static constexpr auto precision = CAYSPIN_SINGLE;
+};
+template <>
+struct Type<double> {
+  static constexpr auto precision = CAYSPIN_DOUBLE;
+};
+
+template <class Real>
+class CInterface : public ::testing::Test {
+ protected:
+  static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+
+  Simulation simulation = open(scene_text(), Type<Real>::precision);
+
+  static double number(cayspin_array const& spins, int64_t x, int64_t component) {
+    return static_cast<Real const*>(
+        spins.data)[x * spins.strides[2] + component * spins.strides[3]];
+  }
+};
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(CInterface, Precisions);
+
+TYPED_TEST(CInterface, StepsAndLendsSpins) {
+  auto* const simulation = this->simulation.get();
+  ASSERT_EQ(cayspin_step(simulation, 100), CAYSPIN_OK);
+  double time = 0, m[3] = {};
+  int64_t steps = 0;
+  EXPECT_EQ(cayspin_time(simulation, &time), CAYSPIN_OK);
+  EXPECT_EQ(cayspin_steps(simulation, &steps), CAYSPIN_OK);
+  EXPECT_NEAR(time, 1, 1e-15);
+  EXPECT_EQ(steps, 100);
+
+  cayspin_array spins{};
+  ASSERT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK);
+  EXPECT_EQ(spins.precision, Type<TypeParam>::precision);
+  int64_t const shape[] = {1, 1, 2, 3};
+  for (int axis = 0; axis < 4; ++axis) EXPECT_EQ(spins.shape[axis], shape[axis]);
+  double const limit = 1e-10 + 200 * this->epsilon;
+  for (int x = 0; x < 2; ++x) {
+    EXPECT_NEAR(this->number(spins, x, 0), std::cos(1.0), limit);
+    EXPECT_NEAR(this->number(spins, x, 1), std::sin(1.0), limit);
+    EXPECT_NEAR(this->number(spins, x, 2), 0, limit);
+  }
+  ASSERT_EQ(cayspin_magnetization(simulation, m), CAYSPIN_OK);
+  EXPECT_NEAR(m[0], std::cos(1.0), limit);
+  EXPECT_NEAR(m[1], std::sin(1.0), limit);
+}
+
+TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
+  auto* const simulation = this->simulation.get();
+  ASSERT_EQ(cayspin_step(simulation, 3), CAYSPIN_OK);
+  // A component after the other, backwards along x, of any length.
+  TypeParam const numbers[] = {0, 3, 2, 0, 0, 4};
+  cayspin_array const mine{&numbers[1], Type<TypeParam>::precision, {1, 1, 2, 3}, {0, 0, -1, 2}};
+  ASSERT_EQ(cayspin_set_spins(simulation, &mine), CAYSPIN_OK) << cayspin_last_error();
+  cayspin_array spins{};
+  ASSERT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK);
+  EXPECT_NEAR(this->number(spins, 0, 0), 0.6, this->epsilon);  // (3, 0, 4) / 5
+  EXPECT_EQ(this->number(spins, 0, 1), 0);
+  EXPECT_NEAR(this->number(spins, 0, 2), 0.8, this->epsilon);
+  EXPECT_EQ(this->number(spins, 1, 1), 1);  // (0, 2, 0) / 2
+  double energy = 0;
+  ASSERT_EQ(cayspin_energy(simulation, &energy), CAYSPIN_OK);
+  EXPECT_NEAR(energy, -0.8, 2 * this->epsilon);
+}
+
+// Borrowed memory is used in place, also after steps: an even number of them ends where it began.
+TYPED_TEST(CInterface, LendsWithoutACopy) {
+  auto* const simulation = this->simulation.get();
+  cayspin_array first{}, second{}, later{};
+  ASSERT_EQ(cayspin_borrow_spins(simulation, &first), CAYSPIN_OK);
+  ASSERT_EQ(cayspin_borrow_spins(simulation, &second), CAYSPIN_OK);
+  EXPECT_EQ(first.data, second.data);
+  ASSERT_EQ(cayspin_step(simulation, 2), CAYSPIN_OK);
+  ASSERT_EQ(cayspin_borrow_spins(simulation, &later), CAYSPIN_OK);
+  EXPECT_EQ(later.data, first.data);
+  ASSERT_EQ(cayspin_set_spins(simulation, &later), CAYSPIN_OK) << cayspin_last_error();
+  double m[3] = {};
+  ASSERT_EQ(cayspin_magnetization(simulation, m), CAYSPIN_OK);
+  EXPECT_NEAR(m[1], std::sin(0.02), 1e-10 + 8 * this->epsilon);
+}
+
+TEST(CInterfaceTexts, Version) { EXPECT_EQ(std::string(cayspin_version()).substr(0, 2), "0."); }
+
+}  // namespace

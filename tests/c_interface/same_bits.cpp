@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What C and Fortran compute has the bits of the program's run.
+#include "../program/program_test.hpp"
+#include "c_interface_test.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+using namespace cayspin::test;
+
+namespace {
+
+auto const scene = std::filesystem::path(CAYSPIN_SCENES) / "slab_switching.toml";
+
+class SameBits : public cayspin::program::test::ProgramTest {
+ protected:
+  std::vector<double> of_program(std::string const& precision = "double") {
+    auto const done = start(
+        {"run", scene.string(), "--output", "program.h5", "--precision", precision, "--quiet"});
+    EXPECT_EQ(done.status, 0) << done.errors;
+    return last_spins("program.h5");
+  }
+  void expect_from(char const* example) {
+    auto const theirs = of_program();
+    auto const done = start({scene.string(), "example.h5"}, {.program = example});
+    EXPECT_EQ(done.status, 0) << done.errors;
+    EXPECT_NE(done.output.find("E = "), std::string::npos) << done.output;
+    EXPECT_EQ(last_spins("example.h5"), theirs);
+  }
+};
+
+template <class Real>
+std::vector<double> borrowed(cayspin_simulation* simulation) {
+  cayspin_array spins{};
+  EXPECT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK);
+  std::vector<double> numbers;
+  for (int64_t x = 0; x < spins.shape[2]; ++x)
+    for (int64_t c = 0; c < 3; ++c)
+      numbers.push_back(
+          static_cast<Real const*>(spins.data)[x * spins.strides[2] + c * spins.strides[3]]);
+  return numbers;
+}
+
+TEST_F(SameBits, StepsInPieces) {
+  for (auto const precision : {CAYSPIN_SINGLE, CAYSPIN_DOUBLE}) {
+    cayspin_simulation* simulation = nullptr;
+    ASSERT_EQ(cayspin_open_file(scene.c_str(), precision, nullptr, &simulation), CAYSPIN_OK);
+    Simulation const owner(simulation);
+    for (int64_t const count : {1, 7, 0, 492, 700})
+      ASSERT_EQ(cayspin_step(simulation, count), CAYSPIN_OK) << cayspin_last_error();
+    bool const single = precision == CAYSPIN_SINGLE;
+    EXPECT_EQ(single ? borrowed<float>(simulation) : borrowed<double>(simulation),
+              of_program(single ? "single" : "double"));
+    std::filesystem::remove(in_folder("program.h5"));
+  }
+}
+
+TEST_F(SameBits, RunWithAFile) {
+  auto const theirs = of_program();
+  cayspin_simulation* simulation = nullptr;
+  ASSERT_EQ(cayspin_open_file(scene.c_str(), CAYSPIN_DOUBLE, nullptr, &simulation), CAYSPIN_OK);
+  Simulation const owner(simulation);
+  ASSERT_EQ(cayspin_run(simulation, in_folder("mine.h5").c_str(), 0), CAYSPIN_OK)
+      << cayspin_last_error();
+  for (char const* dataset : {"spins", "energy", "time", "norm_defect"})
+    EXPECT_EQ(read_dataset("mine.h5", dataset).values, read_dataset("program.h5", dataset).values)
+        << dataset;
+  EXPECT_EQ(last_spins("mine.h5"), theirs);
+}
+
+#ifdef CAYSPIN_EXAMPLE_C
+TEST_F(SameBits, ExampleInC) { expect_from(CAYSPIN_EXAMPLE_C); }
+#endif
+#ifdef CAYSPIN_EXAMPLE_FORTRAN
+TEST_F(SameBits, ExampleInFortran) { expect_from(CAYSPIN_EXAMPLE_FORTRAN); }
+#endif
+
+}  // namespace

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# Installs into a clean prefix, moves it, and compiles a program with what pkg-config prints.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+run(${CMAKE_COMMAND} --install ${CAYSPIN_BUILD} --prefix ${WORK}/first)
+file(RENAME ${WORK}/first ${WORK}/prefix)
+file(GLOB_RECURSE files ${WORK}/prefix/cayspin.pc)
+cmake_path(GET files PARENT_PATH folder)
+set(ENV{PKG_CONFIG_PATH} ${folder})
+
+# ask(<result> <module> <option>...)
+function(ask result module)
+  execute_process(COMMAND ${PKG_CONFIG} ${ARGN} ${module} OUTPUT_VARIABLE output COMMAND_ECHO STDOUT
+                  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(output UNIX_COMMAND "${output}")
+  set(${result} ${output} PARENT_SCOPE)
+endfunction()
+separate_arguments(own UNIX_COMMAND "${FLAGS}")
+
+ask(nothing cayspin --validate)
+ask(version cayspin --modversion)
+if(NOT version STREQUAL VERSION)
+  message(FATAL_ERROR "cayspin.pc says ${version}, not ${VERSION}")
+endif()
+ask(compiler cayspin --variable=cxx)
+ask(flags cayspin --cflags --libs)
+run(${compiler} ${own} -O1 ${SOURCES}/main.cpp ${flags} -o ${WORK}/program)
+run(${WORK}/program)
+
+# A scene from C and from Fortran, where the C interface is built.
+if(NOT EXISTS ${folder}/cayspin_c.pc)
+  return()
+endif()
+ask(include_flags cayspin_c --cflags)
+ask(flags cayspin_c --cflags --libs)
+ask(libdir cayspin_c --variable=libdir)
+ask(includedir cayspin_c --variable=includedir)
+set(ENV{LD_LIBRARY_PATH} ${libdir}:$ENV{LD_LIBRARY_PATH})
+run(${C_COMPILER} ${own} ${EXAMPLES}/simulate.c ${flags} -lm -o ${WORK}/in_c)
+run(${WORK}/in_c ${SCENE} ${WORK}/in_c.h5)
+if(FORTRAN_COMPILER)
+  run(${FORTRAN_COMPILER} ${own} -J ${WORK} ${includedir}/cayspin/cayspin.f90
+      ${EXAMPLES}/simulate.f90 ${flags} -o ${WORK}/in_fortran)
+  run(${WORK}/in_fortran ${SCENE} ${WORK}/in_fortran.h5)
+endif()
