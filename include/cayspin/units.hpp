@@ -97,10 +97,10 @@ class ReducedUnits {
 class Micromagnetic : public ReducedUnits {
  public:
   struct Material {
-    double Ms = 0;                      ///< saturation magnetization, A/m
-    std::array<double, 3> cell = {};    ///< extents of a cell, m
-    Damping damping = {};               ///< gilbert(alpha) or landau_lifshitz(alpha)
-    double gamma = electron_gamma;      ///< |gamma|, rad/(s T); gamma0 = mu0 gamma in m/(A s)
+    double Ms = 0;                    ///< saturation magnetization, A/m
+    std::array<double, 3> cell = {};  ///< extents of a cell, m
+    Damping damping = {};             ///< gilbert(alpha) or landau_lifshitz(alpha)
+    double gamma = electron_gamma;    ///< |gamma|, rad/(s T); gamma0 = mu0 gamma in m/(A s)
   };
 
   /// Throws std::invalid_argument for what is not positive and finite.

@@ -19,9 +19,10 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-inline io::Scalars as_scalars(Sample const& sample) {
+/// As they stand in the file.
+inline io::Scalars as_scalars(Sample const& sample, io::Units const& units) {
   auto const& m = sample.magnetization;
-  return {sample.energy.value, sample.norm_defect, {m.x, m.y, m.z}};
+  return {sample.energy.value * units.energy, sample.norm_defect, {m.x, m.y, m.z}};
 }
 
 /// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
@@ -41,6 +42,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
       : first_(first),
         generator_(generator),
         output_(scene.output),
+        units_(scene.units),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
@@ -90,12 +92,14 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
 
   void write(Space const& exec, Sample const& now, Spins const& spins, bool frame, bool scalars) {
     if (!file_) file_.emplace(open_file_());
-    if (scalars) file_->write_scalars(now.step, now.time, as_scalars(now));
+    auto const scalar_values = as_scalars(now, units_);
+    double const time = now.time * units_.time;
+    if (scalars) file_->write_scalars(now.step, time, scalar_values);
     if (!frame) return;
     copy(exec, spins, frame_);
     Kokkos::deep_copy(exec, host_frame_, frame_);
     exec.fence("cayspin::Watch: frame copied");
-    file_->write_frame(now.step, now.time, as_scalars(now), host_frame_.data());
+    file_->write_frame(now.step, time, scalar_values, host_frame_.data());
     last_frame_ = now;
   }
 
@@ -103,6 +107,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   SceneGenerator<Spins> generator_;
   std::optional<SceneGenerator<Spins>> torque_;
   io::Output output_;
+  io::Units units_;
   std::optional<double> until_torque_;
   OpenFile open_file_;
   std::optional<io::TrajectoryFile> file_;

@@ -15,8 +15,9 @@ struct Unit {
   std::string_view name;
   double in_si;
 };
-constexpr Unit energies[] = {
-    {"meV", 1e-3 * units::electronvolt}, {"eV", units::electronvolt}, {"mRy", 1e-3 * units::rydberg}};
+constexpr Unit energies[] = {{"meV", 1e-3 * units::electronvolt},
+                             {"eV", units::electronvolt},
+                             {"mRy", 1e-3 * units::rydberg}};
 constexpr Unit moments[] = {{"bohr_magnetons", units::bohr_magneton}};
 
 double quantity(Item const& item, Scene& scene, std::span<Unit const> units,
@@ -53,7 +54,8 @@ bool is_atomistic(Table const& table) {
     detail::fail(table.item().place, "material.Ms", "is missing", accepted);
   auto const& [moment, exchange, anisotropy] = of_atoms ? continuum : atomistic;
   auto const& mine = of_atoms ? atomistic : continuum;
-  for (auto const& [other, own] : {std::pair{exchange, mine.exchange}, {anisotropy, mine.anisotropy}})
+  for (auto const& [other, own] :
+       {std::pair{exchange, mine.exchange}, {anisotropy, mine.anisotropy}})
     if (auto const item = table.find(other))
       item->fail(fmt::format("does not go with material.{}", mine.moment),
                  fmt::format("material.{}", own));
@@ -87,8 +89,8 @@ void read_damping(Table const& table, Material& material) {
 }
 
 Material read_material(Table const& table) {
-  table.accept_only({"Ms", "A", "Ku", "mu_s", "J", "K", "axis", "D", "normal", "alpha",
-                     "damping_form", "gamma"});
+  table.accept_only(
+      {"Ms", "A", "Ku", "mu_s", "J", "K", "axis", "D", "normal", "alpha", "damping_form", "gamma"});
   Material material;
   material.atomistic = is_atomistic(table);
   auto const& keys = material.atomistic ? atomistic : continuum;
@@ -203,8 +205,8 @@ void convert_to_reduced(Table const& root) {
       throw scene_error(scene, "lattice.spacing",
                         "differs from axis to axis; accepted: one lattice constant, since "
                         "material.J is that of every bond");
-    units::Atomistic const units({material.moment, energy_unit(material), spacing[0],
-                                  damping_of(material), material.gamma});
+    units::Atomistic const units(
+        {material.moment, energy_unit(material), spacing[0], damping_of(material), material.gamma});
     convert(scene, table, units);
     spacing = {1, 1, 1};
   }

@@ -27,6 +27,7 @@ class Guard {
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
         epsilon_(epsilon),
+        units_(scene.units),
         period_(io::sites(scene) <= 4096 ? 1 : 10) {}
 
   bool due(Step const& step) const { return step.number % period_ == 0; }
@@ -43,6 +44,7 @@ class Guard {
   };
   bool energy_must_fall_, keeps_norm_;
   double epsilon_;
+  io::Units units_;
   std::int64_t period_;
   std::optional<Look> first_, last_;
 };

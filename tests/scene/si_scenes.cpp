@@ -129,7 +129,7 @@ TEST(SiScene, LandauLifshitzDampingLeavesTheUnitOfTime) {
 TEST(SiScene, AnExpressionTakesSeconds) {
   Folder const folder;
   auto const scene = read_text(folder, film);
-  EXPECT_TRUE(depends_on_time(scene));
+  EXPECT_TRUE(depends_on_time(scene.field));
   Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
   for (double const seconds : {0.0, 1e-10, 3.3e-10}) {
     double const t = seconds / scene.units.time;
@@ -284,16 +284,17 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SiScene, IsForSpinsAlone) {
   Folder const folder;
-  auto const path = folder.write("units = \"SI\"\n[material]\nMs = 8e5\nalpha = 0\n" +
-                                 std::string(body_scene));
-  EXPECT_EQ(refusal(path), path.string() + ":1: units: \"SI\" has no meaning for kind = "
-                                           "\"rigid_body\"; accepted: \"reduced\"");
+  auto const path =
+      folder.write("units = \"SI\"\n[material]\nMs = 8e5\nalpha = 0\n" + std::string(body_scene));
+  EXPECT_EQ(refusal(path), path.string() +
+                               ":1: units: \"SI\" has no meaning for kind = "
+                               "\"rigid_body\"; accepted: \"reduced\"");
 }
 
 TEST(SiScene, NeedsAMaterial) {
   Folder const folder;
-  auto const path = folder.write("units = \"SI\"\n" + replaced(llg_scene, "damping = 0.05\n", ""),
-                                 "bare.toml");
+  auto const path =
+      folder.write("units = \"SI\"\n" + replaced(llg_scene, "damping = 0.05\n", ""), "bare.toml");
   auto const message = refusal(path, {"field={}", "lattice.spacing=1e-9"});
   ASSERT_TRUE(message);
   EXPECT_NE(message->find(":1: material: is missing; accepted: a table [material] with Ms"),
@@ -303,8 +304,8 @@ TEST(SiScene, NeedsAMaterial) {
 
 TEST(SiScene, UndampedMotionNeedsNoFormOfDamping) {
   Folder const folder;
-  auto const text = replaced(replaced(film, "alpha = 0.5", "alpha = 0"),
-                             "damping_form = \"gilbert\"", "");
+  auto const text =
+      replaced(replaced(film, "alpha = 0.5", "alpha = 0"), "damping_form = \"gilbert\"", "");
   expect_close(read_text(folder, text).units.time, 1 / (gamma * mu0 * 8e5));
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The figures of docs/guide/units.md, and what is refused.
-#include <cayspin/units.hpp>
-
 #include "../support/figures.hpp"
+
+#include <cayspin/units.hpp>
 
 #include <limits>
 

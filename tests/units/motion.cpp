@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Spins stepped in reduced units, and looked at in SI: every expected number comes from formulas in
 // SI that do not go through the library's units.
-#include <cayspin/units.hpp>
-
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+
+#include <cayspin/units.hpp>
 
 #include <limits>
 #include <numbers>
@@ -103,11 +103,10 @@ TYPED_TEST(UnitsInMotion, SpinWavesOfAChainFollowTheirDispersion) {
   auto const units = material(gilbert(0));
   Lattice const lattice{
       {12, 1, 1}, units.spacing(), {Boundary::periodic, Boundary::open, Boundary::open}};
-  LandauLifshitz const generator{
-      EffectiveField{Exchange{lattice, units.exchange(A)},
-                     UniaxialAnisotropy{units.anisotropy(Ku), {0, 0, 1}},
-                     Zeeman{{0, 0, units.applied(0.3)}}},
-      0.0};
+  LandauLifshitz const generator{EffectiveField{Exchange{lattice, units.exchange(A)},
+                                                UniaxialAnisotropy{units.anisotropy(Ku), {0, 0, 1}},
+                                                Zeeman{{0, 0, units.applied(0.3)}}},
+                                 0.0};
   constexpr double theta = 0.3, d = cell[0];
   for (int mode = 0; mode <= 6; ++mode) {
     double const kd = 2 * pi * mode / 12;
@@ -126,17 +125,15 @@ TYPED_TEST(UnitsInMotion, MagnonsOfAtomsFollowTheirDispersion) {
   double const mu_s = 2 * units::bohr_magneton;
   units::Atomistic const units({.mu_s = mu_s, .energy = 7e-21, .lattice_constant = 3e-10});
   auto const lattice = Lattice::chain(8, 1, Boundary::periodic);
-  LandauLifshitz const generator{
-      EffectiveField{Exchange{lattice, units.exchange(J)},
-                     UniaxialAnisotropy{units.anisotropy(K), {0, 0, 1}},
-                     Zeeman{{0, 0, units.applied(B)}}},
-      0.0};
+  LandauLifshitz const generator{EffectiveField{Exchange{lattice, units.exchange(J)},
+                                                UniaxialAnisotropy{units.anisotropy(K), {0, 0, 1}},
+                                                Zeeman{{0, 0, units.applied(B)}}},
+                                 0.0};
   constexpr double theta = 0.4;
   for (int mode = 0; mode <= 4; ++mode) {
     double const ka = 2 * pi * mode / 8;
     double const omega =
-        gamma_e / mu_s *
-        (mu_s * B + std::cos(theta) * (2 * K + 2 * J * (1 - std::cos(ka))));
+        gamma_e / mu_s * (mu_s * B + std::cos(theta) * (2 * K + 2 * J * (1 - std::cos(ka))));
     auto const start = helix<Field>(lattice, ka, theta);
     auto const end = this->after(3.0 / omega, units, generator, start);
     EXPECT_NEAR(this->turn(end, start, 3), 3.0, this->tolerance) << "mode " << mode;
@@ -149,13 +146,13 @@ TYPED_TEST(UnitsInMotion, AFilmPrecessesAtKittelsFrequency) {
   constexpr double B = 0.05, amplitude = TestFixture::in_double ? 1e-5 : 1e-2;
   double const in_plane = B + 2 * Ku / Ms, out_of_plane = in_plane + mu0 * Ms;
   double const omega = gamma_e * std::sqrt(in_plane * out_of_plane);
-  LandauLifshitz const generator{
-      EffectiveField{SlabDemag{{0, 0, 1}, units.demagnetization(1)},
-                     UniaxialAnisotropy{units.anisotropy(Ku), {1, 0, 0}},
-                     Zeeman{{units.applied(B), 0, 0}}},
-      0.0};
-  auto const start = make_spins<Field>(
-      Lattice::chain(1), [&](auto...) { return Vector{1, amplitude, 0}; });
+  LandauLifshitz const generator{EffectiveField{SlabDemag{{0, 0, 1}, units.demagnetization(1)},
+                                                UniaxialAnisotropy{units.anisotropy(Ku), {1, 0, 0}},
+                                                Zeeman{{units.applied(B), 0, 0}}},
+                                 0.0};
+  auto const start = make_spins<Field>(Lattice::chain(1), [&](auto...) {
+    return Vector{1, amplitude, 0};
+  });
   auto const m = spin(this->after(4.0 / omega, units, generator, start), 0);
   double const phase = std::atan2(m.z * std::sqrt(out_of_plane / in_plane), m.y);
   EXPECT_NEAR(std::remainder(phase - 4, 2 * pi), 0, TestFixture::in_double ? 1e-8 : 1e-3);
@@ -164,8 +161,9 @@ TYPED_TEST(UnitsInMotion, AFilmPrecessesAtKittelsFrequency) {
 TYPED_TEST(UnitsInMotion, AGrainSwitchesAtTwoKuOverMs) {
   using Field = typename TestFixture::Field;
   auto const units = material(gilbert(1));
-  auto const start = make_spins<Field>(
-      Lattice::chain(1), [](auto...) { return Vector{0.01, 0, 1}; });
+  auto const start = make_spins<Field>(Lattice::chain(1), [](auto...) {
+    return Vector{0.01, 0, 1};
+  });
   for (double const share : {0.98, 1.02}) {
     LandauLifshitz const generator{
         EffectiveField{UniaxialAnisotropy{units.anisotropy(Ku), {0, 0, 1}},
@@ -266,11 +264,10 @@ TYPED_TEST(UnitsInMotion, AtomisticEnergyIsTheDirectSum) {
   double const mu_s = 2 * units::bohr_magneton;
   units::Atomistic const units({.mu_s = mu_s, .energy = 7e-21, .lattice_constant = a});
   auto const lattice = Lattice::chain(9);
-  EffectiveField const field{Exchange{lattice, units.exchange(J)},
-                             UniaxialAnisotropy{units.anisotropy(K), {0, 1, 0}},
-                             InterfacialDmi{lattice, units.dmi(bond_dmi), {0, 0, 1}},
-                             SlabDemag{{1, 0, 0}, units.demagnetization(0.6)},
-                             Zeeman{{0, 0, units.applied(B)}}};
+  EffectiveField const field{
+      Exchange{lattice, units.exchange(J)}, UniaxialAnisotropy{units.anisotropy(K), {0, 1, 0}},
+      InterfacialDmi{lattice, units.dmi(bond_dmi), {0, 0, 1}},
+      SlabDemag{{1, 0, 0}, units.demagnetization(0.6)}, Zeeman{{0, 0, units.applied(B)}}};
   auto const spins = random_spins<Field>(lattice, 5);
   double sum = 0, magnitude = 0;
   auto const add = [&](double energy) { sum += energy, magnitude += std::abs(energy); };
