@@ -18,19 +18,34 @@ double bytes_per_site(Plan const& plan) {
   return static_cast<double>(plan.memory.simulation()) / static_cast<double>(plan.lattice.sites());
 }
 
-void print_json(Plan const& plan, Precision precision) {
+void print_json(io::Scene const& scene, Plan const& plan, Precision precision) {
   auto const& memory = plan.memory;
-  auto const stable = has_stable_dt(plan) ? fmt::format("{}", plan.stable_dt) : "null";
+  auto const& units = scene.units;
+  auto const stable_in = [&](double unit) {
+    return has_stable_dt(plan) ? fmt::format("{}", plan.stable_dt * unit) : "null";
+  };
   fmt::print(
       "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, \"sites\": {}, \"bytes_per_site\": {}, "
       "\"spins_bytes\": {}, \"work_bytes\": {}, \"field_bytes\": {}, \"host_buffer_bytes\": {}, "
       "\"memory_bytes\": {}, \"evaluations_per_step\": {}, \"order\": {}, \"frames\": {}, "
-      "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"}}\n",
-      stable, plan.times.dt, plan.times.steps, plan.lattice.sites(), bytes_per_site(plan),
-      memory.spins, memory.work, memory.field, memory.files, memory.total(),
+      "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"",
+      stable_in(units.time), plan.times.dt * units.time, plan.times.steps, plan.lattice.sites(),
+      bytes_per_site(plan), memory.spins, memory.work, memory.field, memory.files, memory.total(),
       plan.variant.evaluations ? fmt::format("{}", *plan.variant.evaluations) : "null",
       plan.variant.order, plan.frames, plan.file_bytes, plan.variant.method->word,
       to_string(precision));
+  if (units.si)
+    fmt::print(
+        ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
+        "\"energy_unit\": {}, \"reduced\": {{\"stable_dt\": {}, \"dt\": {}}}",
+        units.time, units.length, units.field, units.energy, stable_in(1), plan.times.dt);
+  fmt::print("}}\n");
+}
+
+// In SI with the reduced number after it.
+std::string both(io::Units const& units, double time, int digits) {
+  auto const text = time_text(units, time, digits);
+  return units.si ? fmt::format("{} ({:.{}g})", text, time, digits) : text;
 }
 
 std::string evaluations_text(Variant const& variant) {
@@ -40,10 +55,11 @@ std::string evaluations_text(Variant const& variant) {
   return fmt::format("{} evaluations", *variant.evaluations);
 }
 
-std::string stability_text(Plan const& plan) {
+std::string stability_text(io::Units const& units, Plan const& plan) {
   if (!has_stable_dt(plan)) return "no limit known beforehand";
   if (plan.stable_dt == 0) return "none: at this damping the method amplifies at every dt";
-  return fmt::format("{:.6g}; dt is {:.3g} of it{}", plan.stable_dt, plan.times.dt / plan.stable_dt,
+  return fmt::format("{}; dt is {:.3g} of it{}", both(units, plan.stable_dt, 6),
+                     plan.times.dt / plan.stable_dt,
                      plan.times.dt > plan.stable_dt ? ", which is too large" : "");
 }
 
@@ -75,12 +91,12 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
     fmt::print("{:<11} {}\n", name, text);
   };
   auto const& memory = plan.memory;
-  print("method",
-        fmt::format("{}, order {}, {} of the field per step", describe_method(scene.integrator),
-                    plan.variant.order, evaluations_text(plan.variant)));
-  print("time", fmt::format("{} steps of {:.9g}, to t = {:.9g}", plan.times.steps, plan.times.dt,
-                            plan.times.at(plan.times.steps)));
-  print("stable dt", stability_text(plan));
+  print("method", fmt::format("{}, order {}, {} of the field per step", describe_method(scene),
+                              plan.variant.order, evaluations_text(plan.variant)));
+  print("time", fmt::format("{} steps of {}, to t = {}", plan.times.steps,
+                            both(scene.units, plan.times.dt, 9),
+                            both(scene.units, plan.times.at(plan.times.steps), 9)));
+  print("stable dt", stability_text(scene.units, plan));
   print("cost",
         fmt::format(
             "{} per step, {:.4g} spin updates in all", evaluations_text(plan.variant),
@@ -108,7 +124,7 @@ int check(CheckOptions const& options) {
   auto const plan = make_plan(scene, options.precision);
   if (is_start_checked(plan)) check_start(scene);
   if (options.json)
-    print_json(plan, options.precision);
+    print_json(scene, plan, options.precision);
   else
     print_text(scene, plan, options.precision);
   return Status::done;

@@ -61,8 +61,11 @@ struct ExportOptions {
 /// What a scene models, in words: headings and lines.
 std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene);
 
+/// Reduced units, or what one of them is in SI.
+std::string describe_units(io::Units const& units);
+
 /// "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation"
-std::string describe_method(io::Integrator const& integrator);
+std::string describe_method(io::Scene const& scene);
 
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);

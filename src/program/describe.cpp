@@ -25,13 +25,17 @@ std::string system_text(io::Scene const& scene) {
   return who + " of one inertia tensor";
 }
 
+std::string length_text(io::Units const& units, double length) {
+  return units.si ? fmt::format("{:.6g} m", length * units.length) : fmt::format("{:.6g}", length);
+}
+
 std::string lattice_text(io::Scene const& scene) {
   auto const& [shape, spacing, boundary] = scene.lattice;
   std::string edges;
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (shape[axis] > 1)
-      edges += fmt::format("; {}: spacing {:.6g}, {}", "xyz"[axis], spacing[axis],
-                           io::to_string(boundary[axis]));
+      edges += fmt::format("; {}: spacing {}, {}", "xyz"[axis],
+                           length_text(scene.units, spacing[axis]), io::to_string(boundary[axis]));
   return fmt::format("{} x {} x {} = {} sites{}", shape[0], shape[1], shape[2], io::sites(scene),
                      edges);
 }
@@ -49,15 +53,39 @@ std::string term_text(Term const& term) {
   return fmt::vformat(Term::formula, numbers);
 }
 
-std::string applied_text(io::Field const& field) {
+std::string components_text(std::array<io::AppliedComponent, 3> const& applied) {
   std::string text;
-  for (auto const& component : *field.applied) {
+  for (auto const& component : applied) {
     if (!text.empty()) text += ", ";
     text += std::holds_alternative<double>(component)
                 ? fmt::format("{:.6g}", std::get<double>(component))
                 : std::get<std::string>(component);
   }
-  return fmt::format("H = {}({})", field.mu0 == 1 ? "" : fmt::format("{:.6g} ", field.mu0), text);
+  return "(" + text + ")";
+}
+
+std::string applied_text(io::Scene const& scene) {
+  auto const& field = scene.field;
+  auto const text = fmt::format("H = {}{}", field.mu0 == 1 ? "" : fmt::format("{:.6g} ", field.mu0),
+                                components_text(*field.applied));
+  if (!scene.applied_in_tesla) return text;
+  return fmt::format("{} T, {}", components_text(*scene.applied_in_tesla), text);
+}
+
+std::string material_text(io::Material const& material) {
+  bool const atoms = material.atomistic;
+  auto text =
+      fmt::format("{} = {:.7g} {}", atoms ? "mu_s" : "Ms", material.moment, atoms ? "J/T" : "A/m");
+  auto const add = [&](std::optional<double> value, char const* name, char const* unit) {
+    if (value) text += fmt::format(", {} = {:.7g} {}", name, *value, unit);
+  };
+  add(material.exchange, atoms ? "J" : "A", atoms ? "J" : "J/m");
+  add(material.anisotropy, atoms ? "K" : "Ku", atoms ? "J" : "J/m^3");
+  add(material.dmi, "D", atoms ? "J" : "J/m^2");
+  text += fmt::format(", alpha = {:.7g}", material.alpha);
+  if (material.alpha > 0) text += material.gilbert ? " (Gilbert)" : " (Landau-Lifshitz)";
+  add(material.gamma, "gamma", "rad/(s T)");
+  return text;
 }
 
 std::string slab_text(io::Field const& field) {
@@ -81,9 +109,19 @@ std::string initial_text(io::Initial const& initial) {
 
 }  // namespace
 
+std::string describe_units(io::Units const& units) {
+  if (!units.si) return "reduced";
+  return fmt::format("SI; one reduced unit is {:.9g} s, {:.9g} m, {:.9g} T, {:.9g} J", units.time,
+                     units.length, units.field, units.energy);
+}
+
 std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene) {
   std::vector<std::pair<std::string, std::string>> lines{{"scene", scene.path.string()},
                                                          {"system", system_text(scene)}};
+  if (scene.material) {
+    lines.emplace_back("units", describe_units(scene.units));
+    lines.emplace_back("material", material_text(*scene.material));
+  }
   if (scene.system.kind == io::SystemKind::llg) {
     auto const& field = scene.field;
     lines.emplace_back("lattice", lattice_text(scene));
@@ -91,20 +129,22 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
       if (term) lines.emplace_back(Term::key, term_text(*term));
     });
     for (auto const& term : field.anisotropies) lines.emplace_back("anisotropy", term_text(term));
-    if (field.applied) lines.emplace_back("applied", applied_text(field));
+    if (field.applied) lines.emplace_back("applied", applied_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));
   }
   lines.emplace_back("start", initial_text(scene.initial));
   return lines;
 }
 
-std::string describe_method(io::Integrator const& integrator) {
+std::string describe_method(io::Scene const& scene) {
+  auto const& integrator = scene.integrator;
   std::string text(integrator.method->word);
   if (integrator.method->is_baseline()) return text;
   text += fmt::format(", {} generator, {} rotation", io::to_string(integrator.generator),
                       io::to_string(integrator.rotation));
   if (integrator.isotropy == io::Isotropy::constant)
-    text += fmt::format(", sigma = {:.6g}", integrator.sigma);
+    text += fmt::format(", sigma = {:.6g}{}", integrator.sigma / scene.units.time,
+                        scene.units.si ? " rad/s" : "");
   else if (integrator.isotropy != io::Isotropy::zero)
     text += fmt::format(", sigma by {}", io::to_string(integrator.isotropy));
   return text;

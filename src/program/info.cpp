@@ -13,11 +13,12 @@ namespace {
 void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t frame) {
   auto const& scalars = info.frame_scalars[frame];
   auto const& m = scalars.magnetization;
+  bool const si = info.header.units.si;  // as the file's numbers are
   fmt::print(
-      "{:<12} step {}, t = {:.9g}: energy {:.9g}, norm defect {:.3g}, "
+      "{:<12} step {}, t = {:.9g}{}: energy {:.9g}{}, norm defect {:.3g}, "
       "magnetization ({:.6f}, {:.6f}, {:.6f})\n",
-      name, info.frame_steps[frame], info.frame_times[frame], scalars.energy, scalars.norm_defect,
-      m[0], m[1], m[2]);
+      name, info.frame_steps[frame], info.frame_times[frame], si ? " s" : "", scalars.energy,
+      si ? " J" : "", scalars.norm_defect, m[0], m[1], m[2]);
 }
 
 void print_scene(char const* name, std::string const& text) {
@@ -35,6 +36,7 @@ int info(std::filesystem::path const& file) {
   fmt::print("{:<12} {} x {} x {} sites, {} precision\n", "lattice", header.shape[0],
              header.shape[1], header.shape[2], header.precision);
   fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);
+  fmt::print("{:<12} {}\n", "units", describe_units(header.units));
   if (info.frames > 0) print_frame("first frame", info, 0);
   if (info.frames > 1) print_frame("last frame", info, static_cast<std::size_t>(info.frames) - 1);
   fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,

@@ -22,10 +22,14 @@ Restart::Restart(std::filesystem::path path, io::Scene const& scene, Precision p
     refuse(fmt::format("its spins are in {} precision", info_.header.precision),
            fmt::format("--precision {}", info_.header.precision));
   if (info_.frames == 0) refuse("it holds no frame", "a file with one");
-  double const dt = scene.integrator.dt, time = info_.frame_times.back();
-  if (std::abs(time - static_cast<double>(step()) * dt) > 1e-9 * dt)
-    refuse(fmt::format("its step {} is at t = {}, not at that many steps of dt = {}", step(), time,
-                       dt),
+  auto const& units = scene.units;
+  if (info_.header.units.si != units.si)
+    refuse(units.si ? "it is in reduced units" : "it is in SI units", "the units of the scene");
+  // As the file's times were made, so that those of the same scene are equal to the bit.
+  double const dt = scene.integrator.dt * units.time, time = info_.frame_times.back();
+  if (std::abs(time - static_cast<double>(step()) * scene.integrator.dt * units.time) > 1e-9 * dt)
+    refuse(fmt::format("its step {} is at t = {:.12g}{}, not at that many steps of dt = {:.12g}{}",
+                       step(), time, units.si ? " s" : "", dt, units.si ? " s" : ""),
            "the dt it was run with");
   if (step() >= scene.integrator.steps)
     refuse(fmt::format("it ends at step {}, the scene at step {}", step(), scene.integrator.steps),

@@ -27,7 +27,7 @@ std::filesystem::path output_file(io::Scene const& scene, RunOptions const& opti
 }
 
 void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
-  auto const reason = dt_warning(plan);
+  auto const reason = dt_warning(plan, scene.units);
   if (!reason) return;
   auto const error = io::scene_error(scene, "integrator.dt", *reason);
   if (scene.integrator.refuse_unstable) throw error;
@@ -48,6 +48,7 @@ io::TrajectoryHeader make_header(io::Scene const& typed, io::Scene const& scene,
   header.precision = to_string(precision);
   header.threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
   header.shape = scene.lattice.shape;
+  header.units = scene.units;
   return header;
 }
 
@@ -84,14 +85,18 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   auto const kept = [&] {
     if (!watch.file()) return std::string("no frame was written");
     auto const& frame = watch.last_frame();
-    return fmt::format("the last good frame is {} in {} (step {}, t = {:.9g})",
-                       watch.file()->frames() - 1, path.string(), frame.step, frame.time);
+    return fmt::format("the last good frame is {} in {} (step {}, t = {})",
+                       watch.file()->frames() - 1, path.string(), frame.step,
+                       time_text(scene.units, frame.time));
   };
   auto const failed = [&](std::string const& why) {
     return NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), why, kept()));
   };
   auto [summary, failure] = controlled ? simulation.advance(plan.variant, plan.options, *controlled)
                                        : simulation.advance(plan.variant, plan.options, watch);
+  // The library's own messages, which know nothing of the scene's units.
+  if (failure && scene.units.si)
+    *failure += fmt::format(" (times in units of {:.6g} s)", scene.units.time);
   if (failure) throw failed(*failure);
   if (controlled) summary.evaluations += controlled->evaluations();
   auto const frames = watch.file() ? watch.file()->frames() : 0;
@@ -128,10 +133,10 @@ int run(RunOptions const& options) {
         "dt or tolerance that `cayspin advise` names");
   auto const scene = trade::with_method(typed, space, options.precision);
   if (typed.integrator.method->automatic && !options.quiet)
-    fmt::print("method auto: {}, {}\n", describe_method(scene.integrator),
+    fmt::print("method auto: {}, {}\n", describe_method(scene),
                scene.integrator.tolerance
                    ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)
-                   : fmt::format("dt {:.9g}", scene.integrator.dt));
+                   : "dt " + time_text(scene.units, scene.integrator.dt));
   auto const plan = make_plan(scene, options.precision);
   require_memory(scene, plan);
   std::optional<Restart> restart;

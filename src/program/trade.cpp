@@ -19,33 +19,37 @@ using namespace trade;
 
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
 
-std::string steps_text(Candidate const& candidate, Rung const& rung) {
-  return candidate.method->adaptive ? fmt::format("tol {:.1e}", rung.steps.tolerance)
-                                    : fmt::format("dt {:.3e}", rung.dt);
+std::string steps_text(Pilot const& pilot, Candidate const& candidate, Rung const& rung) {
+  auto const& units = pilot.scene().units;
+  return candidate.method->adaptive
+             ? fmt::format("tol {:.1e}", rung.steps.tolerance)
+             : fmt::format("dt {:.3e}{}", rung.dt * units.time, units.si ? " s" : "");
 }
 
 std::string amount_text(double amount, char const* form) {
   return std::isfinite(amount) ? fmt::format(fmt::runtime(form), amount) : "-";
 }
 
-void print_horizon(double horizon, double end, std::string const& why_shorter) {
+void print_horizon(Pilot const& pilot, double horizon, std::string const& why_shorter) {
   if (why_shorter.empty()) return;
-  fmt::print("horizon     t = {:.6g} of {:.6g}: {}\n", horizon, end, why_shorter);
+  auto const& units = pilot.scene().units;
+  fmt::print("horizon     t = {} of {}: {}\n", time_text(units, horizon, 6),
+             time_text(units, pilot.end(), 6), why_shorter);
 }
 
 void print_text(Pilot const& pilot, Reference const& reference,
                 std::vector<Ladder> const& ladders) {
   fmt::print("scene       {}\n", pilot.scene().path.string());
-  print_horizon(reference.horizon, pilot.end(), reference.why_shorter);
+  print_horizon(pilot, reference.horizon, reference.why_shorter);
   fmt::print(
       "reference   tsit5 and dp5 at a tolerance of 1e-13 agree to {:.1e}\n"
-      "error       the largest distance of any spin at {} times, the last t = {:.6g}\n\n",
-      reference.uncertainty, Pilot::looks, reference.horizon);
+      "error       the largest distance of any spin at {} times, the last t = {}\n\n",
+      reference.uncertainty, Pilot::looks, time_text(pilot.scene().units, reference.horizon, 6));
   constexpr auto line = "{:<33} {:>14} {:>10} {:>11} {:>12} {}\n";
   fmt::print(line, "method", "steps", "error", "seconds", "evaluations", "front");
   for (auto const& ladder : ladders)
     for (auto const& rung : ladder.rungs)
-      fmt::print(line, ladder.candidate.name(), steps_text(ladder.candidate, rung),
+      fmt::print(line, ladder.candidate.name(), steps_text(pilot, ladder.candidate, rung),
                  fmt::format("{:.2e}", rung.error), fmt::format("{:.3e}", rung.seconds),
                  rung.evaluations, rung.on_front ? "*" : "");
 
@@ -65,8 +69,10 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
                        std::vector<Ladder> const& ladders) {
   nlohmann::json all;
   all["scene"] = pilot.scene().path.string();
-  all["horizon"] = reference.horizon;
-  all["end"] = pilot.end();
+  auto const& units = pilot.scene().units;
+  all["units"] = units.si ? "SI" : "reduced";
+  all["horizon"] = reference.horizon * units.time;
+  all["end"] = pilot.end() * units.time;
   all["why_shorter"] = reference.why_shorter;
   all["uncertainty"] = reference.uncertainty;
   for (auto const& ladder : ladders) {
@@ -82,7 +88,7 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
       if (ladder.candidate.method->adaptive)
         step["tolerance"] = rung.steps.tolerance;
       else
-        step["dt"] = rung.dt;
+        step["dt"] = rung.dt * units.time;
       one["rungs"].push_back(step);
     }
     all["methods"].push_back(one);
@@ -121,7 +127,7 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
   return verdict;
 }
 
-void print_verdicts(std::vector<Verdict> const& verdicts) {
+void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   constexpr auto line = "{:>8} {:<33} {:>14} {:>15} {:>15} {:>15} {:>10}\n";
   fmt::print("\nwhat `cayspin advise` says, and how it turns out\n");
   fmt::print(line, "asked", "advised", "steps", "error / asked", "time / best", "time / predicted",
@@ -135,7 +141,7 @@ void print_verdicts(std::vector<Verdict> const& verdicts) {
     }
     Rung const rung{choice->steps, choice->dt, 0, 0, 0, false};
     fmt::print(line, fmt::format("{:.0e}", asked), choice->candidate.name(),
-               steps_text(choice->candidate, rung), fmt::format("{:.2f}", error / asked),
+               steps_text(pilot, choice->candidate, rung), fmt::format("{:.2f}", error / asked),
                fmt::format("{:.2f}", seconds / best),
                fmt::format("{:.2f}", seconds / choice->seconds), duration_text(advised.seconds));
   }
@@ -150,7 +156,7 @@ std::string command_of(AdviseOptions const& options, Resolved const& resolved,
   return command;
 }
 
-nlohmann::json as_json(Advised const& advised, Resolved const& resolved) {
+nlohmann::json as_json(io::Units const& units, Advised const& advised, Resolved const& resolved) {
   auto const& choice = *advised.choice;
   nlohmann::json all{{"method", choice.candidate.name()},
                      {"precision", to_string(choice.candidate.precision)},
@@ -160,7 +166,8 @@ nlohmann::json as_json(Advised const& advised, Resolved const& resolved) {
                      {"error", choice.error},
                      {"seconds", choice.seconds},
                      {"memory", choice.memory},
-                     {"horizon", advised.horizon},
+                     {"horizon", advised.horizon * units.time},
+                     {"units", units.si ? "SI" : "reduced"},
                      {"overrides", resolved.overrides},
                      {"others", nlohmann::json::array()}};
   if (choice.candidate.method->adaptive) all["tolerance"] = choice.steps.tolerance;
@@ -170,14 +177,15 @@ nlohmann::json as_json(Advised const& advised, Resolved const& resolved) {
   return all;
 }
 
-void print_text(AdviseOptions const& options, Advised const& advised, Resolved const& resolved) {
+void print_text(AdviseOptions const& options, io::Units const& units, Advised const& advised,
+                Resolved const& resolved) {
   auto const& choice = *advised.choice;
   auto const& candidate = choice.candidate;
   fmt::print("method      {}\n", candidate.name());
   if (candidate.method->adaptive)
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
   else
-    fmt::print("dt          {:.9g}, {} steps\n", resolved.dt, resolved.steps);
+    fmt::print("dt          {:.9g}{}, {} steps\n", resolved.dt, units.si ? " s" : "", resolved.steps);
   fmt::print("error       {:.2g}, predicted{}\n", choice.error,
              advised.why_shorter.empty() ? "" : " at the horizon");
   fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
@@ -216,7 +224,7 @@ int trade_off(TradeOptions const& options) {
   std::vector<Verdict> verdicts;
   for (double const error : errors_compared)
     verdicts.push_back(judge(pilot_as_far, reference, ladders, error, options.precision));
-  print_verdicts(verdicts);
+  print_verdicts(pilot, verdicts);
   return Status::done;
 }
 
@@ -229,7 +237,7 @@ int advise_on(AdviseOptions const& options) {
   auto const advised = advise(pilot, {options.error, options.budget, options.precision});
   if (!options.json) {
     fmt::print("scene       {}\n", scene.path.string());
-    print_horizon(advised.horizon, pilot.end(), advised.why_shorter);
+    print_horizon(pilot, advised.horizon, advised.why_shorter);
   }
   if (!advised.choice) {
     if (advised.others.empty())
@@ -242,9 +250,9 @@ int advise_on(AdviseOptions const& options) {
   }
   auto const resolved = resolve(scene, *advised.choice);
   if (options.json)
-    fmt::print("{}\n", as_json(advised, resolved).dump(1));
+    fmt::print("{}\n", as_json(scene.units, advised, resolved).dump(1));
   else
-    print_text(options, advised, resolved);
+    print_text(options, scene.units, advised, resolved);
   return Status::done;
 }
 

@@ -20,9 +20,10 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-inline io::Scalars as_scalars(Sample const& sample) {
+/// As they stand in the file.
+inline io::Scalars as_scalars(Sample const& sample, io::Units const& units) {
   auto const& m = sample.magnetization;
-  return {sample.energy.value, sample.norm_defect, {m.x, m.y, m.z}};
+  return {sample.energy.value * units.energy, sample.norm_defect, {m.x, m.y, m.z}};
 }
 
 /// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
@@ -46,6 +47,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
       : first_(first),
         generator_(generator),
         output_(scene.output),
+        units_(scene.units),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
@@ -94,7 +96,9 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
 
   void write(Space const& exec, Sample const& now, Spins const& spins, bool frame, bool scalars) {
     if (!file_) file_.emplace(open_file_());
-    if (scalars) file_->write_scalars(now.step, now.time, as_scalars(now));
+    auto const scalar_values = as_scalars(now, units_);
+    double const time = now.time * units_.time;
+    if (scalars) file_->write_scalars(now.step, time, scalar_values);
     if (!frame) return;
     HostFrame const host(file_->template frame<Real>(), static_cast<std::size_t>(spins.sites()));
     if constexpr (on_host) {
@@ -104,7 +108,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
       Kokkos::deep_copy(exec, host, frame_);
     }
     exec.fence("cayspin::Watch: frame copied");
-    file_->write_frame(now.step, now.time, as_scalars(now));
+    file_->write_frame(now.step, time, scalar_values);
     last_frame_ = now;
   }
 
@@ -112,6 +116,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   SceneGenerator<Spins> generator_;
   std::optional<SceneGenerator<Spins>> torque_;
   io::Output output_;
+  io::Units units_;
   std::optional<double> until_torque_;
   OpenFile open_file_;
   std::optional<io::RunOutput> file_;

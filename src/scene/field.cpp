@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace cayspin::io::detail {
 namespace {
@@ -105,6 +106,17 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   return slab;
 }
 
+// A material says in SI what these say in reduced units.
+void refuse_reduced_keys(Table const& table) {
+  constexpr std::pair<std::string_view, std::string_view> replaced[] = {
+      {"exchange", "material.A, or material.J of atomistic spins"},
+      {"dmi", "material.D with material.normal"},
+      {"anisotropy", "material.Ku, or material.K of atomistic spins, with material.axis"},
+      {"mu0", "no such key: applied is in T"}};
+  for (auto const& [key, accepted] : replaced)
+    if (auto const item = table.find(key)) item->fail("belongs to reduced units", accepted);
+}
+
 }  // namespace
 
 Field read_field(Table const& root, SystemKind kind) {
@@ -116,6 +128,7 @@ Field read_field(Table const& root, SystemKind kind) {
   }
   Table const table(*found, root.scene());
   table.accept_only(field_keys());
+  if (root.scene().units.si) refuse_reduced_keys(table);
   read_lattice_terms(table, field);
   if (auto const item = table.find("anisotropy")) {
     field.anisotropies = read_anisotropies(*item, root.scene());

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace cayspin::io::detail {
@@ -44,7 +45,15 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
       item->fail("has no meaning for independent rigid bodies", "no such key");
     }
   }
-  if (auto const item = table.find("spacing")) {
+  if (root.scene().units.si && !bodies) {
+    // All three, whatever the shape: the volume of a cell is part of the units.
+    constexpr std::string_view cell = "the size of a cell in m: one number, or three";
+    auto const item = table.required("spacing", cell);
+    if (item.node->is_array())
+      std::ranges::transform(entries(item, 3, 3, cell), lattice.spacing.begin(), positive_number);
+    else
+      lattice.spacing.fill(positive_number(item));
+  } else if (auto const item = table.find("spacing")) {
     read_per_axis(*item, extents.size(), lattice.spacing, positive_number, "a number > 0");
   }
   if (auto const item = table.find("boundary")) {

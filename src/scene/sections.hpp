@@ -5,6 +5,13 @@
 
 namespace cayspin::io::detail {
 
+/// Is it units = "SI"? The sections then hold what is typed until convert_to_reduced.
+bool read_is_si(Table const& root);
+/// Reads [material] and turns the scene, of which all sections have been read, into reduced units.
+void convert_to_reduced(Table const& root);
+/// A formula in t, with t in units of `time` and the result in units of `field`.
+std::string scaled_expression(std::string_view text, double time, double field);
+
 System read_system(Table const& root);
 /// A rigid body takes neither spacing nor boundary, and one extent.
 Lattice read_lattice(Table const& root, SystemKind kind);

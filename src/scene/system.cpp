@@ -50,7 +50,10 @@ System read_system(Table const& root) {
   system.kind = word<SystemKind>(table.required("kind", all_words<SystemKind>()));
   if (system.kind == SystemKind::llg) {
     refuse(table, "inertia", "llg");
-    system.damping = non_negative_number(table.required("damping", "a number >= 0"));
+    if (!table.scene().units.si)
+      system.damping = non_negative_number(table.required("damping", "a number >= 0"));
+    else if (auto const item = table.find("damping"))
+      item->fail("belongs to reduced units", "material.alpha with material.damping_form");
     if (auto const item = table.find("precession")) system.precession = boolean(*item);
   } else {
     refuse(table, "damping", "rigid_body");

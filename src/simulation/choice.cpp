@@ -21,7 +21,7 @@ std::string Choice::keys() const {
   if (rotation != io::Rotation::cayley)
     text += fmt::format(",rotation=\"{}\"", io::to_string(rotation));
   if (isotropy == io::Isotropy::constant)
-    text += fmt::format(",isotropy={{constant={:#}}}", sigma);
+    text += fmt::format(",isotropy={{constant={}}}", sigma);
   else if (isotropy != io::Isotropy::zero)
     text += fmt::format(",isotropy=\"{}\"", io::to_string(isotropy));
   if (compensated) text += ",compensated=true";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "guard.hpp"
 
+#include "text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,16 +12,15 @@ namespace cayspin::simulation {
 
 std::optional<std::string> Guard::judge(Step const& step, Energy const& energy,
                                         double norm_defect) {
+  auto const time = time_text(units_, step.time);
   if (!std::isfinite(norm_defect))
-    return fmt::format("step {}, t = {:.9g}: a spin is not finite any more", step.number,
-                       step.time);
+    return fmt::format("step {}, t = {}: a spin is not finite any more", step.number, time);
   if (!std::isfinite(energy.value))
-    return fmt::format("step {}, t = {:.9g}: the energy is not finite any more", step.number,
-                       step.time);
+    return fmt::format("step {}, t = {}: the energy is not finite any more", step.number, time);
   double const steps = step.number == 0 ? 1 : std::max(1e6, static_cast<double>(step.number));
   if (keeps_norm_ && !(norm_defect <= std::min(64 * epsilon_ * steps, 0.01)))
-    return fmt::format("step {}, t = {:.9g}: a spin left the sphere: | |m| - 1 | = {:.3g}",
-                       step.number, step.time, norm_defect);
+    return fmt::format("step {}, t = {}: a spin left the sphere: | |m| - 1 | = {:.3g}", step.number,
+                       time, norm_defect);
   auto const before = last_;
   last_ = {step.number, energy.value};
   if (!first_) first_ = last_;
@@ -27,9 +28,10 @@ std::optional<std::string> Guard::judge(Step const& step, Energy const& energy,
   double const rise = energy.value - before->energy;
   if (!(rise > 64 * epsilon_ * energy.magnitude)) return std::nullopt;
   return fmt::format(
-      "step {}, t = {:.9g}: the energy rose by {:.3g}, from {:.9g} at step {} to {:.9g}, where "
+      "step {}, t = {}: the energy rose by {}, from {} at step {} to {}, where "
       "damping lets it only fall",
-      step.number, step.time, rise, before->energy, before->step, energy.value);
+      step.number, time, energy_text(units_, rise, 3), energy_text(units_, before->energy),
+      before->step, energy_text(units_, energy.value));
 }
 
 }  // namespace cayspin::simulation

@@ -27,6 +27,7 @@ class Guard {
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
         epsilon_(epsilon),
+        units_(scene.units),
         period_(period_of(io::sites(scene))) {}
 
   static constexpr std::int64_t period_of(std::int64_t sites) { return sites <= 4096 ? 1 : 10; }
@@ -45,6 +46,7 @@ class Guard {
   };
   bool energy_must_fall_, keeps_norm_;
   double epsilon_;
+  io::Units units_;
   std::int64_t period_;
   std::optional<Look> first_, last_;
 };

@@ -48,7 +48,9 @@ double largest_applied(io::Scene const& scene, Times const& times) {
       auto const h = applied(t);
       largest = std::max(largest, std::hypot(h.x, h.y, h.z));
     } catch (NumbersFailed const& error) {
-      throw io::scene_error(scene, "field.applied", error.what());
+      if (!scene.units.si) throw io::scene_error(scene, "field.applied", error.what());
+      throw io::scene_error(scene, "field.applied",
+                            "is not finite at t = " + time_text(scene.units, t));
     }
   }
   return largest;
@@ -160,18 +162,18 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   return plan;
 }
 
-std::optional<std::string> dt_warning(Plan const& plan) {
+std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) {
   double const dt = plan.times.dt;
+  auto const text = time_text(units, dt, 6);
   if (plan.times.steps == 0 || plan.variant.method->adaptive) return std::nullopt;
   if (dt > plan.stable_dt && plan.stable_dt > 0)
-    return fmt::format("{:.6g} is above the stable {:.6g}", dt, plan.stable_dt);
+    return fmt::format("{} is above the stable {}", text, time_text(units, plan.stable_dt, 6));
   if (dt > plan.stable_dt)
-    return fmt::format("{:.6g} is not stable: at this damping the method amplifies at every dt",
-                       dt);
+    return fmt::format("{} is not stable: at this damping the method amplifies at every dt", text);
   // Order 8 is stable where it no longer follows.
   double const most = std::isfinite(plan.stable_dt) ? 3 : 2;
   if (!(plan.turn <= most))
-    return fmt::format("{:.6g} turns spins by up to {:.3g} radians a step, too many to follow", dt,
+    return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,
                        plan.turn);
   return std::nullopt;
 }

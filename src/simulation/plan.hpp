@@ -42,7 +42,7 @@ Plan make_plan(io::Scene const& scene, Precision precision);
 
 /// Why dt is too large, if it is: above the stable one, or, where none is known, so that a step
 /// turns spins by more than 2 radians.
-std::optional<std::string> dt_warning(Plan const& plan);
+std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units = {});
 
 /// Is there memory for the run?
 bool fits(Plan const& plan);

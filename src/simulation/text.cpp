@@ -39,6 +39,14 @@ std::string rate_text(double per_second) {
   return fmt::format("{:.3g} {}", value, prefix);
 }
 
+std::string time_text(io::Units const& units, double time, int digits) {
+  return fmt::format("{:.{}g}{}", time * units.time, digits, units.si ? " s" : "");
+}
+
+std::string energy_text(io::Units const& units, double energy, int digits) {
+  return fmt::format("{:.{}g}{}", energy * units.energy, digits, units.si ? " J" : "");
+}
+
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::ranges::replace_if(

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/io/units.hpp>
+
 #include <cstdint>
 #include <string>
 
@@ -12,6 +14,9 @@ std::string bytes_text(std::int64_t bytes);
 std::string duration_text(double seconds);
 /// With a decimal prefix: "12.3 M" for 12300000.
 std::string rate_text(double per_second);
+/// A time or an energy as the scene has them: a number, in SI with its unit.
+std::string time_text(io::Units const& units, double time, int digits = 9);
+std::string energy_text(io::Units const& units, double energy, int digits = 9);
 /// Without line breaks and control characters.
 std::string one_line(std::string text);
 

@@ -3,6 +3,8 @@
 
 #include "hdf5/handle.hpp"
 
+#include <cayspin/io/units.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -14,6 +16,17 @@ inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
 inline constexpr std::size_t checksum_bytes = 4;
+inline constexpr char const* reduced_units = "reduced";
+inline constexpr char const* si_units = "SI";
+
+struct UnitAttribute {
+  char const* name;
+  double Units::*member;
+};
+inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
+                                                     {"length_unit", &Units::length},
+                                                     {"field_unit", &Units::field},
+                                                     {"energy_unit", &Units::energy}};
 
 /// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame or at
 /// most `planes` of it along z, and where that passes `limit` bytes, the frame cut into equal slabs

@@ -30,6 +30,12 @@ constexpr std::size_t most_pending = 512;
 // new chunk in each of the ten scalar datasets.
 constexpr std::uint64_t overhead_bytes = 512 * 1024;
 
+void write_units(RootAttributes const& attributes, Units const& units) {
+  attributes.create("units", std::string(units.si ? si_units : reduced_units));
+  if (!units.si) return;
+  for (auto const& [name, member] : unit_attributes) attributes.create(name, units.*member);
+}
+
 void write_attributes(hid_t file, TrajectoryHeader const& header,
                       std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
@@ -42,6 +48,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   attributes.create("space", header.space);
   attributes.create("threads", std::int64_t{header.threads});
   attributes.create("precision", header.precision);
+  write_units(attributes, header.units);
   attributes.create("evaluations", std::int64_t{0});
   attributes.create("wall_seconds", 0.0);
   attributes.create("step_seconds", 0.0);

@@ -12,6 +12,18 @@
 #include <string>
 
 namespace cayspin::io {
+namespace {
+
+// Files of versions that knew no units are in reduced ones.
+Units read_units(RootAttributes const& attributes) {
+  Units units;
+  units.si = attributes.has("units") && attributes.read_text("units") == si_units;
+  if (units.si)
+    for (auto const& [name, member] : unit_attributes) units.*member = attributes.read_real(name);
+  return units;
+}
+
+}  // namespace
 
 TrajectoryInfo read_info(std::filesystem::path const& path) {
   QuietErrors const quiet;
@@ -33,6 +45,7 @@ TrajectoryInfo read_info(std::filesystem::path const& path) {
   info.header.space = attributes.read_text("space");
   info.header.threads = static_cast<int>(attributes.read_integer("threads"));
   info.header.precision = attributes.read_text("precision");
+  info.header.units = read_units(attributes);
   info.cost.evaluations = attributes.read_integer("evaluations");
   info.cost.wall_seconds = attributes.read_real("wall_seconds");
   info.cost.step_seconds = attributes.read_real("step_seconds");

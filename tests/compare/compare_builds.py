@@ -108,7 +108,9 @@ def toml_value(value):
 
 def scene_text(scene, combination, steps):
     """The scene with another method, shortened, and with a lattice that is not large."""
-    scene = {section: dict(keys) for section, keys in scene.items()}
+    in_si = scene.get("units") == "SI"
+    top = {key: value for key, value in scene.items() if not isinstance(value, dict)}
+    scene = {section: dict(keys) for section, keys in scene.items() if isinstance(keys, dict)}
     integrator = scene["integrator"]
     for key in ("isotropy", "generator", "rotation", "compensated", "end", "steps"):
         integrator.pop(key, None)
@@ -118,7 +120,7 @@ def scene_text(scene, combination, steps):
     elif integrator.pop("tolerance", None):
         integrator["dt"] /= 20  # that of an adaptive method is the time between frames
     if combination.isotropy == "constant":
-        integrator["isotropy"] = {"constant": 0.3}
+        integrator["isotropy"] = {"constant": 5e10 if in_si else 0.3}
     elif combination.isotropy:
         integrator["isotropy"] = combination.isotropy
     if combination.generator:
@@ -131,9 +133,10 @@ def scene_text(scene, combination, steps):
     shape = scene["lattice"]["shape"]
     most = round(MOST_SITES ** (1 / len(shape)))
     scene["lattice"]["shape"] = [min(n, most) for n in shape]
-    return "\n".join(f"[{section}]\n" + "\n".join(f"{key} = {toml_value(value)}"
-                                                  for key, value in keys.items())
-                     for section, keys in scene.items()) + "\n"
+    above = "".join(f"{key} = {toml_value(value)}\n" for key, value in top.items())
+    return above + "\n".join(f"[{section}]\n" + "\n".join(f"{key} = {toml_value(value)}"
+                                                          for key, value in keys.items())
+                             for section, keys in scene.items()) + "\n"
 
 
 def contents(path):

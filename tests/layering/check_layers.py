@@ -9,7 +9,7 @@ import tempfile
 # Lowest room first. A header may include headers of its own room and of the rooms above it in this
 # list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
 LIBRARY = [
-    ("numbers", ["detail/pack.hpp", "detail/unrolled.hpp", "vec3.hpp"]),
+    ("numbers", ["detail/pack.hpp", "detail/unrolled.hpp", "units.hpp", "vec3.hpp"]),
     ("lattice", ["lattice.hpp", "lattice/"]),
     ("loops over sites", ["detail/"]),
     ("spins", ["spin_field.hpp", "stencil.hpp"]),

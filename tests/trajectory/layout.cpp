@@ -116,13 +116,14 @@ TEST_F(TrajectoryTest, EveryAttributeStandsFromTheFirstMoment) {
     return H5Tget_class(type.get());
   };
   for (auto const* name :
-       {"scene", "cayspin_version", "git_commit", "kokkos_version", "space", "precision"})
+       {"scene", "cayspin_version", "git_commit", "kokkos_version", "space", "precision", "units"})
     EXPECT_EQ(class_of(name), H5T_STRING) << name;
   for (auto const* name : {"format", "threads", "evaluations", "complete"})
     EXPECT_EQ(class_of(name), H5T_INTEGER) << name;
   for (auto const* name : {"wall_seconds", "step_seconds"})
     EXPECT_EQ(class_of(name), H5T_FLOAT) << name;
   EXPECT_EQ(H5Aexists(file.get(), "resolved_scene"), 0);
+  EXPECT_EQ(H5Aexists(file.get(), "time_unit"), 0);
 }
 
 TEST_F(TrajectoryTest, LongSceneIsKept) {

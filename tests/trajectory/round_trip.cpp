@@ -30,6 +30,7 @@ TYPED_TEST(RoundTrip, InfoGivesHeaderAndFrames) {
   auto const path = this->folder_ / "a.h5";
   auto header = small_header(this->precision());
   header.resolved_scene = header.scene_text + "# resolved\n";
+  header.units = {true, 5e-12, 4e-9, 1.25, 3e-20};
   TrajectoryFile file(path, header, false);
   std::vector<TypeParam> const spins = numbered_spins<TypeParam>(header, 0);
   for (int frame = 0; frame < 3; ++frame) {
@@ -53,6 +54,7 @@ TYPED_TEST(RoundTrip, InfoGivesHeaderAndFrames) {
   EXPECT_EQ(info.header.threads, header.threads);
   EXPECT_EQ(info.header.precision, header.precision);
   EXPECT_EQ(info.header.shape, header.shape);
+  EXPECT_EQ(info.header.units, header.units);
   EXPECT_EQ(info.cost.evaluations, 12345);
   EXPECT_EQ(info.cost.wall_seconds, 2.5);
   EXPECT_EQ(info.cost.step_seconds, 1.25);

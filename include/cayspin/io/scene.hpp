@@ -3,6 +3,7 @@
 
 #include <cayspin/io/field.hpp>
 #include <cayspin/io/method.hpp>
+#include <cayspin/io/units.hpp>
 #include <cayspin/io/words.hpp>
 
 #include <array>
@@ -121,8 +122,26 @@ struct Output {
   }
 };
 
-/// A scene: one member for each table, and where each key stands.
+/// The table [material] of a scene in SI, as typed. What it comes to in reduced units stands in
+/// System, Lattice and Field.
+struct Material {
+  bool atomistic = false;            ///< mu_s, J and K in place of Ms, A and Ku
+  double moment = 0;                 ///< Ms, A/m, or mu_s, J/T
+  std::optional<double> exchange;    ///< A, J/m, or J of a bond, J
+  std::optional<double> anisotropy;  ///< Ku, J/m^3, or K of a site, J
+  std::optional<double> dmi;         ///< D, J/m^2, or D of a bond, J
+  double alpha = 0;
+  bool gilbert = true;  ///< Gilbert's equation, or that of Landau and Lifshitz
+  double gamma = 0;     ///< rad/(s T)
+};
+
+/// A scene: one member for each table, and where each key stands. All numbers but those of Material
+/// are in reduced units, also where the scene is typed in SI.
 struct Scene {
+  Units units;
+  std::optional<Material> material;  ///< with units = "SI"
+  std::optional<std::array<AppliedComponent, 3>>
+      applied_in_tesla;  ///< field.applied as typed, with t in s: with units = "SI"
   System system;
   Lattice lattice;
   Field field;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/io/units.hpp>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +29,7 @@ struct TrajectoryHeader {
   std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
   int threads = 1;
   std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz
+  Units units;                                 ///< of the times and energies in the file
 };
 
 /// How /spins lies in the file.
@@ -37,7 +40,7 @@ struct TrajectoryStorage {
 
 /// The observables of one instant, always in double.
 struct Scalars {
-  double energy = 0;                      ///< reduced units, summed over the sites
+  double energy = 0;                      ///< summed over the sites: reduced, or in J
   double norm_defect = 0;                 ///< max | |m| - 1 | over the sites
   std::array<double, 3> magnetization{};  ///< mean of m over the sites
 };

@@ -2,6 +2,7 @@
 #include "reference.hpp"
 
 #include "simulation/failure.hpp"
+#include "simulation/text.hpp"
 
 #include <fmt/format.h>
 
@@ -58,8 +59,8 @@ Reference converged_reference(Pilot const& pilot, double seconds) {
       return reference;
     }
     reference.why_shorter =
-        fmt::format("two methods at a tolerance of {:g} differ by {:.1e} at t = {:.6g}", tightest,
-                    reference.uncertainty, horizon);
+        fmt::format("two methods at a tolerance of {:g} differ by {:.1e} at t = {}", tightest,
+                    reference.uncertainty, time_text(pilot.scene().units, horizon, 6));
   }
   throw NumbersFailed("there is no reference: " + reference.why_shorter);
 }

@@ -28,19 +28,22 @@ std::int64_t steps_between_looks(io::Scene const& scene, bool adaptive) {
 }
 
 // All of the table, since the scene's may have keys that the method does not take.
-std::string integrator_table(io::Integrator const& of_scene, Advice const& advice, double dt,
+std::string integrator_table(io::Scene const& scene, Advice const& advice, double dt,
                              std::int64_t steps) {
-  auto const& candidate = advice.candidate;
+  auto const& of_scene = scene.integrator;
+  auto candidate = advice.candidate;
+  candidate.sigma /= scene.units.time;
   auto keys = candidate.keys();
   if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
-  keys += fmt::format(",dt={:#},steps={}", dt, steps);
+  keys += fmt::format(",dt={},steps={}", dt, steps);
   for (auto const& [key, member] : io::Integrator::flags()) {
     bool const belongs_to_method =
         key == "compensated" || (key == "energy_control" && candidate.method->adaptive);
     if (!belongs_to_method && of_scene.*member != io::Integrator{}.*member)
       keys += fmt::format(",{}={}", key, of_scene.*member);
   }
-  if (of_scene.until_torque) keys += fmt::format(",until_torque={:#}", *of_scene.until_torque);
+  if (of_scene.until_torque)
+    keys += fmt::format(",until_torque={}", *of_scene.until_torque * scene.units.field);
   return fmt::format("integrator={{{}}}", keys);
 }
 
@@ -49,12 +52,14 @@ std::string integrator_table(io::Integrator const& of_scene, Advice const& advic
 Resolved resolve(io::Scene const& scene, Advice const& advice) {
   auto const& integrator = scene.integrator;
   auto const together = steps_between_looks(scene, advice.candidate.method->adaptive);
-  double const time = integrator.dt * static_cast<double>(together);
+  double const time = integrator.dt * static_cast<double>(together);  // reduced
   std::int64_t const parts = advice.candidate.method->adaptive
                                  ? 1
                                  : static_cast<std::int64_t>(std::ceil(time / advice.dt - 1e-9));
-  Resolved resolved{time / static_cast<double>(parts), integrator.steps / together * parts, {}};
-  resolved.overrides.push_back(integrator_table(integrator, advice, resolved.dt, resolved.steps));
+  Resolved resolved{time * scene.units.time / static_cast<double>(parts),
+                    integrator.steps / together * parts,
+                    {}};
+  resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
   auto const keep = [&](char const* key, std::int64_t every) {
     if (!scene.places.contains(std::string("output.") + key)) return;
     resolved.overrides.push_back(

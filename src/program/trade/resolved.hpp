@@ -11,7 +11,7 @@ namespace cayspin::program::trade {
 /// How a scene runs as advised. Frames and samples come when the scene wants them: a whole number
 /// of steps falls between two of them, so dt may be shorter than what is advised.
 struct Resolved {
-  double dt;  // of adaptive methods: from one look at the spins to the next
+  double dt;  // as the scene has it; of adaptive methods: from one look at the spins to the next
   std::int64_t steps;
   std::vector<std::string> overrides;  // of the scene, the whole [integrator] among them
 };

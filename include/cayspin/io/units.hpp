@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+namespace cayspin::io {
+
+/// What one reduced unit is in the units that a scene is typed in and its files are written in.
+struct Units {
+  bool si = false;    ///< units = "SI"; otherwise all are 1
+  double time = 1;    ///< s
+  double length = 1;  ///< m
+  double field = 1;   ///< T, of mu0 H
+  double energy = 1;  ///< J
+
+  bool operator==(Units const&) const = default;
+};
+
+}  // namespace cayspin::io

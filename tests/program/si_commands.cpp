@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Commands and messages on scenes in SI.
+#include "si_scene.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace cayspin::program::test {
+namespace {
+
+TEST_F(SiScene, CheckPrintsBothKindsOfNumbers) {
+  auto const scene = write("scene.toml", film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 25",
+                                              "[\"0.1*cos(1e10*t)\", 0, 0.02]"));
+  auto const said = start({"check", scene}).output;
+  for (std::string const part :
+       {"units       SI; one reduced unit is 6.15746661e-12 s, 4e-09 m, 1.00530965 T, ",
+        "material    Ms = 800000 A/m, A = 1.3e-11 J/m, Ku = 50000 J/m^3, D = 0.001 J/m^2, "
+        "alpha = 0.3 (Gilbert), gamma = 1.760859e+11 rad/(s T)\n",
+        "x: spacing 4e-09 m", "y: spacing 5e-09 m", "exchange    H = 2.02052 Lap(m)\n",
+        "applied     (0.1*cos(1e10*t), 0, 0.02) T, H = (",
+        "25 steps of 1e-13 s (0.0162404454), to t = 2.5e-12 s (0.406011134)\n"})
+    EXPECT_TRUE(contains(said, part));
+  auto const json = nlohmann::json::parse(start({"check", scene, "--json"}).output);
+  double const unit = json.at("time_unit");
+  EXPECT_EQ(unit, units().time_unit());
+  EXPECT_EQ(json.at("units"), "SI");
+  EXPECT_NEAR(json.at("dt"), 1e-13, 1e-27);
+  EXPECT_NEAR(json.at("reduced").at("dt"), units().time(1e-13), 1e-15);
+  EXPECT_EQ(json.at("stable_dt"), double(json.at("reduced").at("stable_dt")) * unit);
+  EXPECT_EQ(json.at("energy_unit"), units().energy_unit());
+  // What is named as stable may be typed.
+  auto const typed = start(
+      {"check", scene, "--json", "--set", text("integrator.dt=", double(json.at("stable_dt")))});
+  EXPECT_NEAR(nlohmann::json::parse(typed.output).at("dt"), json.at("stable_dt"), 1e-25);
+}
+
+TEST_F(SiScene, RestartGivesTheBitsOfARunWithoutABreak) {
+  auto const scene = [&](char const* steps) {
+    return film(std::string("method = \"rkmk4\"\ndt = 1e-13\nsteps = ") + steps,
+                "[\"0.3*cos(1e12*t)\", 0.1, 0.2]");
+  };
+  for (std::string const precision : {"double", "single"}) {
+    Arguments const same{"--precision", precision, "--overwrite"};
+    run(scene("25"), same);
+    auto const whole = last_spins("out.h5");
+    run(scene("12"), same);
+    std::filesystem::rename(in_folder("out.h5"), in_folder("first.h5"));
+    auto more = same;
+    more.insert(more.end(), {"--restart", "first.h5"});
+    auto const info = run(scene("25"), more);
+    EXPECT_EQ(last_spins("out.h5"), whole);
+    EXPECT_EQ(info.frame_steps, (std::vector<std::int64_t>{12, 20, 25}));
+    EXPECT_NEAR(info.frame_times.front(), 1.2e-12, 1e-26);
+  }
+  auto const refused = [&](std::string const& text_of_scene, Arguments const& more) {
+    Arguments all{"run",       write("again.toml", text_of_scene),
+                  "--restart", "first.h5",
+                  "--quiet",   "--output",
+                  "other.h5",  "--precision",
+                  "single"};
+    all.insert(all.end(), more.begin(), more.end());
+    auto const outcome = start(all);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    return outcome.errors;
+  };
+  EXPECT_TRUE(contains(refused(scene("25"), {"--set", "integrator.dt=2e-13"}),
+                       "its step 12 is at t = 1.2e-12 s, not at that many steps of dt = 2e-13 s"));
+  EXPECT_TRUE(
+      contains(refused(reduced_film("method = \"rkmk4\"\ndt = 0.01\nsteps = 25", "[0, 0, 0]"), {}),
+               "it is in SI units; accepted: the units of the scene"));
+}
+
+TEST_F(SiScene, MessagesHaveSeconds) {
+  auto const scene =
+      write("scene.toml", film("method = \"euler\"\ndt = 5e-12\nsteps = 1000", "[0.02, 0, 0.1]"));
+  auto const outcome = start({"run", scene, "--quiet"});
+  EXPECT_EQ(outcome.status, 3);
+  auto const end = outcome.errors.find('\n') + 1;
+  EXPECT_TRUE(
+      contains(outcome.errors.substr(0, end), "integrator.dt: 5e-12 s is above the stable"));
+  auto const failure = outcome.errors.substr(end);
+  EXPECT_TRUE(is_one_line(failure)) << failure;
+  EXPECT_TRUE(contains(failure, "e-12 s: the energy rose by") ||
+              contains(failure, "e-11 s: the energy rose by"));
+  EXPECT_TRUE(contains(failure, " J, from ") && contains(failure, " J, where damping"));
+  EXPECT_TRUE(contains(failure, " s)"));
+
+  auto const small = start(
+      {"run", scene, "--quiet", "--output", "small.h5", "--set",
+       "integrator={method='tsit5',tolerance=1e-9,dt=5e-12,steps=2,min_dt=4e-12,max_dt=4e-12}"});
+  EXPECT_EQ(small.status, 3);
+  EXPECT_TRUE(contains(small.errors, "(times in units of 6.15747e-12 s)"));
+
+  auto const pole = start({"run", scene, "--quiet", "--output", "pole.h5", "--set",
+                           "field.applied=['t > 1e-9 ? 1/0 : 0.1',0,0]"});
+  EXPECT_EQ(pole.status, 2);
+  EXPECT_TRUE(contains(pole.errors, "field.applied: is not finite at t = 1.00"));
+}
+
+TEST_F(SiScene, UntilTorqueIsInTesla) {
+  auto const info = run(atom("until_torque = 1e-4\n[output]\nscalars_every = 1\n"),
+                        {"--set", "integrator.end=1e-8", "--set", "integrator.dt=1e-12"});
+  EXPECT_TRUE(info.complete);
+  EXPECT_LT(info.frame_times.back(), 1e-8);
+  auto const m = last_spins("out.h5");
+  double const torque = std::hypot(m[0], m[1]) * 1.0;
+  EXPECT_LT(torque, 1e-4);
+  // It falls by exp(-alpha gamma B dt / (1 + alpha^2)) a step.
+  EXPECT_GT(torque, 1e-4 * std::exp(-0.1 * gamma_e * 1.05e-12 / 1.01));
+}
+
+TEST_F(SiScene, AChosenMethodKeepsTheScenesTimes) {
+  auto const scene =
+      film("method = \"auto\"\nerror = 1e-3\ndt = 1e-12\nend = 2e-11", "[0.02, 0, 0.1]");
+  run(scene, {"--threads", "1"});
+  expect_times("/time", 1e-11);
+  auto const spins = last_spins("out.h5");
+  auto const header = io::read_info(in_folder("out.h5")).header;
+  EXPECT_TRUE(contains(header.resolved_scene, "dt = "));
+  run(header.resolved_scene, {"--threads", "1", "--overwrite"});
+  EXPECT_EQ(last_spins("out.h5"), spins);
+  expect_times("/time", 1e-11);
+  run(scene, {"--overwrite", "--set", "integrator={method='rkmk8',dt=1e-14,end=2e-11}", "--set",
+              "output.every=1000"});
+  EXPECT_LT(distance(last_spins("out.h5"), spins), 2e-3);
+}
+
+TEST_F(SiScene, AdviceIsInSeconds) {
+  auto const scene = write("scene.toml", film("method = \"rkmk4\"\ndt = 1e-13\nend = 5e-12\n"
+                                              "until_torque = 1e-9",
+                                              "[0.02, 0, 0.1]"));
+  auto const outcome =
+      start({"advise", scene, "--error", "1e-3", "--threads", "1", "--precision", "double"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  auto const command = outcome.output.substr(outcome.output.find("run it"));
+  auto const begin = command.find("integrator={");
+  auto const typed = command.substr(begin, command.find('\'', begin) - begin);
+  auto const json = nlohmann::json::parse(
+      start({"check", scene, "--json", "--set", typed, "--set", "output.every=1"}).output);
+  EXPECT_NEAR(double(json.at("dt")) * double(json.at("steps")), 5e-12, 1e-20) << typed;
+  auto const torque = typed.find("until_torque=") + 13;
+  EXPECT_NEAR(std::stod(typed.substr(torque)), 1e-9, 1e-23) << typed;
+
+  auto const trade = start({"trade", scene, "--json", "--seconds", "0.1", "--threads", "1",
+                            "--precision", "double", "--set", "integrator.end=1e-12"});
+  ASSERT_EQ(trade.status, 0) << trade.errors;
+  auto const all = nlohmann::json::parse(trade.output);
+  EXPECT_EQ(all.at("units"), "SI");
+  EXPECT_NEAR(all.at("end"), 1e-12, 1e-25);
+  for (auto const& method : all.at("methods"))
+    for (auto const& rung : method.at("rungs"))
+      if (rung.contains("dt")) {
+        EXPECT_LE(rung.at("dt").get<double>(), 1.0001e-12) << method.at("method");
+      }
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

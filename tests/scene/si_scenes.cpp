@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// units = "SI": what a material comes to in reduced units, and what is refused.
+#include "scene_file.hpp"
+
+#include <cayspin/io/expression.hpp>
+
+#include <cmath>
+
+namespace cayspin::io::test {
+namespace {
+
+// mu0 and gamma stand here again: the tests do not take them from the library.
+constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11;
+
+constexpr std::string_view film = R"toml(units = "SI"
+
+[material]
+Ms = 8e5
+A = 1.3e-11
+Ku = 500
+axis = [0, 2, 0]
+D = 3e-3
+normal = [0, 0, 1]
+alpha = 0.5
+damping_form = "gilbert"
+
+[system]
+kind = "llg"
+
+[lattice]
+shape = [8, 4]
+spacing = [4e-9, 4e-9, 3e-9]
+
+[field]
+applied = ["0.025*sin(2*pi*1e9*t)", 0.1, 0]
+slab_demag = { normal = [0, 0, 1], strength = 0.8 }
+
+[initial]
+uniform = [1, 0, 0]
+
+[integrator]
+method = "tsit5"
+tolerance = 1e-5
+dt = 1e-12
+end = 5e-11
+max_dt = 1e-13
+until_torque = 1e-6
+isotropy = { constant = 1e9 }
+)toml";
+
+constexpr std::string_view chain = R"toml(units = "SI"
+
+[material]
+mu_s = { bohr_magnetons = 2.0 }
+J = { meV = 10 }
+K = 1e-22
+axis = [0, 0, 1]
+D = { meV = 1 }
+normal = [0, 0, 1]
+alpha = 0.5
+damping_form = "landau_lifshitz"
+
+[system]
+kind = "llg"
+
+[lattice]
+shape = [16]
+spacing = 2.5e-10
+
+[field]
+applied = [0, 0, 2]
+slab_demag = { normal = [0, 0, 1] }
+
+[initial]
+uniform = [1, 0, 0]
+
+[integrator]
+method = "rkmk4"
+dt = 1e-16
+steps = 10
+)toml";
+
+void expect_close(double value, double expected) {
+  EXPECT_NEAR(value, expected, 4e-16 * std::abs(expected));
+}
+
+TEST(SiScene, MicromagneticsComesToReducedUnits) {
+  Folder const folder;
+  auto const scene = read_text(folder, film);
+  double const pressure = mu0 * 8e5 * 8e5, second = gamma * mu0 * 8e5 / 1.25;
+  EXPECT_TRUE(scene.units.si);
+  expect_close(scene.units.time, 1 / second);
+  expect_close(scene.units.length, 4e-9);
+  expect_close(scene.units.field, mu0 * 8e5);
+  expect_close(scene.units.energy, pressure * 48e-27);
+  EXPECT_EQ(scene.system.damping, 0.5);
+  expect_close(scene.lattice.spacing[0], 1);
+  expect_close(scene.lattice.spacing[1], 1);
+  expect_close(scene.lattice.spacing[2], 0.75);
+  expect_close(scene.field.exchange.value().constant, 2 * 1.3e-11 / (pressure * 16e-18));
+  ASSERT_EQ(scene.field.anisotropies.size(), 1U);
+  expect_close(scene.field.anisotropies[0].constant, 2 * 500 / pressure);
+  EXPECT_EQ(scene.field.anisotropies[0].axis, (Triple{0, 1, 0}));
+  expect_close(scene.field.dmi.value().interfacial, 3e-3 / (pressure * 4e-9));
+  EXPECT_EQ(scene.field.slab_demag.value().strength, 0.8);
+  EXPECT_EQ(scene.field.mu0, 1);
+  expect_close(std::get<double>((*scene.field.applied)[1]), 0.1 / (mu0 * 8e5));
+  expect_close(scene.integrator.dt, 1e-12 * second);
+  expect_close(scene.integrator.max_dt, 1e-13 * second);
+  EXPECT_EQ(scene.integrator.min_dt, 0);
+  EXPECT_EQ(scene.integrator.steps, 50);
+  expect_close(*scene.integrator.until_torque, 1e-6 / (mu0 * 8e5));
+  expect_close(scene.integrator.sigma, 1e9 / second);
+  ASSERT_TRUE(scene.material);
+  EXPECT_FALSE(scene.material->atomistic);
+  EXPECT_EQ(scene.material->moment, 8e5);
+  EXPECT_EQ(scene.material->gamma, gamma);
+  EXPECT_EQ(std::get<std::string>((*scene.applied_in_tesla)[0]), "0.025*sin(2*pi*1e9*t)");
+}
+
+TEST(SiScene, LandauLifshitzDampingLeavesTheUnitOfTime) {
+  Folder const folder;
+  auto const text = replaced(film, "\"gilbert\"", "\"landau_lifshitz\"");
+  expect_close(read_text(folder, text).units.time, 1 / (gamma * mu0 * 8e5));
+  auto const slower = replaced(text, "Ms = 8e5", "Ms = 8e5\ngamma = 2e11");
+  expect_close(read_text(folder, slower).units.time, 1 / (2e11 * mu0 * 8e5));
+}
+
+TEST(SiScene, AnExpressionTakesSeconds) {
+  Folder const folder;
+  auto const scene = read_text(folder, film);
+  EXPECT_TRUE(depends_on_time(scene.field));
+  Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
+  for (double const seconds : {0.0, 1e-10, 3.3e-10}) {
+    double const t = seconds / scene.units.time;
+    double const tesla = 0.025 * std::sin(2 * std::acos(-1.0) * 1e9 * seconds);
+    EXPECT_NEAR(reduced(&t) * mu0 * 8e5, tesla, 1e-17);
+  }
+}
+
+TEST(SiScene, OnlyTheVariableOfAnExpressionIsScaled) {
+  Folder const folder;
+  constexpr std::string_view typed = "tan(1e-3*t)+0.5e9*t*0+(t>1.e-10?1:2e+0)+.5*exp(-t/1E-9)";
+  auto const text = replaced(film, "0.025*sin(2*pi*1e9*t)", typed);
+  auto const scene = read_text(folder, text);
+  Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
+  Expression const in_seconds(std::string(typed), {"t"});
+  for (double const seconds : {0.0, 0.9e-10, 1.1e-10, 2e-9}) {
+    double const t = seconds / scene.units.time;
+    EXPECT_NEAR(reduced(&t) * scene.units.field, in_seconds(&seconds), 1e-14);
+  }
+}
+
+TEST(SiScene, AtomisticSpinsComeToReducedUnits) {
+  Folder const folder;
+  auto const scene = read_text(folder, chain);
+  constexpr double moment = 2 * 9.2740100657e-24, bond = 10e-3 * 1.602176634e-19;
+  expect_close(scene.units.energy, bond);
+  expect_close(scene.units.field, bond / moment);
+  expect_close(scene.units.time, moment / (gamma * bond));
+  expect_close(scene.units.length, 2.5e-10);
+  EXPECT_EQ(scene.lattice.spacing, (Triple{1, 1, 1}));
+  EXPECT_EQ(scene.field.exchange.value().constant, 1);
+  expect_close(scene.field.anisotropies.at(0).constant, 2e-22 / bond);
+  expect_close(scene.field.dmi.value().interfacial, 0.1);
+  expect_close(scene.field.slab_demag.value().strength,
+               mu0 * moment * moment / (2.5e-10 * 2.5e-10 * 2.5e-10) / bond);
+  expect_close(std::get<double>((*scene.field.applied)[2]), 2 * moment / bond);
+  EXPECT_EQ(scene.system.damping, 0.5);
+}
+
+TEST(SiScene, TheUnitOfEnergyIsThatOfWhatThereIs) {
+  Folder const folder;
+  auto const without_bonds = replaced(chain, "J = { meV = 10 }", "J = 0");
+  expect_close(read_text(folder, without_bonds).units.energy, 1e-22);
+  auto const antiferromagnet = read_text(folder, replaced(chain, "meV = 10", "mRy = -1"));
+  expect_close(antiferromagnet.units.energy, 2.1798723611030e-21);
+  EXPECT_EQ(antiferromagnet.field.exchange.value().constant, -1);
+  auto const free = replaced(replaced(without_bonds, "K = 1e-22\naxis = [0, 0, 1]", ""),
+                             "D = { meV = 1 }\nnormal = [0, 0, 1]", "");
+  auto const scene = read_text(folder, free);
+  EXPECT_EQ(scene.units.field, 1);
+  expect_close(scene.units.time, 1 / gamma);
+}
+
+TEST(SiScene, ReducedIsAWordAsWell) {
+  Folder const folder;
+  auto const scene = read_text(folder, "units = \"reduced\"\n" + std::string(llg_scene));
+  EXPECT_EQ(scene.units, Units{});
+  EXPECT_EQ(scene.integrator.dt, 0.01);
+  EXPECT_FALSE(scene.material);
+}
+
+TEST(SiScene, OverridesAreInSi) {
+  Folder const folder;
+  auto const scene = read_text(folder, film, {"material.alpha=0.0", "integrator.dt=5e-13"});
+  expect_close(scene.integrator.dt, 5e-13 * gamma * mu0 * 8e5);
+  auto const again = with_overrides(scene, {"integrator.dt=2.5e-13"});
+  expect_close(again.integrator.dt, 2.5e-13 * gamma * mu0 * 8e5);
+  EXPECT_EQ(again.integrator.steps, 200);
+}
+
+class WrongSiScene : public testing::TestWithParam<WrongScene> {};
+TEST_P(WrongSiScene, IsRefusedInOneLine) { expect_refused(film, GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Units, WrongSiScene,
+    testing::Values(
+        WrongScene{"word", "\"SI\"", "\"si\"", ":1: units: \"si\" is not known",
+                   "\"reduced\", \"SI\""},
+        WrongScene{"type", "\"SI\"", "1", ":1: units: 1 is an integer", "\"reduced\", \"SI\""},
+        WrongScene{"reduced_with_material", "\"SI\"", "\"reduced\"",
+                   ":3: material: belongs to units = \"SI\"", "no such table"},
+        WrongScene{"damping", "kind = \"llg\"", "kind = \"llg\"\ndamping = 0.1",
+                   ":15: system.damping: belongs to reduced units", "material.alpha"},
+        WrongScene{"exchange", "[field]", "[field]\nexchange = 1",
+                   ":21: field.exchange: belongs to reduced units", "material.A"},
+        WrongScene{"anisotropy", "[field]",
+                   "[field]\nanisotropy = { constant = 1, axis = [0, 0, 1] }",
+                   ":21: field.anisotropy: belongs to reduced units", "material.Ku"},
+        WrongScene{"dmi", "[field]", "[field]\ndmi = { interfacial = 1, normal = [0, 0, 1] }",
+                   ":21: field.dmi: belongs to reduced units", "material.D"},
+        WrongScene{"mu0", "[field]", "[field]\nmu0 = 1", ":21: field.mu0: belongs to reduced",
+                   "applied is in T"},
+        WrongScene{"spacing_missing", "spacing = [4e-9, 4e-9, 3e-9]", "",
+                   ":16: lattice.spacing: is missing", "one number, or three"},
+        WrongScene{"spacing_of_two", "4e-9, 3e-9]", "4e-9]", ":18: lattice.spacing: has 2 entries",
+                   "one number, or three"},
+        WrongScene{"not_whole_dt", "end = 5e-11", "end = 1.5e-12",
+                   ":31: integrator.end: 1.5e-12 is 1.5 steps of dt = 1e-12",
+                   "dt = 1.5e-12 or 7.5e-13"},
+        WrongScene{"dt_beyond_double", "dt = 1e-12\nend = 5e-11", "dt = 1e-320\nsteps = 1",
+                   ":30: integrator.dt: comes to", "a time in s"}),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(
+    Material, WrongSiScene,
+    testing::Values(
+        WrongScene{"no_moment", "Ms = 8e5", "", ":3: material.Ms: is missing", "mu_s (J/T)"},
+        WrongScene{"two_moments", "Ms = 8e5", "Ms = 8e5\nmu_s = 1e-23",
+                   ":5: material.mu_s: stands beside material.Ms", "exactly one"},
+        WrongScene{"Ms_negative", "8e5", "-8e5", ":4: material.Ms: -800000 is not positive", "> 0"},
+        WrongScene{"Ms_beyond_double", "8e5", "8e-300", ":3: material: a unit of the reduced", ""},
+        WrongScene{"J_of_continuum", "A = ", "J = ", ":5: material.J: does not go with material.Ms",
+                   "material.A"},
+        WrongScene{"unit_of_continuum", "1.3e-11", "{ meV = 1 }", ":5: material.A: is a table",
+                   "a finite number"},
+        WrongScene{"axis_missing", "axis = [0, 2, 0]", "", ":3: material.axis: is missing",
+                   "three numbers"},
+        WrongScene{"axis_alone", "Ku = 500", "", ":7: material.axis: stands without material.Ku",
+                   "both or neither"},
+        WrongScene{"normal_alone", "D = 3e-3", "", ":9: material.normal: stands without material.D",
+                   "both or neither"},
+        WrongScene{"alpha_missing", "alpha = 0.5", "", ":3: material.alpha: is missing", ">= 0"},
+        WrongScene{"alpha_negative", "alpha = 0.5", "alpha = -0.5",
+                   ":10: material.alpha: -0.5 is negative", ">= 0"},
+        WrongScene{"form_missing", "damping_form = \"gilbert\"", "",
+                   ":3: material.damping_form: is missing: the two forms",
+                   "\"gilbert\", \"landau_lifshitz\""},
+        WrongScene{"form", "\"gilbert\"", "\"Gilbert\"",
+                   ":11: material.damping_form: \"Gilbert\" is not known", "did you mean"},
+        WrongScene{"gamma", "alpha = 0.5", "alpha = 0.5\ngamma = 0",
+                   ":11: material.gamma: 0 is not positive", "> 0"},
+        WrongScene{"unknown", "alpha = 0.5", "alfa = 0.5", ":10: material.alfa: unknown key",
+                   "did you mean \"alpha\"?"}),
+    name_of);
+
+class WrongAtomisticScene : public testing::TestWithParam<WrongScene> {};
+TEST_P(WrongAtomisticScene, IsRefusedInOneLine) { expect_refused(chain, GetParam()); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Material, WrongAtomisticScene,
+    testing::Values(
+        WrongScene{"A_of_atoms", "J = {", "A = {", ":5: material.A: does not go with material.mu_s",
+                   "material.J"},
+        WrongScene{"unit", "meV = 10", "meW = 10", ":5: material.J.meW: unknown key",
+                   "did you mean \"meV\"?"},
+        WrongScene{"two_units", "meV = 10", "meV = 10, eV = 1",
+                   ":5: material.J: is not one number with its unit", "{ eV = number }"},
+        WrongScene{"moment", "= 2.0", "= 0", ":4: material.mu_s: 0 is not positive", "> 0"},
+        WrongScene{"spacings", "2.5e-10", "[2e-10, 2e-10, 3e-10]",
+                   ":18: lattice.spacing: differs from axis to axis", "one lattice constant"}),
+    name_of);
+
+TEST(SiScene, IsForSpinsAlone) {
+  Folder const folder;
+  auto const path =
+      folder.write("units = \"SI\"\n[material]\nMs = 8e5\nalpha = 0\n" + std::string(body_scene));
+  EXPECT_EQ(refusal(path), path.string() +
+                               ":1: units: \"SI\" has no meaning for kind = "
+                               "\"rigid_body\"; accepted: \"reduced\"");
+}
+
+TEST(SiScene, NeedsAMaterial) {
+  Folder const folder;
+  auto const path =
+      folder.write("units = \"SI\"\n" + replaced(llg_scene, "damping = 0.05\n", ""), "bare.toml");
+  auto const message = refusal(path, {"field={}", "lattice.spacing=1e-9"});
+  ASSERT_TRUE(message);
+  EXPECT_NE(message->find(":1: material: is missing; accepted: a table [material] with Ms"),
+            std::string::npos)
+      << *message;
+}
+
+TEST(SiScene, UndampedMotionNeedsNoFormOfDamping) {
+  Folder const folder;
+  auto const text =
+      replaced(replaced(film, "alpha = 0.5", "alpha = 0"), "damping_form = \"gilbert\"", "");
+  expect_close(read_text(folder, text).units.time, 1 / (gamma * mu0 * 8e5));
+}
+
+}  // namespace
+}  // namespace cayspin::io::test
