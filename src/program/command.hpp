@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "progress.hpp"
 #include "simulation/plan.hpp"
 
 #include <filesystem>
@@ -23,6 +24,16 @@ struct RunOptions : SceneOptions {
   std::optional<std::filesystem::path> output, restart;
   std::optional<std::string> space;
   std::optional<int> threads, device;
+  bool overwrite = false;
+  Listener listener = Listener::user;
+};
+
+struct SweepOptions : SceneOptions {
+  std::vector<std::string> over;  // key.path=VALUE,VALUE,...
+  std::filesystem::path output;
+  Precision precision = Precision::double_precision;
+  std::optional<std::string> space;
+  std::optional<int> jobs, threads;  // runs at a time; threads of each
   bool overwrite = false, quiet = false;
 };
 
@@ -56,6 +67,7 @@ std::string describe_method(io::Integrator const& integrator);
 
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);
+int sweep_over(SweepOptions const& options);
 int check(CheckOptions const& options);
 int trade_off(TradeOptions const& options);
 int advise_on(AdviseOptions const& options);

@@ -14,13 +14,13 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool quiet)
-    : quiet_(quiet),
+Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, Listener listener)
+    : listener_(listener),
       terminal_(::isatty(STDOUT_FILENO) == 1),
       first_(first),
       steps_(steps),
       sites_(sites),
-      next_(quiet ? std::numeric_limits<std::int64_t>::max() : first + 1) {}
+      next_(listener == Listener::nobody ? std::numeric_limits<std::int64_t>::max() : first + 1) {}
 
 void Progress::show(Step const& step) {
   auto const now = Clock::now();
@@ -29,8 +29,14 @@ void Progress::show(Step const& step) {
   double const rate = static_cast<double>(step.number - first_) / seconds;
   // Looking at the clock costs as much as a small step, so it is done about ten times a second.
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
-  if (pause.count() < (terminal_ ? 0.1 : 5)) return;
+  double const least_pause = listener_ == Listener::program ? 0.2 : terminal_ ? 0.1 : 5;
+  if (pause.count() < least_pause) return;
   shown_ = now;
+  if (listener_ == Listener::program) {
+    fmt::print("{} {}\n", step.number, steps_);
+    std::fflush(stdout);
+    return;
+  }
   double const done = static_cast<double>(step.number) / static_cast<double>(steps_);
   auto const text = fmt::format("{:5.1f} %  step {} of {}  {}spin updates/s  {} left", 100 * done,
                                 step.number, steps_, rate_text(rate * static_cast<double>(sites_)),
@@ -47,7 +53,7 @@ void Progress::show(Step const& step) {
 }
 
 void Progress::close(Summary const& summary, std::int64_t frames, std::string const& file) {
-  if (quiet_) return;
+  if (listener_ != Listener::user) return;
   if (on_line_) fmt::print("\r\x1b[K");
   std::chrono::duration<double> const total = Clock::now() - begin_;
   auto const updates = static_cast<double>(summary.steps) * static_cast<double>(sites_);

@@ -67,7 +67,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         return io::TrajectoryFile(
             path, make_header(typed, scene, options.precision, simulation.exec), options.overwrite);
       },
-      options.quiet);
+      options.listener);
   std::optional<ControlledWatch<Real, Space>> controlled;
   if (scene.integrator.energy_control)
     controlled.emplace(watch, simulation.generator, simulation.spins);
@@ -118,7 +118,7 @@ int run(RunOptions const& options) {
         "--restart: method \"auto\" may choose other steps; accepted: the method and "
         "dt or tolerance that `cayspin advise` names");
   auto const scene = trade::with_method(typed, space, options.precision);
-  if (typed.integrator.method->automatic && !options.quiet)
+  if (typed.integrator.method->automatic && options.listener == Listener::user)
     fmt::print("method auto: {}, {}\n", describe_method(scene.integrator),
                scene.integrator.tolerance
                    ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)
