@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <span>
 #include <string>
 
 namespace cayspin::program {
@@ -11,6 +12,9 @@ bool is_terminal(std::FILE* stream);
 
 /// "[#####...................]"
 std::string bar(double share);
+
+/// Values over time as a row of blocks; empty where the locale has none, or values are not finite.
+std::string sparkline(std::span<double const> values);
 
 /// A line, cut where it would wrap on the terminal.
 std::string fitted(std::string line);

@@ -37,6 +37,11 @@ struct SweepOptions : SceneOptions {
   bool overwrite = false, quiet = false;
 };
 
+struct WatchOptions {
+  std::filesystem::path file;
+  bool once = false;
+};
+
 struct CheckOptions : SceneOptions {
   Precision precision = Precision::double_precision;
   bool json = false;
@@ -68,6 +73,7 @@ std::string describe_method(io::Integrator const& integrator);
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);
 int sweep_over(SweepOptions const& options);
+int watch(WatchOptions const& options);
 int check(CheckOptions const& options);
 int trade_off(TradeOptions const& options);
 int advise_on(AdviseOptions const& options);

@@ -85,6 +85,11 @@ int perform(int argc, char** argv) {
                           "Start again where the file has a sweep, or replace another file");
   sweep_command->add_flag("--quiet", sweep_options.quiet, "No progress and no table");
 
+  WatchOptions watch_options;
+  auto* watch_command = app.add_subcommand("watch", "Follow a run by its trajectory file");
+  watch_command->add_option("FILE", watch_options.file, "Trajectory file (HDF5)")->required();
+  watch_command->add_flag("--once", watch_options.once, "Say how far it is, and end");
+
   CheckOptions check_options;
   auto* check_command = app.add_subcommand(
       "check", "Validate a scene and say what it models, the stable dt, memory and cost");
@@ -134,6 +139,7 @@ int perform(int argc, char** argv) {
   if (auto const status = parse(app, argc, argv)) return *status;
   if (*run_command) return run(run_options);
   if (*sweep_command) return sweep_over(sweep_options);
+  if (*watch_command) return watch(watch_options);
   if (*check_command) return check(check_options);
   if (*trade_command) return trade_off(trade_options);
   if (*advise_command) return advise_on(advise_options);
