@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -27,23 +28,32 @@ FollowedTrajectory::Clock::time_point as_time(std::int64_t seconds, std::uint32_
 
 }  // namespace
 
-void FollowedTrajectory::clear() {
-  steps_.clear();
-  times_.clear();
-  scalars_.clear();
-  seen_ = 0;
-}
-
 void FollowedTrajectory::read_times_of_file() {
   struct statx status {};
   if (::statx(AT_FDCWD, path_.c_str(), 0, STATX_MTIME | STATX_BTIME | STATX_INO, &status) != 0)
     throw_failure(path_, "cannot open the file", std::strerror(errno));
   written_ = as_time(status.stx_mtime.tv_sec, status.stx_mtime.tv_nsec);
+  auto const before = created_;
   created_.reset();
   if ((status.stx_mask & STATX_BTIME) != 0)
     created_ = as_time(status.stx_btime.tv_sec, status.stx_btime.tv_nsec);
-  if (identity_ != status.stx_ino) clear();
+  if (identity_ != status.stx_ino || created_ != before) samples_ = frames_ = {};
   identity_ = status.stx_ino;
+}
+
+void FollowedTrajectory::read_series(hid_t group, Series& series, bool all) const {
+  auto const stored = ScalarSeries::open(group, path_);
+  auto const in_file = stored.size(path_);
+  auto const begin = static_cast<std::int64_t>(series.steps.size());
+  if (in_file < begin)
+    throw_failure(path_, "cannot read the trajectory", "samples are missing that were there");
+  auto const believed = all ? in_file : std::clamp(series.seen, begin, in_file);
+  for (auto const& sample : stored.read(begin, believed, path_)) {
+    series.steps.push_back(sample.step);
+    series.times.push_back(sample.time);
+    series.scalars.push_back(sample.scalars);
+  }
+  series.seen = in_file;
 }
 
 void FollowedTrajectory::look() {
@@ -52,25 +62,10 @@ void FollowedTrajectory::look() {
   auto const file = open_file(path_, Locking::off);
   // `complete` is written last: once it is there, so is all else.
   auto const info = read_header(file.get(), path_);
-  auto series = ScalarSeries::open(file.get(), path_);
+  read_series(file.get(), frames_, info.complete);
   GroupHandle const scalars(
       check(H5Gopen2(file.get(), "scalars", H5P_DEFAULT), path_, "cannot open group scalars"));
-  auto samples = ScalarSeries::open(scalars.get(), path_);
-  bool const of_frames = samples.size(path_) < series.size(path_);
-  if (!of_frames) std::swap(series, samples);
-  if (of_frames != of_frames_) clear();
-  of_frames_ = of_frames;
-  auto const in_file = series.size(path_);
-  auto const begin = static_cast<std::int64_t>(steps_.size());
-  if (in_file < begin) clear();
-  auto const believed = info.complete ? in_file : std::min(seen_, in_file);
-  auto const fresh = believed > begin ? series.read(begin, believed, path_) : std::vector<Sample>();
-  for (auto const& sample : fresh) {
-    steps_.push_back(sample.step);
-    times_.push_back(sample.time);
-    scalars_.push_back(sample.scalars);
-  }
-  seen_ = in_file;
+  read_series(scalars.get(), samples_, info.complete);
   header_ = info.header;
   cost_ = info.cost;
   complete_ = info.complete;

@@ -4,14 +4,7 @@
 
 #include <cayspin/io/sweep.hpp>
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
 #include <csignal>
-#include <functional>
-#include <thread>
 
 namespace cayspin::program::test {
 namespace {
@@ -50,29 +43,6 @@ class Sweeping : public ProgramTest {
 
   std::vector<double> spins(char const* file, std::int64_t run) const {
     return read_dataset(file, "/runs/" + io::swept_run_name(run) + "/spins").values;
-  }
-
-  /// Starts a sweep, and kills it once `when` is true of its file.
-  void kill_when(Arguments const& all, std::function<bool()> const& when) const {
-    pid_t const child = ::fork();
-    if (child == 0) {
-      if (::chdir(folder_.c_str()) != 0) ::_exit(121);
-      int const nowhere = ::open("/dev/null", O_WRONLY);
-      ::dup2(nowhere, STDOUT_FILENO);
-      std::vector<char*> words{const_cast<char*>("cayspin")};
-      for (auto const& word : all) words.push_back(const_cast<char*>(word.c_str()));
-      words.push_back(nullptr);
-      ::execv(CAYSPIN_PROGRAM, words.data());
-      ::_exit(122);
-    }
-    auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!when() && std::chrono::steady_clock::now() < deadline)
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    EXPECT_TRUE(when());
-    ::kill(child, SIGKILL);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    EXPECT_TRUE(WIFSIGNALED(status)) << "it ended before it was killed";
   }
 };
 
@@ -115,18 +85,20 @@ TEST_F(Sweeping, GivesTheSameBitsSideBySide) {
 }
 
 TEST_F(Sweeping, GoesOnAfterAKill) {
-  // The runs with 300000 steps take long enough to be killed in one of them.
+  // The runs with 200000 steps take long enough to be killed in one of them.
   auto const all = [](char const* file) {
     return Arguments{
         "sweep",       "chain.toml", "--output", file,
-        "--jobs",      "2",          "--over",   "integrator.steps=20,30,300000,300001",
+        "--jobs",      "2",          "--over",   "integrator.steps=20,30,200000,200001",
         "--threads",   "1",          "--set",    "output.every=500000",
         "--precision", "single"};
   };
   auto const file = in_folder("killed.h5");
-  kill_when(all("killed.h5"), [&] {
+  auto const sweep_process = begin(all("killed.h5"));
+  EXPECT_TRUE(eventually([&] {
     return fs::exists(io::swept_run_file(file, 2)) && fs::exists(io::swept_run_file(file, 3));
-  });
+  }));
+  EXPECT_EQ(end(sweep_process, SIGKILL), 128 + SIGKILL) << "it ended before it was killed";
   auto const torn = io::read_sweep(file);  // it is whole
   EXPECT_FALSE(torn.complete);
   auto const early = io::read_info(io::swept_run_file(file, 0)).cost.wall_seconds;

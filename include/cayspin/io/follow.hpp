@@ -33,27 +33,34 @@ class FollowedTrajectory {
   RunCost const& cost() const { return cost_; }
 
   /// The samples of /scalars, or the scalars of the frames where there are more of these.
-  std::vector<std::int64_t> const& steps() const { return steps_; }
-  std::vector<double> const& times() const { return times_; }
-  std::vector<Scalars> const& scalars() const { return scalars_; }
+  std::vector<std::int64_t> const& steps() const { return longer().steps; }
+  std::vector<double> const& times() const { return longer().times; }
+  std::vector<Scalars> const& scalars() const { return longer().scalars; }
 
   /// When the file was last written, and created where the file system knows.
   Clock::time_point written() const { return written_; }
   std::optional<Clock::time_point> created() const { return created_; }
 
  private:
+  struct Series {
+    std::int64_t seen = 0;  // in the file at the last look
+    std::vector<std::int64_t> steps;
+    std::vector<double> times;
+    std::vector<Scalars> scalars;
+  };
+
+  Series const& longer() const {
+    return frames_.steps.size() > samples_.steps.size() ? frames_ : samples_;
+  }
   void read_times_of_file();
-  void clear();
+  void read_series(std::int64_t group, Series& series, bool all) const;
 
   std::filesystem::path path_;
   std::uint64_t identity_ = 0;
   TrajectoryHeader header_;
   RunCost cost_;
-  bool complete_ = false, of_frames_ = false;
-  std::int64_t seen_ = 0;  // samples in the file at the last look
-  std::vector<std::int64_t> steps_;
-  std::vector<double> times_;
-  std::vector<Scalars> scalars_;
+  bool complete_ = false;
+  Series samples_, frames_;
   Clock::time_point written_{};
   std::optional<Clock::time_point> created_;
 };

@@ -11,8 +11,8 @@ namespace cayspin::io {
 /// k strides[0] + j strides[1] + i strides[2] + c strides[3] numbers after `data`.
 struct HostVectors {
   void* data = nullptr;
-  bool is_double = true;                 ///< numbers are double, otherwise float
-  std::array<std::int64_t, 3> shape{};   ///< nz, ny, nx
+  bool is_double = true;                ///< numbers are double, otherwise float
+  std::array<std::int64_t, 3> shape{};  ///< nz, ny, nx
   std::array<std::int64_t, 4> strides{};
 };
 
