@@ -55,8 +55,9 @@ std::string sparkline(std::span<double const> values) {
 
 std::string fitted(std::string line) {
   winsize size{};
-  bool const known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  std::size_t const width = known ? size.ws_col : 80;
+  for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
+    if (size.ws_col == 0 && ::ioctl(stream, TIOCGWINSZ, &size) != 0) size = {};
+  std::size_t const width = size.ws_col > 0 ? size.ws_col : 80;
   // Columns, not bytes: continuation bytes of UTF-8 take none.
   std::size_t column = 0;
   for (std::size_t byte = 0; byte < line.size(); ++byte) {

@@ -52,6 +52,7 @@ struct TryOptions : SceneOptions {
   std::optional<Precision> precision;
   std::optional<std::string> space;
   std::optional<int> threads;
+  bool quiet = false;
 };
 
 struct TradeOptions : TryOptions {

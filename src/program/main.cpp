@@ -101,6 +101,7 @@ int perform(int argc, char** argv) {
       "trade", "Measure error against time and evaluations for every method on a scene");
   add_scene_options(*trade_command, trade_options, "double or single alone (default: both)");
   add_space_options(*trade_command, trade_options);
+  trade_command->add_flag("--quiet", trade_options.quiet, "No progress");
   trade_command->add_option("--seconds", trade_options.seconds, "Longest run (default: 10)")
       ->check(CLI::PositiveNumber);
   auto* json = trade_command->add_flag("--json", trade_options.json, "The numbers as JSON");
@@ -121,6 +122,7 @@ int perform(int argc, char** argv) {
                                 CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
       ->type_name("TIME");
   add_space_options(*advise_command, advise_options);
+  advise_command->add_flag("--quiet", advise_options.quiet, "No progress");
 
   auto* methods_command = app.add_subcommand("methods", "List the integrators and their options");
 

@@ -34,6 +34,8 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
+  void draw(double done, std::string const& text);
+
   Listener listener_;
   bool terminal_;
   std::int64_t first_, steps_, sites_, next_;

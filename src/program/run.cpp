@@ -117,7 +117,9 @@ int run(RunOptions const& options) {
     throw UsageError(
         "--restart: method \"auto\" may choose other steps; accepted: the method and "
         "dt or tolerance that `cayspin advise` names");
-  auto const scene = trade::with_method(typed, space, options.precision);
+  bool const silent = options.listener != Listener::user;
+  auto const scene = trade::with_method(typed, space, options.precision,
+                                        trade::TrialProgress(silent, true).on_try());
   if (typed.integrator.method->automatic && options.listener == Listener::user)
     fmt::print("method auto: {}, {}\n", describe_method(scene.integrator),
                scene.integrator.tolerance

@@ -110,6 +110,7 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
       auto const arguments = arguments_of(options, grid, run, session.run_file(run), sharing);
       jobs.push_back({run, std::make_unique<Child>(arguments, sharing.jobs > 1)});
     }
+    display.show(running());
     std::vector<pollfd> polled;
     for (auto const& job : jobs) job.child->add_to(polled);
     ::poll(polled.data(), polled.size(), 200);
@@ -131,7 +132,6 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
       session.take(job.run, status, job.child->message());
       display.ended(job.run, session.run(job.run), running());
     }
-    display.show(running());
   }
   display.clear();
   return true;
