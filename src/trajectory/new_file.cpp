@@ -65,7 +65,7 @@ NewFile::NewFile(fs::path path, bool overwrite, bool always_beside)
   if (replaces && !overwrite)
     throw_failure(path_, action, "it exists (choose another name, or overwrite with --overwrite)");
   if (replaces) {
-    require_replaceable(path_);
+    if (!always_beside) require_replaceable(path_);
     target_ = fs::canonical(path_);
   }
   bool const beside = replaces || always_beside;

@@ -8,8 +8,8 @@
 namespace cayspin::io {
 
 /// An HDF5 file in the making, which takes its place only when commit() says so. A new name is
-/// written directly, unless `always_beside`; an existing file stays untouched beside PATH.partial
-/// until then.
+/// written directly; an existing file stays untouched beside PATH.partial until then. With
+/// `always_beside` a new name is written so, too, and an existing file may have readers.
 class NewFile {
  public:
   NewFile(std::filesystem::path path, bool overwrite, bool always_beside = false);

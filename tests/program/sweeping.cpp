@@ -4,6 +4,8 @@
 
 #include <cayspin/io/sweep.hpp>
 
+#include <hdf5.h>
+
 #include <csignal>
 
 namespace cayspin::program::test {
@@ -105,7 +107,10 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
   EXPECT_GT(early, 0);
   expect_refused(all("killed.h5.runs/none/killed.h5"), "does not exist");
 
+  // A reader who has it open is no obstacle.
+  hid_t const reader = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   auto const outcome = expect_status(0, all("killed.h5"));
+  H5Fclose(reader);
   EXPECT_TRUE(contains(outcome.output, "1 of 2  run 000"));
   expect_status(0, all("whole.h5"));
   auto const sweep = io::read_sweep(file);
@@ -175,6 +180,26 @@ TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
   expect_refused(arguments("text.h5"), "text.h5");
   run(chain_scene());
   expect_refused(arguments("out.h5"), "it exists and has no sweep");
+}
+
+TEST_F(Sweeping, OnlyOneProcessHasAFile) {
+  Arguments const all{"sweep",  "chain.toml", "--output", "busy.h5",
+                      "--jobs", "1",          "--over",   "integrator.steps=1000000000"};
+  auto const first = begin(all);
+  EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(in_folder("busy.h5"), 0)); }));
+  expect_refused(all, "another sweep is writing it");
+  auto replacing = all;
+  replacing.emplace_back("--overwrite");
+  expect_refused(replacing, "another sweep is writing it");
+  EXPECT_EQ(end(first, SIGTERM), 130);
+
+  auto const run = begin({"run", "chain.toml", "--quiet", "--output", "run.h5", "--set",
+                          "integrator.steps=1000000000"});
+  EXPECT_TRUE(eventually([&] { return start({"watch", "run.h5", "--once"}).status == 0; }));
+  expect_refused(
+      {"sweep", "chain.toml", "--output", "run.h5", "--overwrite", "--over", "integrator.steps=1"},
+      "another program is writing it");
+  end(run, SIGKILL);
 }
 
 TEST_F(Sweeping, WrongUsesAreOneLine) {

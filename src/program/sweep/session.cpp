@@ -4,6 +4,8 @@
 #include "program/progress.hpp"
 #include "simulation/failure.hpp"
 
+#include <cayspin/io/follow.hpp>
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 
 namespace cayspin::program::sweep {
 namespace {
@@ -49,25 +52,17 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
     throw UsageError(
         fmt::format("--output {}: the folder {} does not exist", file_.string(), parent.string()));
   bool const exists = fs::exists(file_, error);
+  if (exists && !overwrite) require_same_sweep();
+  if (exists && overwrite) require_replaceable();
+  lock_folder();
   if (exists && !overwrite) {
-    if (!io::is_sweep(file_))
-      throw UsageError(
-          fmt::format("--output {}: it exists and has no sweep; accepted: another "
-                      "file, or --overwrite",
-                      file_.string()));
+    // Once more: it may have come to its end meanwhile.
     auto const before = io::read_sweep(file_);
-    if (auto const other = difference(info_.header, before.header); !other.empty())
-      throw UsageError(
-          fmt::format("--output {}: it has a sweep {}; accepted: the same command, "
-                      "another file, or --overwrite",
-                      file_.string(), other));
     info_.runs = before.runs;
     info_.complete = before.complete;
     info_.one_file = before.one_file;
-    if (info_.complete && info_.one_file && !fs::exists(folder_, error)) return;
+    if (info_.one_file) return;
   }
-  lock_folder();
-  if (info_.complete && info_.one_file) return;
   if (!exists || overwrite)
     for (auto const& entry : fs::directory_iterator(folder_))
       if (entry.path().extension() == ".h5") fs::remove(entry.path());
@@ -79,6 +74,29 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
     run = found;
   }
   write();
+}
+
+void Session::require_same_sweep() const {
+  if (!io::is_sweep(file_))
+    throw UsageError(
+        fmt::format("--output {}: it exists and has no sweep; accepted: another file, or "
+                    "--overwrite",
+                    file_.string()));
+  auto const other = difference(info_.header, io::read_sweep(file_).header);
+  if (other.empty()) return;
+  throw UsageError(
+      fmt::format("--output {}: it has a sweep {}; accepted: the same command, another file, or "
+                  "--overwrite",
+                  file_.string(), other));
+}
+
+void Session::require_replaceable() const {
+  if (!fs::is_regular_file(file_))
+    throw UsageError(fmt::format("--output {}: it is not a regular file", file_.string()));
+  if (::access(file_.c_str(), W_OK) != 0)
+    throw UsageError(fmt::format("--output {}: {}", file_.string(), std::strerror(errno)));
+  if (io::is_being_written(file_) == true)
+    throw UsageError(fmt::format("--output {}: another program is writing it", file_.string()));
 }
 
 Session::~Session() {

@@ -43,6 +43,8 @@ class Session {
   static std::size_t index(std::int64_t number) { return static_cast<std::size_t>(number); }
   bool read_run(std::int64_t number, io::SweptRun& run) const;
   bool is_finished() const;
+  void require_same_sweep() const;
+  void require_replaceable() const;
   void lock_folder();
   void remove_folder();
 
