@@ -10,14 +10,14 @@ std::string action(char const* verb, char const* name) {
   return std::string("cannot ") + verb + " attribute " + name;
 }
 
+}  // namespace
+
 DatatypeHandle text_type() {
   DatatypeHandle type(H5Tcopy(H5T_C_S1));
   H5Tset_size(type.get(), H5T_VARIABLE);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
   return type;
 }
-
-}  // namespace
 
 void RootAttributes::create(char const* name, hid_t stored, hid_t given, void const* value) const {
   DataspaceHandle const scalar(H5Screate(H5S_SCALAR));

@@ -9,6 +9,9 @@
 
 namespace cayspin::io {
 
+/// UTF-8 of variable length.
+DatatypeHandle text_type();
+
 /// The attributes of a file's root group.
 class RootAttributes {
  public:

@@ -5,14 +5,18 @@
 
 namespace cayspin::io {
 
-FileHandle open_file(std::filesystem::path const& path) {
+FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   std::string const action = "cannot open the file";
   // HDF5 would wait for the other end of a pipe.
   std::error_code ignored;
   auto const status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     throw_failure(path, action, "it is not a regular file");
-  FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+  PropertyHandle const access(H5Pcreate(H5P_FILE_ACCESS));
+#if H5_VERSION_GE(1, 10, 7)
+  if (locking == Locking::off) H5Pset_file_locking(access.get(), false, true);
+#endif
+  FileHandle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
   if (file.get() >= 0) return file;
   auto reason = failure_reason();
   if (reason == "file signature not found") reason = "it is not an HDF5 file";

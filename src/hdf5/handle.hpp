@@ -43,7 +43,11 @@ using DatatypeHandle = Handle<H5Tclose>;
 using AttributeHandle = Handle<H5Aclose>;
 using PropertyHandle = Handle<H5Pclose>;
 
+/// Is a file that is read locked against writers? Without, what another process writes meanwhile
+/// may be read half written.
+enum class Locking { on, off };
+
 /// Opens an existing file for reading.
-FileHandle open_file(std::filesystem::path const& path);
+FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
 
 }  // namespace cayspin::io

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "progress.hpp"
 #include "simulation/plan.hpp"
 
 #include <cayspin/io/ovf.hpp>
@@ -25,7 +26,22 @@ struct RunOptions : SceneOptions {
   std::optional<std::filesystem::path> output, restart;
   std::optional<std::string> space;
   std::optional<int> threads, device;
+  bool overwrite = false;
+  Listener listener = Listener::user;
+};
+
+struct SweepOptions : SceneOptions {
+  std::vector<std::string> over;  // key.path=VALUE,VALUE,...
+  std::filesystem::path output;
+  Precision precision = Precision::double_precision;
+  std::optional<std::string> space;
+  std::optional<int> jobs, threads;  // runs at a time; threads of each
   bool overwrite = false, quiet = false;
+};
+
+struct WatchOptions {
+  std::filesystem::path file;
+  bool once = false;
 };
 
 struct CheckOptions : SceneOptions {
@@ -38,6 +54,7 @@ struct TryOptions : SceneOptions {
   std::optional<Precision> precision;
   std::optional<std::string> space;
   std::optional<int> threads;
+  bool quiet = false;
 };
 
 struct TradeOptions : TryOptions {
@@ -69,6 +86,8 @@ std::string describe_method(io::Scene const& scene);
 
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options);
+int sweep_over(SweepOptions const& options);
+int watch(WatchOptions const& options);
 int check(CheckOptions const& options);
 int trade_off(TradeOptions const& options);
 int advise_on(AdviseOptions const& options);

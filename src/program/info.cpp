@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
+#include "sweep/table.hpp"
 
 #include <cayspin/io/trajectory.hpp>
 
@@ -25,9 +26,23 @@ void print_scene(char const* name, std::string const& text) {
   fmt::print("{}:\n{}{}", name, text, text.ends_with('\n') ? "" : "\n");
 }
 
+int print_sweep(std::filesystem::path const& file) {
+  auto const sweep = io::read_sweep(file);
+  auto const& header = sweep.header;
+  fmt::print("{:<12} {}, a sweep of {} runs\n", "file", file.string(), sweep.runs.size());
+  fmt::print("{:<12} {}\n", "complete",
+             sweep.complete ? "yes" : "no: the same command goes on with it");
+  fmt::print("{:<12} {}\n{:<12} {}\n", "precision", header.precision, "space", header.space);
+  fmt::print("{:<12} cayspin {} ({})\n", "written by", header.cayspin_version, header.git_commit);
+  sweep::print_table(sweep);
+  print_scene("scene of run 0000", header.scene_text);
+  return Status::done;
+}
+
 }  // namespace
 
 int info(std::filesystem::path const& file) {
+  if (io::is_sweep(file)) return print_sweep(file);
   auto const info = io::read_info(file);
   auto const& header = info.header;
   fmt::print("{:<12} {} (format {})\n", "file", file.string(), info.format);

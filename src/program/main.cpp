@@ -66,7 +66,34 @@ int perform(int argc, char** argv) {
       ->check(CLI::Range(0, 65536));
   run_command->add_option("--restart", run_options.restart,
                           "Go on from the last frame of a trajectory file");
-  run_command->add_flag("--quiet", run_options.quiet, "No progress");
+  run_command->add_flag_callback(
+      "--quiet", [&] { run_options.listener = Listener::nobody; }, "No progress");
+  run_command
+      ->add_flag_callback("--report-progress", [&] { run_options.listener = Listener::program; })
+      ->group("");  // what `sweep` starts its runs with
+
+  SweepOptions sweep_options;
+  auto* sweep_command = app.add_subcommand(
+      "sweep", "Run a scene with all combinations of some keys' values, into one file (HDF5)");
+  add_scene_options(*sweep_command, sweep_options, "double (default) or single");
+  sweep_command
+      ->add_option("--over", sweep_options.over,
+                   "A key and its values: key.path=VALUE,VALUE,..., TOML values")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUES");
+  sweep_command->add_option("--output", sweep_options.output, "The file of all runs")->required();
+  sweep_command->add_option("--jobs", sweep_options.jobs, "Runs at a time")
+      ->check(CLI::Range(1, 65536));
+  add_space_options(*sweep_command, sweep_options);
+  sweep_command->add_flag("--overwrite", sweep_options.overwrite,
+                          "Start again where the file has a sweep, or replace another file");
+  sweep_command->add_flag("--quiet", sweep_options.quiet, "No progress and no table");
+
+  WatchOptions watch_options;
+  auto* watch_command = app.add_subcommand("watch", "Follow a run by its trajectory file");
+  watch_command->add_option("FILE", watch_options.file, "Trajectory file (HDF5)")->required();
+  watch_command->add_flag("--once", watch_options.once, "Say how far it is, and end");
 
   CheckOptions check_options;
   auto* check_command = app.add_subcommand(
@@ -79,6 +106,7 @@ int perform(int argc, char** argv) {
       "trade", "Measure error against time and evaluations for every method on a scene");
   add_scene_options(*trade_command, trade_options, "double or single alone (default: both)");
   add_space_options(*trade_command, trade_options);
+  trade_command->add_flag("--quiet", trade_options.quiet, "No progress");
   trade_command->add_option("--seconds", trade_options.seconds, "Longest run (default: 10)")
       ->check(CLI::PositiveNumber);
   auto* json = trade_command->add_flag("--json", trade_options.json, "The numbers as JSON");
@@ -100,6 +128,7 @@ int perform(int argc, char** argv) {
       ->type_name("TIME");
   advise_command->add_flag("--json", advise_options.json, "The answer as JSON");
   add_space_options(*advise_command, advise_options);
+  advise_command->add_flag("--quiet", advise_options.quiet, "No progress");
 
   auto* methods_command = app.add_subcommand("methods", "List the integrators and their options");
 
@@ -133,6 +162,8 @@ int perform(int argc, char** argv) {
     if (argc > 1 && argv[1] == command) become_sibling("cayspin-" + command, argv);
   if (auto const status = parse(app, argc, argv)) return *status;
   if (*run_command) return run(run_options);
+  if (*sweep_command) return sweep_over(sweep_options);
+  if (*watch_command) return watch(watch_options);
   if (*check_command) return check(check_options);
   if (*trade_command) return trade_off(trade_options);
   if (*advise_command) return advise_on(advise_options);

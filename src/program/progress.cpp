@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "progress.hpp"
 
+#include "bar.hpp"
 #include "simulation/text.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -14,13 +14,21 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool quiet)
-    : quiet_(quiet),
-      terminal_(::isatty(STDOUT_FILENO) == 1),
+Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, Listener listener)
+    : listener_(listener),
+      terminal_(is_terminal(stdout)),
       first_(first),
       steps_(steps),
       sites_(sites),
-      next_(quiet ? std::numeric_limits<std::int64_t>::max() : first + 1) {}
+      next_(listener == Listener::nobody ? std::numeric_limits<std::int64_t>::max()
+            : terminal_                  ? first
+                                         : first + 1) {}
+
+void Progress::draw(double done, std::string const& text) {
+  fmt::print("\r{}\x1b[K", fitted(fmt::format("{} {}", bar(done), text)));
+  std::fflush(stdout);
+  on_line_ = true;
+}
 
 void Progress::show(Step const& step) {
   auto const now = Clock::now();
@@ -29,25 +37,31 @@ void Progress::show(Step const& step) {
   double const rate = static_cast<double>(step.number - first_) / seconds;
   // Looking at the clock costs as much as a small step, so it is done about ten times a second.
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
-  if (pause.count() < (terminal_ ? 0.1 : 5)) return;
+  double const least_pause = listener_ == Listener::program ? 0.2 : terminal_ ? 0.1 : 5;
+  // The first step may take long.
+  if (step.number == first_ && listener_ == Listener::user && steps_ > first_)
+    draw(0, fmt::format("step {} of {}", first_, steps_));
+  if (pause.count() < least_pause) return;
   shown_ = now;
+  if (listener_ == Listener::program) {
+    fmt::print("{} {}\n", step.number, steps_);
+    std::fflush(stdout);
+    return;
+  }
   double const done = static_cast<double>(step.number) / static_cast<double>(steps_);
   auto const text = fmt::format("{:5.1f} %  step {} of {}  {}spin updates/s  {} left", 100 * done,
                                 step.number, steps_, rate_text(rate * static_cast<double>(sites_)),
                                 duration_text(static_cast<double>(steps_ - step.number) / rate));
   if (terminal_) {
-    constexpr int width = 24;
-    int const filled = static_cast<int>(done * width);
-    fmt::print("\r[{:#<{}}{:.<{}}] {}\x1b[K", "", filled, "", width - filled, text);
-    on_line_ = true;
+    draw(done, text);
   } else {
     fmt::print("{}\n", text);
+    std::fflush(stdout);
   }
-  std::fflush(stdout);
 }
 
 void Progress::close(Summary const& summary, std::int64_t frames, std::string const& file) {
-  if (quiet_) return;
+  if (listener_ != Listener::user) return;
   if (on_line_) fmt::print("\r\x1b[K");
   std::chrono::duration<double> const total = Clock::now() - begin_;
   auto const updates = static_cast<double>(summary.steps) * static_cast<double>(sites_);

@@ -16,10 +16,14 @@ void catch_signals();
 /// True once one of them came.
 bool interrupt_requested();
 
+/// To whom a run says how far it is.
+enum class Listener { nobody, user, program };
+
 /// Tells on standard output how far a run is: a bar on a terminal, otherwise now and then a line.
+/// For a program, a line "STEP STEPS" some times a second.
 class Progress {
  public:
-  Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool quiet);
+  Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, Listener listener);
 
   bool due(Step const& step) const { return step.number >= next_; }
   void show(Step const& step);
@@ -30,7 +34,10 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
-  bool quiet_, terminal_;
+  void draw(double done, std::string const& text);
+
+  Listener listener_;
+  bool terminal_;
   std::int64_t first_, steps_, sites_, next_;
   Clock::time_point begin_ = Clock::now(), shown_ = begin_;
   bool on_line_ = false;

@@ -77,7 +77,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         return io::RunOutput(path, make_header(typed, scene, options.precision, simulation.exec),
                              output_options(scene, options));
       },
-      options.quiet);
+      options.listener);
   std::optional<ControlledWatch<Real, Space>> controlled;
   if (scene.integrator.energy_control)
     controlled.emplace(watch, simulation.generator, simulation.spins);
@@ -131,8 +131,10 @@ int run(RunOptions const& options) {
     throw UsageError(
         "--restart: method \"auto\" may choose other steps; accepted: the method and "
         "dt or tolerance that `cayspin advise` names");
-  auto const scene = trade::with_method(typed, space, options.precision);
-  if (typed.integrator.method->automatic && !options.quiet)
+  bool const silent = options.listener != Listener::user;
+  auto const scene = trade::with_method(typed, space, options.precision,
+                                         trade::TrialProgress(silent, true).on_try());
+  if (typed.integrator.method->automatic && options.listener == Listener::user)
     fmt::print("method auto: {}, {}\n", describe_method(scene),
                scene.integrator.tolerance
                    ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)

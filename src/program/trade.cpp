@@ -108,7 +108,7 @@ struct Verdict {
 // `pilot`: of the scene up to the reference's horizon, where the ladders end.
 Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
               double asked, std::optional<Precision> precision) {
-  Verdict verdict{asked, advise(pilot, {asked, {}, precision}), 0, 0, 0, {}};
+  Verdict verdict{asked, advise(pilot, {asked, {}, precision, {}}), 0, 0, 0, {}};
   verdict.best = std::numeric_limits<double>::infinity();
   for (auto const& ladder : ladders) {
     double const seconds = seconds_to(ladder, asked);
@@ -205,13 +205,19 @@ int trade_off(TradeOptions const& options) {
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);
+  TrialProgress progress(options.quiet, !options.json);
   auto const reference = converged_reference(pilot, options.seconds);
   LadderLimits limits;
+  limits.on_try = progress.on_try();
   limits.seconds = options.seconds;
   limits.least_error = std::max(limits.least_error, 10 * reference.uncertainty);
   std::vector<Ladder> ladders;
-  for (auto const& candidate : candidates(scene, options.precision))
+  auto const all = candidates(scene, options.precision);
+  for (auto const& candidate : all) {
+    limits.share = static_cast<double>(ladders.size()) / static_cast<double>(all.size());
     ladders.push_back(climb(pilot, candidate, reference, ladders, limits));
+  }
+  progress.clear();
   mark_front(ladders);
   if (options.json)
     fmt::print("{}\n", as_json(pilot, reference, ladders).dump(1));
@@ -234,7 +240,10 @@ int advise_on(AdviseOptions const& options) {
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);
-  auto const advised = advise(pilot, {options.error, options.budget, options.precision});
+  TrialProgress progress(options.quiet, !options.json);
+  auto const advised =
+      advise(pilot, {options.error, options.budget, options.precision, progress.on_try()});
+  progress.clear();
   if (!options.json) {
     fmt::print("scene       {}\n", scene.path.string());
     print_horizon(pilot, advised.horizon, advised.why_shorter);

@@ -43,7 +43,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
   /// `first`: the step after which the run begins.
   Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
-        std::int64_t first, OpenFile open_file, bool quiet)
+        std::int64_t first, OpenFile open_file, Listener listener)
       : first_(first),
         generator_(generator),
         output_(scene.output),
@@ -51,7 +51,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
-        progress_(first, scene.integrator.steps, spins.sites(), quiet),
+        progress_(first, scene.integrator.steps, spins.sites(), listener),
         frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())) {
     if (until_torque_) torque_.emplace(generator.precession_alone());
   }

@@ -114,14 +114,14 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   return memory;
 }
 
+}  // namespace
+
 std::int64_t available_memory() {
   std::ifstream file("/proc/meminfo");
   for (std::string line; std::getline(file, line);)
     if (line.starts_with("MemAvailable:")) return std::stoll(line.substr(13)) * 1024;
   return std::numeric_limits<std::int64_t>::max();
 }
-
-}  // namespace
 
 Plan make_plan(io::Scene const& scene, Precision precision) {
   auto const lattice = make_lattice(scene);

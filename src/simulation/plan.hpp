@@ -44,6 +44,9 @@ Plan make_plan(io::Scene const& scene, Precision precision);
 /// turns spins by more than 2 radians.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units = {});
 
+/// Bytes of memory that are free.
+std::int64_t available_memory();
+
 /// Is there memory for the run?
 bool fits(Plan const& plan);
 

@@ -54,7 +54,7 @@ void create_with_room(fs::path const& written, fs::path const& path, bool may_ex
 
 }  // namespace
 
-NewFile::NewFile(fs::path path, bool overwrite)
+NewFile::NewFile(fs::path path, bool overwrite, bool always_beside)
     : path_(std::move(path)), target_(path_), written_(path_) {
   require_folder(path_);
   std::error_code error;
@@ -65,12 +65,12 @@ NewFile::NewFile(fs::path path, bool overwrite)
   if (replaces && !overwrite)
     throw_failure(path_, action, "it exists (choose another name, or overwrite with --overwrite)");
   if (replaces) {
-    require_replaceable(path_);
+    if (!always_beside) require_replaceable(path_);
     target_ = fs::canonical(path_);
-    written_ = target_;
-    written_ += ".partial";
   }
-  create_with_room(written_, path_, replaces);
+  bool const beside = replaces || always_beside;
+  if (beside) written_ = target_.string() + ".partial";
+  create_with_room(written_, path_, beside);
   file_ = FileHandle(H5Fcreate(written_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
   if (file_.get() >= 0) return;
   auto const reason = failure_reason();

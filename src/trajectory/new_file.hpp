@@ -8,10 +8,11 @@
 namespace cayspin::io {
 
 /// An HDF5 file in the making, which takes its place only when commit() says so. A new name is
-/// written directly; an existing file stays untouched beside PATH.partial until then.
+/// written directly; an existing file stays untouched beside PATH.partial until then. With
+/// `always_beside` a new name is written so, too, and an existing file may have readers.
 class NewFile {
  public:
-  NewFile(std::filesystem::path path, bool overwrite);
+  NewFile(std::filesystem::path path, bool overwrite, bool always_beside = false);
   /// Uncommitted: removes what the constructor created.
   ~NewFile();
   NewFile(NewFile const&) = delete;

@@ -26,15 +26,17 @@ auto column(std::vector<Sample> const& samples, Member const& member) {
   return values;
 }
 
-// The first `count` rows; `inner` are the extents of a row.
+// The rows from `begin` to `end`; `inner` are the extents of a row.
 template <class Value>
-std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t count, Extents const& inner,
-                               std::filesystem::path const& path) {
-  std::vector<Value> values(count);
-  if (count == 0) return values;
-  Extents extents{static_cast<hsize_t>(count)};
+std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, std::int64_t end,
+                               Extents const& inner, std::filesystem::path const& path) {
+  std::vector<Value> values(end - begin);
+  if (values.empty()) return values;
+  Extents extents{values.size()};
   extents.insert(extents.end(), inner.begin(), inner.end());
-  read_block(dataset, type, Extents(extents.size(), 0), extents, values.data(), path);
+  Extents from(extents.size(), 0);
+  from[0] = static_cast<hsize_t>(begin);
+  read_block(dataset, type, from, extents, values.data(), path);
   return values;
 }
 
@@ -87,16 +89,19 @@ std::int64_t ScalarSeries::size(std::filesystem::path const& path) const {
   return static_cast<std::int64_t>(shortest);
 }
 
-std::vector<Sample> ScalarSeries::read(std::int64_t count,
+std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
                                        std::filesystem::path const& path) const {
-  auto const times = read_column<double>(time_.get(), H5T_NATIVE_DOUBLE, count, {}, path);
-  auto const steps = read_column<std::int64_t>(step_.get(), H5T_NATIVE_INT64, count, {}, path);
-  auto const energies = read_column<double>(energy_.get(), H5T_NATIVE_DOUBLE, count, {}, path);
-  auto const defects = read_column<double>(norm_defect_.get(), H5T_NATIVE_DOUBLE, count, {}, path);
-  auto const means =
-      read_column<std::array<double, 3>>(magnetization_.get(), H5T_NATIVE_DOUBLE, count, {3}, path);
+  auto const read = [&]<class Value>(DatasetHandle const& dataset, hid_t type, Extents const& inner,
+                                     Value) {
+    return read_column<Value>(dataset.get(), type, begin, end, inner, path);
+  };
+  auto const times = read(time_, H5T_NATIVE_DOUBLE, {}, double());
+  auto const steps = read(step_, H5T_NATIVE_INT64, {}, std::int64_t());
+  auto const energies = read(energy_, H5T_NATIVE_DOUBLE, {}, double());
+  auto const defects = read(norm_defect_, H5T_NATIVE_DOUBLE, {}, double());
+  auto const means = read(magnetization_, H5T_NATIVE_DOUBLE, {3}, std::array<double, 3>());
   std::vector<Sample> samples;
-  for (std::int64_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < times.size(); ++i)
     samples.push_back({steps[i], times[i], {energies[i], defects[i], means[i]}});
   return samples;
 }

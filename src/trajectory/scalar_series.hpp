@@ -28,7 +28,12 @@ class ScalarSeries {
 
   /// Samples that are whole: the shortest of the datasets counts.
   std::int64_t size(std::filesystem::path const& path) const;
-  std::vector<Sample> read(std::int64_t count, std::filesystem::path const& path) const;
+  /// Of these samples, the first `count`, or those from `begin` to `end`.
+  std::vector<Sample> read(std::int64_t count, std::filesystem::path const& path) const {
+    return read(0, count, path);
+  }
+  std::vector<Sample> read(std::int64_t begin, std::int64_t end,
+                           std::filesystem::path const& path) const;
 
  private:
   DatasetHandle time_, step_, energy_, norm_defect_, magnetization_;

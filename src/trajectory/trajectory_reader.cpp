@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "trajectory_reader.hpp"
+
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
@@ -25,10 +27,8 @@ Units read_units(RootAttributes const& attributes) {
 
 }  // namespace
 
-TrajectoryInfo read_info(std::filesystem::path const& path) {
-  QuietErrors const quiet;
-  auto const file = open_file(path);
-  RootAttributes const attributes(file.get(), path);
+TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
+  RootAttributes const attributes(file, path);
   TrajectoryInfo info;
   info.path = path;
   info.format = static_cast<int>(attributes.read_integer("format"));
@@ -50,13 +50,20 @@ TrajectoryInfo read_info(std::filesystem::path const& path) {
   info.cost.wall_seconds = attributes.read_real("wall_seconds");
   info.cost.step_seconds = attributes.read_real("step_seconds");
   info.complete = attributes.read_integer("complete") == 1;
-
-  auto const spins = open_dataset(file.get(), "spins", 5, path);
+  auto const spins = open_dataset(file, "spins", 5, path);
   auto const extents = dataset_extents(spins.get(), path);
   for (int axis = 0; axis < 3; ++axis)
     info.header.shape[axis] = static_cast<std::int64_t>(extents[3 - axis]);
+  info.frames = static_cast<std::int64_t>(extents[0]);
+  return info;
+}
+
+TrajectoryInfo read_info(std::filesystem::path const& path) {
+  QuietErrors const quiet;
+  auto const file = open_file(path);
+  auto info = read_header(file.get(), path);
   auto const series = ScalarSeries::open(file.get(), path);
-  info.frames = std::min(static_cast<std::int64_t>(extents[0]), series.size(path));
+  info.frames = std::min(info.frames, series.size(path));
   for (auto const& sample : series.read(info.frames, path)) {
     info.frame_steps.push_back(sample.step);
     info.frame_times.push_back(sample.time);

@@ -36,12 +36,13 @@ void limit(int resource, long value) {
 }
 
 [[noreturn]] void become_program(fs::path const& folder, Arguments const& arguments,
-                                 Treatment const& treatment) {
+                                 Treatment const& treatment, char const* output = "stdout",
+                                 char const* errors = "stderr") {
   auto const redirect = [&](char const* name, int to) {
     ::dup2(::open((folder / name).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), to);
   };
-  redirect("stdout", STDOUT_FILENO);
-  redirect("stderr", STDERR_FILENO);
+  redirect(output, STDOUT_FILENO);
+  redirect(errors, STDERR_FILENO);
   if (::chdir(folder.c_str()) != 0) ::_exit(121);
   limit(RLIMIT_FSIZE, treatment.file_limit);
   limit(RLIMIT_AS, treatment.memory_limit);
@@ -78,6 +79,28 @@ Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatmen
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
           read_file(folder_ / "stdout"), read_file(folder_ / "stderr"),
           1024.0 * static_cast<double>(usage.ru_maxrss)};
+}
+
+pid_t ProgramTest::begin(Arguments const& arguments) const {
+  pid_t const child = ::fork();
+  if (child == 0) become_program(folder_, arguments, {}, "/dev/null", "/dev/null");
+  return child;
+}
+
+int ProgramTest::end(pid_t process, int signal) {
+  if (signal != 0) ::kill(process, signal);
+  int status = 0;
+  ::waitpid(process, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool ProgramTest::eventually(std::function<bool()> const& is_so) {
+  auto const deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!is_so()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
 }
 
 io::TrajectoryInfo ProgramTest::run(std::string const& scene, Arguments const& arguments) const {

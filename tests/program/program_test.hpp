@@ -4,9 +4,11 @@
 #include <cayspin/io/trajectory.hpp>
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,14 @@ class ProgramTest : public testing::Test {
 
   /// Starts the program and waits.
   Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
+
+  /// Starts the program and does not wait; what it says is lost.
+  pid_t begin(Arguments const& arguments) const;
+  /// Sends it a signal, where that is not 0, and waits. As Outcome::status.
+  static int end(pid_t process, int signal);
+
+  /// Waits until something is so, at most a minute. False when it never was.
+  static bool eventually(std::function<bool()> const& is_so);
 
   /// Runs a scene that has to succeed without a word on standard error.
   io::TrajectoryInfo run(std::string const& scene, Arguments const& arguments = {}) const;

@@ -17,6 +17,10 @@ constexpr double most_finer = 4;  // cost over that of the try before
 constexpr int tries = 12;         // of one candidate
 constexpr int all_tries = 200;
 
+// Of the time of a search, roughly.
+constexpr double share_of_coarsest = 0.3;
+constexpr double share_of_judging = 0.4;
+
 struct Try {
   Steps steps;
   Outcome outcome;
@@ -96,7 +100,7 @@ struct Prospect {
 class Search {
  public:
   Search(Pilot const& pilot, Reference const& horizon, AdviceRequest const& request)
-      : pilot_(pilot), horizon_(horizon), error_(aim * request.error) {
+      : pilot_(pilot), horizon_(horizon), error_(aim * request.error), on_try_(request.on_try) {
     double const error = request.error;
     // What to measure by: an error of a thirtieth of the one asked for, by a method whose error
     // follows its tolerance.
@@ -110,8 +114,11 @@ class Search {
 
   /// Best first, until the cheapest one is near enough.
   void run() {
-    for (auto& prospect : prospects_)
+    double const count = static_cast<double>(prospects_.size());
+    for (auto& prospect : prospects_) {
       while (!prospect.dropped && prospect.tried.empty()) attempt(prospect);
+      share_ += share_of_coarsest / count;
+    }
     std::ranges::stable_sort(prospects_, {}, &Prospect::least_seconds);
     for (auto& prospect : prospects_) {
       auto const* best = cheapest();
@@ -119,7 +126,9 @@ class Search {
           best->seconds_of(best->needed(error_)) < prospect.least_seconds())
         break;  // nothing that follows takes less
       while (!prospect.dropped && !prospect.is_judged()) attempt(prospect);
+      share_ += share_of_judging / count;
     }
+    share_ = share_of_coarsest + share_of_judging;
     std::erase_if(prospects_, [](Prospect const& one) { return !one.is_judged(); });
     for (int i = 0; i < all_tries; ++i) {
       auto* best = cheapest();
@@ -193,6 +202,7 @@ class Search {
 
   void attempt(Prospect& prospect) {
     auto const steps = prospect.next;
+    if (on_try_) on_try_(share_, prospect.candidate.name());
     auto outcome = pilot_.run(prospect.candidate, horizon_.horizon, steps, 3);
     ++prospect.attempts;
     double const now = prospect.resolution(steps);
@@ -244,6 +254,8 @@ class Search {
   Pilot const& pilot_;
   Reference const& horizon_;
   double error_;
+  OnTry on_try_;
+  double share_ = 0;  // of the search that is done, roughly
   std::vector<Prospect> prospects_;
   Try finest_{{}, {}, std::numeric_limits<double>::infinity()};
 };

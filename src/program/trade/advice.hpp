@@ -22,6 +22,7 @@ struct AdviceRequest {
   double error = 1e-4;
   std::optional<double> budget;        // seconds that the run may take
   std::optional<Precision> precision;  // the only one
+  OnTry on_try = {};
 };
 
 /// What was found out, at which horizon.

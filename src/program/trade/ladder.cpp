@@ -65,6 +65,7 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
   Steps steps = coarsest_steps(pilot, candidate, reference.horizon, reference.own_steps);
   for (int i = 0; i < limits.rungs; ++i, steps = finer(candidate, steps)) {
     if (candidate.method->adaptive && steps.tolerance < candidate.least_tolerance()) break;
+    if (limits.on_try) limits.on_try(limits.share, candidate.name());
     auto const outcome = pilot.run(candidate, reference.horizon, steps, 3);
     double const error = distance(outcome, reference.solution);
     double const dt =

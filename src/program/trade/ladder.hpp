@@ -2,6 +2,7 @@
 #pragma once
 
 #include "reference.hpp"
+#include "trial_progress.hpp"
 
 #include <limits>
 #include <vector>
@@ -29,6 +30,8 @@ struct LadderLimits {
   double seconds = 10;        // nor anything that takes longer
   double far_behind = 30;     // nor by a candidate so many times slower than another
   int rungs = 40;
+  OnTry on_try = {};
+  double share = 0;  // of all ladders that is done
 };
 
 /// Steps that a candidate's ladder begins with, as coarse as may be; and those of the next rung.

@@ -20,6 +20,7 @@ Resolved resolve(io::Scene const& scene, Advice const& advice);
 
 /// A scene of method "auto" with the method that is advised for its error, in one precision; any
 /// other scene as it is. Inside a KokkosSession. Throws NumbersFailed when nothing gets there.
-io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision);
+io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
+                      OnTry const& on_try = {});
 
 }  // namespace cayspin::program::trade

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "bar.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+
+namespace cayspin::program {
+
+bool is_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
+
+std::string bar(double share) {
+  constexpr int width = 24;
+  int const filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
+  return fmt::format("[{:#<{}}{:.<{}}]", "", filled, "", width - filled);
+}
+
+namespace {
+
+bool has_blocks() {
+  for (char const* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    char const* const value = std::getenv(name);
+    if (!value || *value == '\0') continue;
+    std::string locale = value;
+    std::ranges::transform(locale, locale.begin(), [](unsigned char c) { return std::tolower(c); });
+    return locale.ends_with("utf-8") || locale.ends_with("utf8");
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string sparkline(std::span<double const> values) {
+  constexpr std::size_t width = 40;
+  constexpr std::array<char const*, 8> blocks{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  if (values.size() < 2 || !has_blocks() ||
+      !std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+    return {};
+  auto const [least, most] = std::ranges::minmax(values);
+  std::string line;
+  auto const columns = std::min(width, values.size());
+  for (std::size_t column = 0; column < columns; ++column) {
+    double const value = values[column * (values.size() - 1) / (columns - 1)];
+    double const height = most > least ? (value - least) / (most - least) : 0;
+    line += blocks[static_cast<std::size_t>(height * 7.999)];
+  }
+  return line;
+}
+
+std::string fitted(std::string line) {
+  winsize size{};
+  for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
+    if (size.ws_col == 0 && ::ioctl(stream, TIOCGWINSZ, &size) != 0) size = {};
+  std::size_t const width = size.ws_col > 0 ? size.ws_col : 80;
+  // Columns, not bytes: continuation bytes of UTF-8 take none.
+  std::size_t column = 0;
+  for (std::size_t byte = 0; byte < line.size(); ++byte) {
+    if ((static_cast<unsigned char>(line[byte]) & 0xC0U) == 0x80U) continue;
+    if (++column == width) return line.substr(0, byte);
+  }
+  return line;
+}
+
+}  // namespace cayspin::program

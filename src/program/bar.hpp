@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cstdio>
+#include <span>
+#include <string>
+
+namespace cayspin::program {
+
+/// Is it one that understands what moves the cursor?
+bool is_terminal(std::FILE* stream);
+
+/// "[#####...................]"
+std::string bar(double share);
+
+/// Values over time as a row of blocks; empty where the locale has none, or values are not finite.
+std::string sparkline(std::span<double const> values);
+
+/// A line, cut where it would wrap on the terminal.
+std::string fitted(std::string line);
+
+}  // namespace cayspin::program

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "grid.hpp"
+
+#include "cayspin_git_commit.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+
+#include <cayspin/version.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace cayspin::program::sweep {
+namespace {
+
+constexpr double most_runs = 1e5;
+// Sites of all starts whose numbers are looked at before the first run.
+constexpr std::int64_t most_checked = 20'000'000;
+
+std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
+  std::vector<io::SweptKey> keys;
+  double runs = 1;
+  for (auto const& assignment : options.over) {
+    auto key = io::read_swept_key(assignment);
+    auto const refuse = [&](std::string const& why) {
+      throw UsageError(fmt::format("--over {}: {}", key.key, why));
+    };
+    if (std::ranges::find(keys, key.key, &io::SweptKey::key) != keys.end())
+      refuse("it is named twice; accepted: one --over with all values");
+    if (std::ranges::any_of(options.overrides, [&](std::string const& override) {
+          return override.starts_with(key.key + "=");
+        }))
+      refuse("--set has it too; accepted: one of them");
+    if (key.key == "output.file")
+      refuse("all runs go into the file that --output names; accepted: other keys");
+    runs *= static_cast<double>(key.values.size());
+    keys.push_back(std::move(key));
+  }
+  if (runs > most_runs)
+    throw UsageError(fmt::format("--over: {:.3g} runs; accepted: at most {:g}", runs, most_runs));
+  return keys;
+}
+
+}  // namespace
+
+std::string values_text(io::SweepHeader const& header, std::int64_t run) {
+  return fmt::format("{}", fmt::join(header.overrides(run), " "));
+}
+
+Grid make_grid(SweepOptions const& options) {
+  Grid grid;
+  auto& header = grid.header;
+  header.keys = read_keys(options);
+  header.precision = to_string(options.precision);
+  header.space = chosen_space(options.space);
+  header.cayspin_version = CAYSPIN_VERSION_STRING;
+  header.git_commit = CAYSPIN_GIT_COMMIT;
+  std::int64_t checked = 0;
+  for (std::int64_t run = 0; run < header.runs(); ++run) {
+    auto overrides = options.overrides;
+    std::ranges::copy(header.overrides(run), std::back_inserter(overrides));
+    try {
+      auto const scene = io::read_scene(options.scene, overrides);
+      io::check_files(scene);
+      if (!scene.integrator.method->automatic) {
+        auto const plan = make_plan(scene, options.precision);
+        require_memory(scene, plan);
+        if (auto const reason = dt_warning(plan); reason && scene.integrator.refuse_unstable)
+          throw io::scene_error(scene, "integrator.dt", *reason);
+        grid.largest = std::max(grid.largest, plan.memory.total());
+      }
+      checked += io::sites(scene);
+      if (checked <= most_checked) io::initial_spins(scene);
+      grid.texts.push_back(scene.text);
+      grid.costs.push_back(static_cast<double>(scene.integrator.steps) *
+                           static_cast<double>(io::sites(scene)));
+    } catch (io::SceneError const& error) {
+      if (header.runs() == 1) throw;
+      throw io::SceneError(fmt::format("with {}: {}", values_text(header, run), error.what()));
+    }
+  }
+  header.scene_text = grid.texts.front();
+  return grid;
+}
+
+}  // namespace cayspin::program::sweep

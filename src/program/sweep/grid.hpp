@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "program/command.hpp"
+
+#include <cayspin/io/sweep.hpp>
+
+#include <string>
+#include <vector>
+
+namespace cayspin::program::sweep {
+
+/// A sweep whose scenes are all valid.
+struct Grid {
+  io::SweepHeader header;
+  std::vector<std::string> texts;  // of the scenes
+  std::vector<double> costs;       // spin updates of each
+  std::int64_t largest = 0;        // bytes of memory that one of them takes
+};
+
+/// Reads every scene as `run` would. Throws UsageError or io::SceneError, which names the
+/// combination that is wrong.
+Grid make_grid(SweepOptions const& options);
+
+/// "system.damping=0.1 integrator.dt=0.02"
+std::string values_text(io::SweepHeader const& header, std::int64_t run);
+
+}  // namespace cayspin::program::sweep

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "session.hpp"
+
+#include "program/progress.hpp"
+#include "simulation/failure.hpp"
+
+#include <cayspin/io/follow.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace cayspin::program::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has_ended(io::SweptRun const& run) {
+  return run.status == Status::done || run.status == Status::numbers_failed;
+}
+
+// What makes the sweep in the file another one, or nothing.
+std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
+  auto const keys = [](io::SweepHeader const& header) {
+    std::vector<std::string> keys;
+    for (auto const& key : header.keys)
+      keys.push_back(fmt::format("{}={}", key.key, fmt::join(key.values, ",")));
+    return fmt::format("{}", fmt::join(keys, " "));
+  };
+  if (keys(now) != keys(before)) return fmt::format("over {}", keys(before));
+  if (now.precision != before.precision) return fmt::format("in {} precision", before.precision);
+  if (now.space != before.space) return fmt::format("in the space {}", before.space);
+  if (now.scene_text != before.scene_text) return "of another scene";
+  return {};
+}
+
+}  // namespace
+
+Session::Session(fs::path file, Grid const& grid, bool overwrite)
+    : file_(std::move(file)), folder_(io::sweep_folder(file_)), grid_(grid) {
+  info_.header = grid.header;
+  info_.runs.resize(grid.texts.size());
+  auto const parent = file_.has_parent_path() ? file_.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(parent, error))
+    throw UsageError(
+        fmt::format("--output {}: the folder {} does not exist", file_.string(), parent.string()));
+  bool const exists = fs::exists(file_, error);
+  if (exists && !overwrite) require_same_sweep();
+  if (exists && overwrite) require_replaceable();
+  lock_folder();
+  if (exists && !overwrite) {
+    // Once more: it may have come to its end meanwhile.
+    auto const before = io::read_sweep(file_);
+    info_.runs = before.runs;
+    info_.complete = before.complete;
+    info_.one_file = before.one_file;
+    if (info_.one_file) return;
+  }
+  if (!exists || overwrite)
+    for (auto const& entry : fs::directory_iterator(folder_))
+      if (entry.path().extension() == ".h5") fs::remove(entry.path());
+  for (std::int64_t number = 0; number < info_.header.runs(); ++number) {
+    auto& run = info_.runs[index(number)];
+    io::SweptRun found;
+    if (run.status == Status::numbers_failed || !read_run(number, found)) continue;
+    found.message = run.message;
+    run = found;
+  }
+  write();
+}
+
+void Session::require_same_sweep() const {
+  if (!io::is_sweep(file_))
+    throw UsageError(
+        fmt::format("--output {}: it exists and has no sweep; accepted: another file, or "
+                    "--overwrite",
+                    file_.string()));
+  auto const other = difference(info_.header, io::read_sweep(file_).header);
+  if (other.empty()) return;
+  throw UsageError(
+      fmt::format("--output {}: it has a sweep {}; accepted: the same command, another file, or "
+                  "--overwrite",
+                  file_.string(), other));
+}
+
+void Session::require_replaceable() const {
+  if (!fs::is_regular_file(file_))
+    throw UsageError(fmt::format("--output {}: it is not a regular file", file_.string()));
+  if (::access(file_.c_str(), W_OK) != 0)
+    throw UsageError(fmt::format("--output {}: {}", file_.string(), std::strerror(errno)));
+  if (io::is_being_written(file_) == true)
+    throw UsageError(fmt::format("--output {}: another program is writing it", file_.string()));
+}
+
+Session::~Session() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+fs::path Session::run_file(std::int64_t number) const { return io::swept_run_file(file_, number); }
+
+void Session::lock_folder() {
+  std::error_code error;
+  fs::create_directory(folder_, error);
+  if (error)
+    throw UsageError(
+        fmt::format("{}: cannot create the folder: {}", folder_.string(), error.message()));
+  lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw UsageError(fmt::format("--output {}: another sweep is writing it", file_.string()));
+}
+
+std::vector<std::int64_t> Session::open_runs() const {
+  std::vector<std::int64_t> open;
+  for (std::int64_t number = 0; number < info_.header.runs(); ++number)
+    if (!has_ended(run(number))) open.push_back(number);
+  return open;
+}
+
+bool Session::is_finished() const { return std::ranges::all_of(info_.runs, has_ended); }
+
+// True where the run's own file is complete and that of this sweep; a file with a frame of a run
+// that failed is read all the same.
+bool Session::read_run(std::int64_t number, io::SweptRun& run) const {
+  auto const path = run_file(number);
+  if (!fs::exists(path)) return false;
+  try {
+    auto const file = io::read_info(path);
+    if (file.header.scene_text != grid_.texts[index(number)] ||
+        file.header.precision != info_.header.precision ||
+        file.header.space != info_.header.space || file.frames == 0)
+      return false;
+    auto const last = static_cast<std::size_t>(file.frames) - 1;
+    run.step = file.frame_steps[last];
+    run.time = file.frame_times[last];
+    run.scalars = file.frame_scalars[last];
+    run.cost = file.cost;
+    run.has_file = true;
+    if (file.complete) run.status = Status::done;
+    return file.complete;
+  } catch (std::runtime_error const&) {
+    return false;
+  }
+}
+
+void Session::take(std::int64_t number, std::int64_t status, std::string const& message) {
+  io::SweptRun taken;
+  bool const whole = read_run(number, taken);
+  taken.status = status;
+  // It names a file that is going to be a group.
+  auto const name = run_file(number).string();
+  taken.message = message;
+  if (auto const place = message.find(name); place != message.npos)
+    taken.message.replace(place, name.size(),
+                          fmt::format("{}:/runs/{}", file_.string(), io::swept_run_name(number)));
+  if (status == Status::done && !whole) {
+    taken.status = Status::wrong_usage;
+    taken.message = "its file is not that of the scene that was read when the sweep began";
+  }
+  info_.runs[index(number)] = taken;
+  // A run whose file is complete is found again without this.
+  if (status != Status::done ||
+      std::chrono::steady_clock::now() - written_ > std::chrono::seconds(1))
+    write();
+}
+
+void Session::write() {
+  io::write_sweep(file_, info_);
+  written_ = std::chrono::steady_clock::now();
+}
+
+bool Session::close() {
+  if (!info_.one_file) {
+    info_.complete = info_.one_file = is_finished();
+    if (!io::write_sweep(file_, info_, [] { return !interrupt_requested(); })) return false;
+  }
+  if (info_.one_file && lock_ >= 0) remove_folder();
+  return true;
+}
+
+void Session::remove_folder() {
+  std::error_code ignored;
+  for (std::int64_t number = 0; number < info_.header.runs(); ++number)
+    fs::remove(run_file(number), ignored);
+  fs::remove(folder_, ignored);
+}
+
+}  // namespace cayspin::program::sweep

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "grid.hpp"
+
+#include <cayspin/io/sweep.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cayspin::program::sweep {
+
+/// The file of a sweep and the folder beside it, where its runs write. Nobody else has them.
+class Session {
+ public:
+  /// Goes on with the sweep that the file has, or begins one. Throws UsageError when the file has
+  /// something else, or another process works on it.
+  Session(std::filesystem::path file, Grid const& grid, bool overwrite);
+  ~Session();
+  Session(Session const&) = delete;
+  Session& operator=(Session const&) = delete;
+
+  io::SweepInfo const& info() const { return info_; }
+  io::SweptRun const& run(std::int64_t number) const { return info_.runs[index(number)]; }
+  std::filesystem::path run_file(std::int64_t number) const;
+
+  /// The runs that have to be done.
+  std::vector<std::int64_t> open_runs() const;
+
+  /// A run has ended. Throws UsageError when it was not the one that was planned.
+  void take(std::int64_t number, std::int64_t status, std::string const& message);
+
+  /// Writes what was taken.
+  void write();
+  /// The same; when all runs have ended, they become part of the file and the folder goes. False
+  /// when an interrupt came first.
+  bool close();
+
+ private:
+  static std::size_t index(std::int64_t number) { return static_cast<std::size_t>(number); }
+  bool read_run(std::int64_t number, io::SweptRun& run) const;
+  bool is_finished() const;
+  void require_same_sweep() const;
+  void require_replaceable() const;
+  void lock_folder();
+  void remove_folder();
+
+  std::filesystem::path file_, folder_;
+  Grid const& grid_;
+  io::SweepInfo info_;
+  int lock_ = -1;
+  std::chrono::steady_clock::time_point written_;
+};
+
+}  // namespace cayspin::program::sweep

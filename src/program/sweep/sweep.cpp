@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "child.hpp"
+#include "display.hpp"
+#include "grid.hpp"
+#include "program/command.hpp"
+#include "session.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/text.hpp"
+#include "table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <deque>
+#include <memory>
+#include <thread>
+
+namespace cayspin::program {
+namespace {
+
+using namespace sweep;
+using Clock = std::chrono::steady_clock;
+
+struct Job {
+  std::int64_t run;
+  std::unique_ptr<Child> child;
+};
+
+bool is_on_host(std::string const& space) {
+  return space == "serial" || space == "openmp" || space == "threads";
+}
+
+// How many run at a time, and the threads of each.
+struct Sharing {
+  int jobs;
+  std::optional<int> threads;
+};
+
+Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t open) {
+  int const cores = grid.header.space == "serial" && expected_threads() == 1
+                        ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))
+                        : expected_threads();
+  bool const on_host = is_on_host(grid.header.space);
+  auto const fits = grid.largest > 0 ? available_memory() / grid.largest : available_memory();
+  if (options.jobs && *options.jobs > fits)
+    throw UsageError(
+        fmt::format("--jobs {}: each run takes {} of memory, {} are available; "
+                    "accepted: at most {}",
+                    *options.jobs, bytes_text(grid.largest), bytes_text(available_memory()), fits));
+  std::int64_t jobs = options.jobs.value_or(on_host ? cores / options.threads.value_or(1) : 1);
+  jobs = std::clamp<std::int64_t>(std::min(jobs, fits), 1,
+                                  static_cast<std::int64_t>(std::max<std::size_t>(open, 1)));
+  Sharing sharing{static_cast<int>(jobs), options.threads};
+  if (!sharing.threads && on_host) sharing.threads = std::max(1, cores / sharing.jobs);
+  return sharing;
+}
+
+std::vector<std::string> arguments_of(SweepOptions const& options, Grid const& grid,
+                                      std::int64_t run, std::filesystem::path const& file,
+                                      Sharing const& sharing) {
+  std::vector<std::string> arguments{"run", options.scene.string()};
+  for (auto const& overrides : {options.overrides, grid.header.overrides(run)})
+    for (auto const& override : overrides) {
+      arguments.emplace_back("--set");
+      arguments.push_back(override);
+    }
+  for (auto const& word :
+       {std::string("--output"), file.string(), std::string("--overwrite"),
+        std::string("--precision"), grid.header.precision, std::string("--space"),
+        grid.header.space, std::string("--report-progress")})
+    arguments.push_back(word);
+  if (sharing.threads) {
+    arguments.emplace_back("--threads");
+    arguments.push_back(std::to_string(*sharing.threads));
+  }
+  return arguments;
+}
+
+// Their files are not needed: what was under way begins again.
+void stop(std::vector<Job>& jobs) {
+  for (auto const& job : jobs) job.child->send(SIGTERM);
+  auto const deadline = Clock::now() + std::chrono::seconds(2);
+  for (auto const& job : jobs)
+    while (!job.child->has_ended() && Clock::now() < deadline) {
+      job.child->read();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  jobs.clear();
+}
+
+// False when it was interrupted.
+bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
+  auto const list = session.open_runs();
+  std::deque<std::int64_t> open(list.begin(), list.end());
+  auto const sharing = share_machine(options, grid, open.size());
+  Display display(grid, list, options.quiet);
+  std::vector<Job> jobs;
+  auto const running = [&] {
+    std::vector<Running> running;
+    for (auto const& job : jobs) running.push_back({job.run, job.child->share()});
+    return running;
+  };
+  while (!open.empty() || !jobs.empty()) {
+    while (!open.empty() && jobs.size() < static_cast<std::size_t>(sharing.jobs)) {
+      auto const run = open.front();
+      open.pop_front();
+      auto const arguments = arguments_of(options, grid, run, session.run_file(run), sharing);
+      jobs.push_back({run, std::make_unique<Child>(arguments, sharing.jobs > 1)});
+    }
+    display.show(running());
+    std::vector<pollfd> polled;
+    for (auto const& job : jobs) job.child->add_to(polled);
+    ::poll(polled.data(), polled.size(), 200);
+    for (auto const& job : jobs) job.child->read();
+    if (interrupt_requested()) {
+      display.clear();
+      stop(jobs);
+      session.write();
+      return false;
+    }
+    for (std::size_t i = 0; i < jobs.size();) {
+      if (!jobs[i].child->has_ended()) {
+        ++i;
+        continue;
+      }
+      auto const job = std::move(jobs[i]);
+      jobs.erase(jobs.begin() + static_cast<std::ptrdiff_t>(i));
+      auto const status = job.child->wait();
+      session.take(job.run, status, job.child->message());
+      display.ended(job.run, session.run(job.run), running());
+    }
+  }
+  display.clear();
+  return true;
+}
+
+int close_sweep(SweepOptions const& options, Session const& session, double seconds) {
+  auto const& info = session.info();
+  auto const count = [&](auto const& is) { return std::ranges::count_if(info.runs, is); };
+  auto const failed = count([](auto const& run) { return run.status == Status::numbers_failed; });
+  auto const stuck = std::ssize(info.runs) - failed -
+                     count([](auto const& run) { return run.status == Status::done; });
+  if (!options.quiet) {
+    print_table(info);
+    fmt::print("{}: {} runs in {}\n", options.output.string(), info.runs.size(),
+               duration_text(seconds));
+    std::fflush(stdout);
+  }
+  if (failed + stuck == 0) return Status::done;
+  auto const first =
+      std::ranges::find_if(info.runs, [](auto const& run) { return run.status != Status::done; });
+  auto const number = first - info.runs.begin();
+  auto const message = fmt::format(
+      "{}: {} of {} runs failed; run {}, {}: {}", options.output.string(), failed + stuck,
+      info.runs.size(), io::swept_run_name(number), values_text(info.header, number),
+      first->message.empty() ? fmt::format("it ended with status {}", first->status)
+                             : first->message);
+  if (failed > 0) throw NumbersFailed(message);
+  throw std::runtime_error(message);
+}
+
+}  // namespace
+
+int sweep_over(SweepOptions const& options) {
+  auto const begin = Clock::now();
+  auto const grid = make_grid(options);
+  catch_signals();
+  Session session(options.output, grid, options.overwrite);
+  if (run_all(options, grid, session) && session.close())
+    return close_sweep(options, session,
+                       std::chrono::duration<double>(Clock::now() - begin).count());
+  auto const open = session.open_runs().size();
+  fmt::print(stderr, "{}: interrupted with {} of {} runs to do; the same command goes on\n",
+             options.output.string(), open, session.info().runs.size());
+  return Status::interrupted;
+}
+
+}  // namespace cayspin::program

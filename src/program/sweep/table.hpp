@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/sweep.hpp>
+
+namespace cayspin::program::sweep {
+
+/// A line for each run on standard output: values, end, cost.
+void print_table(io::SweepInfo const& sweep);
+
+}  // namespace cayspin::program::sweep

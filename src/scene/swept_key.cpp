@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "reader.hpp"
+
+#include <cayspin/io/sweep.hpp>
+
+#include <algorithm>
+
+namespace cayspin::io {
+namespace {
+
+constexpr std::string_view accepted = "key.path=VALUE,VALUE,... with TOML values";
+
+// The byte at which a column begins; columns count code points, from 1.
+std::size_t byte_of(std::string_view text, std::size_t column) {
+  std::size_t byte = 0;
+  for (std::size_t passed = 1; passed < column && byte < text.size(); ++passed) {
+    ++byte;
+    while (byte < text.size() && (static_cast<unsigned char>(text[byte]) & 0xC0U) == 0x80U) ++byte;
+  }
+  return byte;
+}
+
+std::string_view trimmed(std::string_view text) {
+  auto const begin = text.find_first_not_of(" \t");
+  auto const end = text.find_last_not_of(" \t");
+  return begin == text.npos ? std::string_view() : text.substr(begin, end - begin + 1);
+}
+
+}  // namespace
+
+SweptKey read_swept_key(std::string const& assignment) {
+  auto const place = detail::one_line("--over " + assignment);
+  auto const equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0 || assignment.find('\n') != std::string::npos)
+    detail::fail(place, "", "not a key with values", accepted);
+  SweptKey swept;
+  std::ranges::copy_if(assignment.substr(0, equals), std::back_inserter(swept.key),
+                       [](char c) { return c != ' '; });
+
+  // An array of TOML tells where each value begins.
+  auto const line = "value = [" + assignment.substr(equals + 1);
+  toml::table parsed;
+  try {
+    parsed = toml::parse(line + "\n]\n", place);
+  } catch (toml::parse_error const& error) {
+    detail::fail(place, "", fmt::format("the values are not TOML ({})", error.description()),
+                 "values with commas between them; a string needs its quotes");
+  }
+  auto const* const array = parsed["value"].as_array();
+  if (!array || parsed.size() != 1 || array->empty())
+    detail::fail(place, "", "not a list of values", accepted);
+  bool numeric = true;
+  for (std::size_t i = 0; i < array->size(); ++i) {
+    auto const& node = *array->get(i);
+    auto const begin = byte_of(line, node.source().begin.column);
+    auto const end = i + 1 < array->size() ? byte_of(line, array->get(i + 1)->source().begin.column)
+                                           : line.size();
+    auto value = trimmed(std::string_view(line).substr(begin, end - begin));
+    if (value.ends_with(',')) value = trimmed(value.substr(0, value.size() - 1));
+    if (std::ranges::find(swept.values, value) != swept.values.end())
+      detail::fail(place, "", fmt::format("the value {} stands twice", value), "distinct values");
+    swept.values.emplace_back(value);
+    numeric = numeric && node.is_number();
+    if (numeric) swept.numbers.push_back(*node.value<double>());
+  }
+  if (!numeric) swept.numbers.clear();
+  return swept;
+}
+
+std::int64_t SweepHeader::runs() const {
+  std::int64_t runs = 1;
+  for (auto const& key : keys) runs *= static_cast<std::int64_t>(key.values.size());
+  return runs;
+}
+
+std::vector<std::size_t> SweepHeader::indices(std::int64_t run) const {
+  std::vector<std::size_t> indices(keys.size());
+  auto rest = static_cast<std::size_t>(run);
+  for (std::size_t key = keys.size(); key-- > 0;) {
+    indices[key] = rest % keys[key].values.size();
+    rest /= keys[key].values.size();
+  }
+  return indices;
+}
+
+std::vector<std::string> SweepHeader::overrides(std::int64_t run) const {
+  std::vector<std::string> overrides;
+  auto const chosen = indices(run);
+  for (std::size_t key = 0; key < keys.size(); ++key)
+    overrides.push_back(keys[key].key + "=" + keys[key].values[chosen[key]]);
+  return overrides;
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5/attribute.hpp"
+#include "hdf5/error.hpp"
+#include "new_file.hpp"
+#include "open_file_space.hpp"
+#include "sweep_format.hpp"
+
+#include <cayspin/io/sweep.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace cayspin::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Writer {
+ public:
+  Writer(hid_t file, fs::path const& path) : file_(file), path_(path) {}
+
+  void texts(char const* name, Extents const& extents, std::vector<std::string> const& values) {
+    std::vector<char const*> pointers;
+    for (auto const& value : values) pointers.push_back(value.c_str());
+    auto const type = text_type();
+    write(file_, name, type.get(), type.get(), extents, pointers.data());
+  }
+
+  void numbers(hid_t group, char const* name, std::vector<double> const& values) {
+    write(group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
+  }
+
+  /// One number, or three, of each run.
+  template <class Member>
+  void column(char const* name, std::vector<SweptRun> const& runs, Member const& member) {
+    using Value = std::decay_t<decltype(member(runs.front()))>;
+    std::vector<Value> values;
+    for (auto const& run : runs) values.push_back(member(run));
+    if constexpr (std::is_same_v<Value, std::int64_t>)
+      write(file_, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {values.size()}, values.data());
+    else if constexpr (std::is_same_v<Value, double>)
+      numbers(file_, name, values);
+    else
+      write(file_, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size(), 3}, values.data());
+  }
+
+  GroupHandle group(char const* name) {
+    return GroupHandle(check(H5Gcreate2(file_, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path_,
+                             std::string("cannot create group ") + name));
+  }
+
+ private:
+  void write(hid_t group, char const* name, hid_t stored, hid_t given, Extents const& extents,
+             void const* values) {
+    auto const action = std::string("cannot write dataset ") + name;
+    DataspaceHandle const space(
+        check(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), path_,
+              action));
+    DatasetHandle const dataset(
+        check(H5Dcreate2(group, name, stored, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+              path_, action));
+    check(H5Dwrite(dataset.get(), given, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path_, action);
+  }
+
+  hid_t file_;
+  fs::path const& path_;
+};
+
+void write_attributes(hid_t file, SweepInfo const& sweep, fs::path const& path) {
+  RootAttributes const attributes(file, path);
+  attributes.create(sweep_format, std::int64_t{sweep_format_version});
+  attributes.create("scene", sweep.header.scene_text);
+  attributes.create("cayspin_version", sweep.header.cayspin_version);
+  attributes.create("git_commit", sweep.header.git_commit);
+  attributes.create("precision", sweep.header.precision);
+  attributes.create("space", sweep.header.space);
+  attributes.create("complete", std::int64_t{sweep.complete ? 1 : 0});
+}
+
+void write_grid(Writer& writer, SweepHeader const& header) {
+  std::vector<std::string> names, values;
+  for (auto const& key : header.keys) names.push_back(key.key);
+  for (std::int64_t run = 0; run < header.runs(); ++run) {
+    auto const chosen = header.indices(run);
+    for (std::size_t key = 0; key < header.keys.size(); ++key)
+      values.push_back(header.keys[key].values[chosen[key]]);
+  }
+  writer.texts("keys", {names.size()}, names);
+  writer.texts("values", {static_cast<hsize_t>(header.runs()), names.size()}, values);
+  auto const parameters = writer.group("parameters");
+  for (std::size_t key = 0; key < header.keys.size(); ++key) {
+    auto const& numbers = header.keys[key].numbers;
+    if (numbers.empty()) continue;
+    std::vector<double> of_runs;
+    for (std::int64_t run = 0; run < header.runs(); ++run)
+      of_runs.push_back(numbers[header.indices(run)[key]]);
+    writer.numbers(parameters.get(), names[key].c_str(), of_runs);
+  }
+}
+
+void write_results(Writer& writer, std::vector<SweptRun> const& runs) {
+  std::vector<std::string> messages;
+  for (auto const& run : runs) messages.push_back(run.message);
+  writer.texts("message", {messages.size()}, messages);
+  writer.column("status", runs, [](auto const& run) { return run.status; });
+  writer.column("step", runs, [](auto const& run) { return run.step; });
+  writer.column("time", runs, [](auto const& run) { return run.time; });
+  writer.column("energy", runs, [](auto const& run) { return run.scalars.energy; });
+  writer.column("norm_defect", runs, [](auto const& run) { return run.scalars.norm_defect; });
+  writer.column("magnetization", runs, [](auto const& run) { return run.scalars.magnetization; });
+  writer.column("evaluations", runs, [](auto const& run) { return run.cost.evaluations; });
+  writer.column("wall_seconds", runs, [](auto const& run) { return run.cost.wall_seconds; });
+  writer.column("step_seconds", runs, [](auto const& run) { return run.cost.step_seconds; });
+}
+
+std::uint64_t room_for(fs::path const& path, SweepInfo const& sweep) {
+  std::uint64_t room = 1 << 20;
+  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
+    room += 2048 + 2 * sweep.runs[run].message.size();
+    if (sweep.one_file && sweep.runs[run].has_file)
+      room += fs::file_size(swept_run_file(path, static_cast<std::int64_t>(run))) + 65536;
+  }
+  return room;
+}
+
+// Links are relative: the folder and the file can be moved together.
+void take_in(hid_t runs, fs::path const& path, std::int64_t run, bool copy) {
+  auto const file = swept_run_file(path, run);
+  auto const name = swept_run_name(run);
+  if (copy) {
+    auto const from = open_file(file);
+    check(H5Ocopy(from.get(), "/", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), path,
+          "cannot take in " + file.string());
+    return;
+  }
+  auto const relative = file.parent_path().filename() / file.filename();
+  check(H5Lcreate_external(relative.c_str(), "/", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+        path, "cannot link to " + file.string());
+}
+
+}  // namespace
+
+fs::path sweep_folder(fs::path const& file) { return file.string() + ".runs"; }
+
+std::string swept_run_name(std::int64_t run) {
+  auto const digits = std::to_string(run);
+  return std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits;
+}
+
+fs::path swept_run_file(fs::path const& file, std::int64_t run) {
+  return sweep_folder(file) / (swept_run_name(run) + ".h5");
+}
+
+bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<bool()> const& go_on) {
+  QuietErrors const quiet;
+  NewFile file(path, true, true);
+  OpenFileSpace space(file.get(), path);
+  space.reserve(room_for(path, sweep), path);
+  write_attributes(file.get(), sweep, path);
+  Writer writer(file.get(), path);
+  write_grid(writer, sweep.header);
+  write_results(writer, sweep.runs);
+  auto runs = writer.group("runs");
+  for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
+    if (!sweep.runs[run].has_file) continue;
+    if (go_on && !go_on()) return false;
+    take_in(runs.get(), path, static_cast<std::int64_t>(run), sweep.one_file);
+  }
+  runs.close();
+  check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path, "cannot write the file");
+  space.trim();
+  auto handle = file.commit();
+  check(handle.close(), path, "cannot close the file");
+  return true;
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// cayspin sweep: all combinations in one file, however it was interrupted on the way.
+#include "program_test.hpp"
+
+#include <cayspin/io/sweep.hpp>
+
+#include <hdf5.h>
+
+#include <csignal>
+
+namespace cayspin::program::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Sweeping : public ProgramTest {
+ protected:
+  Sweeping() { write("chain.toml", chain_scene()); }
+
+  Arguments arguments(char const* file, Arguments const& more = {}) const {
+    Arguments all{"sweep",    "chain.toml",
+                  "--output", file,
+                  "--over",   "system.damping=0.1,0.3",
+                  "--over",   "field.applied=[0.3,-0.2,0.1],[0,0,0.5],['0.1*cos(t)',0,0]"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  /// Has to end with this status and, unless it is 0, one line on standard error.
+  Outcome expect_status(int status, Arguments const& all, Treatment const& treatment = {}) const {
+    auto const outcome = start(all, treatment);
+    EXPECT_EQ(outcome.status, status) << outcome.errors;
+    if (status == 0)
+      EXPECT_EQ(outcome.errors, "");
+    else
+      EXPECT_TRUE(is_one_line(outcome.errors));
+    return outcome;
+  }
+
+  void expect_refused(Arguments const& all, std::string const& part) const {
+    auto const outcome = expect_status(2, all);
+    EXPECT_TRUE(contains(outcome.errors, part));
+    EXPECT_EQ(outcome.output, "");
+  }
+
+  std::vector<double> spins(char const* file, std::int64_t run) const {
+    return read_dataset(file, "/runs/" + io::swept_run_name(run) + "/spins").values;
+  }
+};
+
+TEST_F(Sweeping, RunsEveryCombination) {
+  auto const outcome = expect_status(0, arguments("all.h5", {"--jobs", "1", "--threads", "1"}));
+  EXPECT_TRUE(contains(outcome.output, "6 of 6  run 0005"));
+  EXPECT_TRUE(contains(outcome.output, "all.h5: 6 runs"));
+  EXPECT_FALSE(fs::exists(in_folder("all.h5.runs")));
+  auto const sweep = io::read_sweep(in_folder("all.h5"));
+  EXPECT_TRUE(sweep.complete);
+  EXPECT_TRUE(sweep.one_file);
+  ASSERT_EQ(sweep.runs.size(), 6u);
+  for (std::int64_t run = 0; run < 6; ++run) {
+    Arguments one{"run", "chain.toml", "--quiet", "--overwrite", "--output", "one.h5"};
+    for (auto const& override : sweep.header.overrides(run)) {
+      one.emplace_back("--set");
+      one.push_back(override);
+    }
+    expect_status(0, one);
+    EXPECT_EQ(spins("all.h5", run), read_dataset("one.h5", "/spins").values) << run;
+    auto const alone = io::read_info(in_folder("one.h5"));
+    auto const& swept = sweep.runs[static_cast<std::size_t>(run)];
+    EXPECT_EQ(swept.status, 0);
+    EXPECT_EQ(swept.step, 25);
+    EXPECT_EQ(swept.time, 0.5);
+    EXPECT_EQ(swept.scalars.energy, alone.frame_scalars.back().energy);
+    EXPECT_EQ(swept.scalars.magnetization, alone.frame_scalars.back().magnetization);
+    EXPECT_EQ(swept.cost.evaluations, 100);
+    EXPECT_EQ(read_dataset("all.h5", "/parameters/system.damping")
+                  .values.at(static_cast<std::size_t>(run)),
+              run < 3 ? 0.1 : 0.3);
+  }
+}
+
+TEST_F(Sweeping, GivesTheSameBitsSideBySide) {
+  expect_status(0, arguments("one.h5", {"--jobs", "1", "--quiet"}));
+  expect_status(0, arguments("two.h5", {"--jobs", "2", "--quiet", "--threads", "2"}));
+  for (std::int64_t run = 0; run < 6; ++run)
+    EXPECT_EQ(spins("one.h5", run), spins("two.h5", run)) << run;
+}
+
+TEST_F(Sweeping, GoesOnAfterAKill) {
+  // The runs with 200000 steps take long enough to be killed in one of them.
+  auto const all = [](char const* file) {
+    return Arguments{
+        "sweep",       "chain.toml", "--output", file,
+        "--jobs",      "2",          "--over",   "integrator.steps=20,30,200000,200001",
+        "--threads",   "1",          "--set",    "output.every=500000",
+        "--precision", "single"};
+  };
+  auto const file = in_folder("killed.h5");
+  auto const sweep_process = begin(all("killed.h5"));
+  EXPECT_TRUE(eventually([&] {
+    return fs::exists(io::swept_run_file(file, 2)) && fs::exists(io::swept_run_file(file, 3));
+  }));
+  EXPECT_EQ(end(sweep_process, SIGKILL), 128 + SIGKILL) << "it ended before it was killed";
+  auto const torn = io::read_sweep(file);  // it is whole
+  EXPECT_FALSE(torn.complete);
+  auto const early = io::read_info(io::swept_run_file(file, 0)).cost.wall_seconds;
+  EXPECT_GT(early, 0);
+  expect_refused(all("killed.h5.runs/none/killed.h5"), "does not exist");
+
+  // A reader who has it open is no obstacle.
+  hid_t const reader = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  auto const outcome = expect_status(0, all("killed.h5"));
+  H5Fclose(reader);
+  EXPECT_TRUE(contains(outcome.output, "1 of 2  run 000"));
+  expect_status(0, all("whole.h5"));
+  auto const sweep = io::read_sweep(file);
+  EXPECT_TRUE(sweep.complete);
+  EXPECT_EQ(sweep.runs[0].cost.wall_seconds, early) << "it ran again";
+  for (std::int64_t run = 0; run < 4; ++run)
+    EXPECT_EQ(spins("killed.h5", run), spins("whole.h5", run)) << run;
+  EXPECT_FALSE(fs::exists(in_folder("killed.h5.runs")));
+}
+
+TEST_F(Sweeping, RunsNothingTwice) {
+  expect_status(0, arguments("all.h5", {"--quiet"}));
+  auto const before = io::read_sweep(in_folder("all.h5"));
+  auto const outcome = expect_status(0, arguments("all.h5"));
+  EXPECT_FALSE(contains(outcome.output, " of "));
+  auto const after = io::read_sweep(in_folder("all.h5"));
+  for (std::size_t run = 0; run < 6; ++run)
+    EXPECT_EQ(after.runs[run].cost.wall_seconds, before.runs[run].cost.wall_seconds);
+  expect_status(0, arguments("all.h5", {"--quiet", "--overwrite"}));
+  EXPECT_NE(io::read_sweep(in_folder("all.h5")).runs[0].cost.wall_seconds,
+            before.runs[0].cost.wall_seconds);
+}
+
+TEST_F(Sweeping, RecordsARunThatFails) {
+  Arguments const all{"sweep",    "chain.toml",
+                      "--output", "failing.h5",
+                      "--over",   "integrator.dt=0.02,30.0,0.01",
+                      "--set",    "integrator.method='classical_euler'"};
+  auto const outcome = expect_status(3, all);
+  EXPECT_TRUE(contains(outcome.errors, "1 of 3 runs failed; run 0001, integrator.dt=30.0"));
+  EXPECT_TRUE(contains(outcome.errors, "not finite"));
+  EXPECT_TRUE(contains(outcome.errors, "failing.h5:/runs/0001"));
+  auto const sweep = io::read_sweep(in_folder("failing.h5"));
+  EXPECT_TRUE(sweep.complete);
+  EXPECT_EQ(sweep.runs[0].status, 0);
+  EXPECT_EQ(sweep.runs[1].status, 3);
+  EXPECT_TRUE(contains(sweep.runs[1].message, "not finite"));
+  EXPECT_TRUE(sweep.runs[1].has_file);
+  EXPECT_EQ(sweep.runs[2].status, 0);
+  auto const again = expect_status(3, all);
+  EXPECT_EQ(again.errors, outcome.errors);
+  EXPECT_FALSE(contains(again.output, "of 3  run"));
+}
+
+TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
+  Arguments const all{"sweep",  "chain.toml", "--output", "stopped.h5",
+                      "--jobs", "1",          "--over",   "integrator.steps=10,1000000000,12"};
+  auto const outcome = expect_status(
+      130, all,
+      {.interrupt_after = 0.1, .interrupt_when = io::swept_run_file(in_folder("stopped.h5"), 1)});
+  EXPECT_TRUE(contains(outcome.errors, "interrupted with 2 of 3 runs to do"));
+  auto const sweep = io::read_sweep(in_folder("stopped.h5"));
+  EXPECT_FALSE(sweep.complete);
+  EXPECT_EQ(sweep.runs[0].status, 0);
+  EXPECT_EQ(sweep.runs[1].status, io::SweptRun::not_run);
+  EXPECT_EQ(spins("stopped.h5", 0).size(), 2u * 3 * 20 * 3);  // by its link
+  auto const info = expect_status(0, {"info", "stopped.h5"});
+  EXPECT_TRUE(contains(info.output, "open"));
+}
+
+TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
+  expect_status(0, arguments("all.h5", {"--quiet"}));
+  expect_refused(arguments("all.h5", {"--over", "output.every=1,2"}), "it has a sweep over");
+  expect_refused(arguments("all.h5", {"--precision", "single"}), "in double precision");
+  expect_refused(arguments("all.h5", {"--set", "integrator.dt=0.01"}), "of another scene");
+  write("text.h5", "precious");
+  expect_refused(arguments("text.h5"), "text.h5");
+  run(chain_scene());
+  expect_refused(arguments("out.h5"), "it exists and has no sweep");
+}
+
+TEST_F(Sweeping, OnlyOneProcessHasAFile) {
+  Arguments const all{"sweep",  "chain.toml", "--output", "busy.h5",
+                      "--jobs", "1",          "--over",   "integrator.steps=1000000000"};
+  auto const first = begin(all);
+  EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(in_folder("busy.h5"), 0)); }));
+  expect_refused(all, "another sweep is writing it");
+  auto replacing = all;
+  replacing.emplace_back("--overwrite");
+  expect_refused(replacing, "another sweep is writing it");
+  EXPECT_EQ(end(first, SIGTERM), 130);
+
+  auto const run = begin({"run", "chain.toml", "--quiet", "--output", "run.h5", "--set",
+                          "integrator.steps=1000000000"});
+  EXPECT_TRUE(eventually([&] { return start({"watch", "run.h5", "--once"}).status == 0; }));
+  expect_refused(
+      {"sweep", "chain.toml", "--output", "run.h5", "--overwrite", "--over", "integrator.steps=1"},
+      "another program is writing it");
+  end(run, SIGKILL);
+}
+
+TEST_F(Sweeping, WrongUsesAreOneLine) {
+  auto const over = [](Arguments const& more) {
+    Arguments all{"sweep", "chain.toml", "--output", "wrong.h5"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_refused(over({}), "--over");
+  expect_refused(over({"--over", "system.damping"}), "not a key with values");
+  expect_refused(over({"--over", "system.damping="}), "not a list of values");
+  expect_refused(over({"--over", "field.applied=[0,0,1],[0,0"}), "not TOML");
+  expect_refused(over({"--over", "system.damping=0.1,0.1"}), "stands twice");
+  expect_refused(over({"--over", "system.dampng=0.1,0.2"}), "did you mean");
+  expect_refused(over({"--over", "system.damping=0.1,-0.2", "--over", "integrator.dt=0.02,0.01"}),
+                 "with system.damping=-0.2 integrator.dt=0.02: ");
+  expect_refused(over({"--over", "system.damping=0.1", "--over", "system.damping=0.2"}), "twice");
+  expect_refused(over({"--over", "system.damping=0.1", "--set", "system.damping=0.2"}), "--set");
+  expect_refused(over({"--over", "output.file='a.h5','b.h5'"}), "output.file");
+  expect_refused(over({"--over", "system.damping=0.1", "--jobs", "0"}), "--jobs");
+  EXPECT_FALSE(fs::exists(in_folder("wrong.h5")));
+  EXPECT_FALSE(fs::exists(in_folder("wrong.h5.runs")));
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What long work shows on a terminal.
+#include "program_test.hpp"
+
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+
+namespace cayspin::program::test {
+namespace {
+
+class Terminal : public ProgramTest {
+ protected:
+  Terminal() { write("chain.toml", chain_scene()); }
+
+  /// All that the program writes on a terminal, with standard output in a file where one is named.
+  Outcome on_terminal(Arguments const& arguments, char const* output = nullptr) const {
+    winsize const size{40, 100, 0, 0};
+    int terminal = -1;
+    pid_t const child = ::forkpty(&terminal, nullptr, nullptr, &size);
+    if (child == 0) {
+      if (::chdir(folder_.c_str()) != 0) ::_exit(121);
+      if (output && !std::freopen(output, "w", stdout)) ::_exit(121);
+      std::vector<char*> words{const_cast<char*>("cayspin")};
+      for (auto const& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+      words.push_back(nullptr);
+      ::execv(CAYSPIN_PROGRAM, words.data());
+      ::_exit(122);
+    }
+    Outcome outcome;
+    std::array<char, 4096> piece{};
+    for (ssize_t count = 0; (count = ::read(terminal, piece.data(), piece.size())) > 0;)
+      outcome.output.append(piece.data(), static_cast<std::size_t>(count));
+    outcome.status = end(child, 0);
+    ::close(terminal);
+    return outcome;
+  }
+};
+
+TEST_F(Terminal, ARunHasABarFromItsFirstStepOn) {
+  auto const outcome = on_terminal({"run", "chain.toml"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.output, "\r[........................] step 0 of 25\x1b[K"));
+  EXPECT_TRUE(contains(outcome.output, "chain.h5: 25 steps, 4 frames in"));
+  EXPECT_EQ(on_terminal({"run", "chain.toml", "--quiet", "--overwrite"}).output, "");
+}
+
+TEST_F(Terminal, ASweepHasABarForEachRunAndTakesThemAway) {
+  Arguments arguments{"sweep",    "chain.toml",
+                      "--output", "all.h5",
+                      "--jobs",   "2",
+                      "--set",    "output.every=1000000",
+                      "--over",   "integrator.steps=50000,50001,50002"};
+  auto const outcome = on_terminal(arguments);
+  EXPECT_EQ(outcome.status, 0);
+  for (char const* part : {" %  run 0000  integrator.steps=50000", " %  run 0001  integrator.steps",
+                           "0 of 3 runs", "\x1b[3A\r\x1b[J", "3 of 3  run 000", "all.h5: 3 runs"})
+    EXPECT_TRUE(contains(outcome.output, part));
+  EXPECT_FALSE(contains(outcome.output.substr(outcome.output.rfind("3 of 3")), "[#"));
+  arguments.insert(arguments.end(), {"--quiet", "--overwrite"});
+  EXPECT_EQ(on_terminal(arguments).output, "");
+}
+
+TEST_F(Terminal, TradeHasABarBesideItsResult) {
+  auto const outcome = on_terminal({"trade", "chain.toml", "--json", "--seconds", "0.01",
+                                    "--threads", "1", "--precision", "double"},
+                                   "result.json");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, "[#"));
+  EXPECT_TRUE(contains(outcome.output, " left  "));
+  EXPECT_TRUE(outcome.output.ends_with("\r\x1b[K"));
+}
+
+TEST_F(Terminal, AdviceHasABarUnlessItIsToBeQuiet) {
+  Arguments arguments{"advise",    "chain.toml", "--error",     "1e-3",
+                      "--threads", "1",          "--precision", "double"};
+  auto const outcome = on_terminal(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(contains(outcome.output, " so far  "));
+  EXPECT_TRUE(contains(outcome.output, "\r\x1b[Kscene "));
+  arguments.emplace_back("--quiet");
+  auto const quiet = on_terminal(arguments);
+  EXPECT_EQ(quiet.output.find('\x1b'), std::string::npos) << quiet.output;
+}
+
+TEST_F(Terminal, AWatchedRunIsDrawn) {
+  run(chain_scene());
+  auto const outcome = on_terminal({"watch", "out.h5"});
+  EXPECT_EQ(outcome.status, 0);
+  for (char const* part : {"run           complete", "progress      step 25 of 25", "energy  "})
+    EXPECT_TRUE(contains(outcome.output, part));
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The values of --over, and the grid that they make.
+#include <cayspin/io/scene.hpp>
+#include <cayspin/io/sweep.hpp>
+
+#include <gtest/gtest.h>
+
+namespace cayspin::io::test {
+namespace {
+
+using Values = std::vector<std::string>;
+
+TEST(SweptKey, CommasInsideBracketsAndQuotesDoNotSeparate) {
+  EXPECT_EQ(read_swept_key("a.b=0.1, -2e-3,+1").values, (Values{"0.1", "-2e-3", "+1"}));
+  EXPECT_EQ(read_swept_key("a=[0,0,1],[0,[1, 2]]").values, (Values{"[0,0,1]", "[0,[1, 2]]"}));
+  EXPECT_EQ(read_swept_key("a='x,y',\"é\\\",\" , 'µ'").values,
+            (Values{"'x,y'", "\"é\\\",\"", "'µ'"}));
+  EXPECT_EQ(read_swept_key("a={b=1,c=[2,3]},{}").values, (Values{"{b=1,c=[2,3]}", "{}"}));
+  EXPECT_EQ(read_swept_key("a=true").values, (Values{"true"}));
+  EXPECT_EQ(read_swept_key(" a . b = 1").key, "a.b");
+}
+
+TEST(SweptKey, NumbersAreKnownAsNumbers) {
+  EXPECT_EQ(read_swept_key("a=0.1,1e-3,-4").numbers, (std::vector<double>{0.1, 1e-3, -4}));
+  EXPECT_TRUE(read_swept_key("a=0.1,true").numbers.empty());
+  EXPECT_TRUE(read_swept_key("a='0.1'").numbers.empty());
+}
+
+TEST(SweptKey, WhatIsNoListOfValuesIsRefused) {
+  for (char const* text : {"a", "=1", "a=", "a=1,,2", "a=[1", "a=1]", "a=1\nb=2", "a=1,1", "a=x",
+                           "a=1] # [", "a=1]\nvalue=[2"})
+    EXPECT_THROW(read_swept_key(text), SceneError) << text;
+}
+
+TEST(SweptGrid, TheLastKeyTurnsFastest) {
+  SweepHeader header;
+  header.keys = {read_swept_key("a=1,2"), read_swept_key("b='p','q','r'")};
+  EXPECT_EQ(header.runs(), 6);
+  EXPECT_EQ(header.overrides(0), (Values{"a=1", "b='p'"}));
+  EXPECT_EQ(header.overrides(1), (Values{"a=1", "b='q'"}));
+  EXPECT_EQ(header.overrides(5), (Values{"a=2", "b='r'"}));
+  EXPECT_EQ(header.indices(4), (std::vector<std::size_t>{1, 1}));
+}
+
+}  // namespace
+}  // namespace cayspin::io::test
