@@ -42,8 +42,11 @@ io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
       io::parse_scene(info.header.scene_text, info.path, {"initial={uniform=[0,0,1]}"});
   io::OvfMesh mesh;
   mesh.nodes = info.header.shape;
-  mesh.step = scene.lattice.spacing;
-  for (std::size_t axis = 0; axis < 3; ++axis) mesh.base[axis] = mesh.step[axis] / 2;
+  if (scene.units.si) mesh.unit = "m";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    mesh.step[axis] = scene.lattice.spacing[axis] * scene.units.length;
+    mesh.base[axis] = mesh.step[axis] / 2;
+  }
   return mesh;
 }
 
@@ -51,7 +54,8 @@ io::OvfField field_of(io::TrajectoryInfo const& info, io::OvfMesh const& mesh, s
   auto const number = static_cast<std::size_t>(frame);
   io::OvfField field;
   field.title = "m";
-  field.description = {fmt::format("Total simulation time: {}", info.frame_times[number]),
+  field.description = {fmt::format("Total simulation time: {}{}", info.frame_times[number],
+                                   info.header.units.si ? " s" : ""),
                        fmt::format("Step: {}", info.frame_steps[number]),
                        fmt::format("Frame: {} of {}", frame, info.path.filename().string()),
                        fmt::format("Written by cayspin {}", info.header.cayspin_version)};

@@ -8,8 +8,6 @@
 #include "trade/resolved.hpp"
 #include "watch.hpp"
 
-#include <cayspin/version.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,33 +32,6 @@ void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
   fmt::print(stderr, "warning: {}\n", error.what());
 }
 
-template <class Space>
-io::TrajectoryHeader make_header(io::Scene const& typed, io::Scene const& scene,
-                                 Precision precision, Space const& exec) {
-  io::TrajectoryHeader header;
-  header.scene_text = typed.text;
-  if (typed.integrator.method->automatic) header.resolved_scene = scene.text;
-  header.cayspin_version = CAYSPIN_VERSION_STRING;
-  header.git_commit = CAYSPIN_GIT_COMMIT;
-  header.kokkos_version = fmt::format("{}.{}.{}", KOKKOS_VERSION / 10000,
-                                      KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100);
-  header.space = space_name<Space>();
-  header.precision = to_string(precision);
-  header.threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
-  header.shape = scene.lattice.shape;
-  header.units = scene.units;
-  return header;
-}
-
-io::RunOutputOptions output_options(io::Scene const& scene, RunOptions const& options) {
-  auto const& output = scene.output;
-  return {options.overwrite,
-          {output.compression, output.chunk},
-          output.xdmf,
-          output.table,
-          scene.lattice.spacing};
-}
-
 template <class Real, class Space>
 int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
            RunOptions const& options, Restart const* restart) {
@@ -74,8 +45,12 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   Watch<Real, Space> watch(
       scene, simulation.generator, simulation.spins, times.first,
       [&] {
-        return io::RunOutput(path, make_header(typed, scene, options.precision, simulation.exec),
-                             output_options(scene, options));
+        auto const& exec = simulation.exec;
+        int const threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
+        auto header =
+            run_header(typed, options.precision, space_name<Space>(), threads, CAYSPIN_GIT_COMMIT);
+        if (typed.integrator.method->automatic) header.resolved_scene = scene.text;
+        return io::RunOutput(path, header, run_output_options(scene, options.overwrite));
       },
       options.listener);
   std::optional<ControlledWatch<Real, Space>> controlled;
@@ -133,7 +108,7 @@ int run(RunOptions const& options) {
         "dt or tolerance that `cayspin advise` names");
   bool const silent = options.listener != Listener::user;
   auto const scene = trade::with_method(typed, space, options.precision,
-                                         trade::TrialProgress(silent, true).on_try());
+                                        trade::TrialProgress(silent, true).on_try());
   if (typed.integrator.method->automatic && options.listener == Listener::user)
     fmt::print("method auto: {}, {}\n", describe_method(scene),
                scene.integrator.tolerance

@@ -185,7 +185,8 @@ void print_text(AdviseOptions const& options, io::Units const& units, Advised co
   if (candidate.method->adaptive)
     fmt::print("tolerance   {:.3g}\n", choice.steps.tolerance);
   else
-    fmt::print("dt          {:.9g}{}, {} steps\n", resolved.dt, units.si ? " s" : "", resolved.steps);
+    fmt::print("dt          {:.9g}{}, {} steps\n", resolved.dt, units.si ? " s" : "",
+               resolved.steps);
   fmt::print("error       {:.2g}, predicted{}\n", choice.error,
              advised.why_shorter.empty() ? "" : " at the horizon");
   fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));

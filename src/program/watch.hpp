@@ -3,6 +3,7 @@
 
 #include "progress.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/run_files.hpp"
 #include "simulation/simulate.hpp"
 
 #include <cayspin/io/run_output.hpp>
@@ -19,12 +20,6 @@
 namespace cayspin::program {
 
 using namespace simulation;
-
-/// As they stand in the file.
-inline io::Scalars as_scalars(Sample const& sample, io::Units const& units) {
-  auto const& m = sample.magnetization;
-  return {sample.energy.value * units.energy, sample.norm_defect, {m.x, m.y, m.z}};
-}
 
 /// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
 /// ends before the end, the progress.

@@ -1,36 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "run_recorder.hpp"
 
-#include <cayspin/version.hpp>
-
-#include <fmt/format.h>
+#include "run_files.hpp"
 
 #include <algorithm>
 
 namespace cayspin::simulation {
-namespace {
-
-io::TrajectoryHeader header_of(SceneRun const& run, std::string const& git_commit) {
-  io::TrajectoryHeader header;
-  header.scene_text = run.scene().text;
-  header.cayspin_version = CAYSPIN_VERSION_STRING;
-  header.git_commit = git_commit;
-  header.kokkos_version = fmt::format("{}.{}.{}", KOKKOS_VERSION / 10000,
-                                      KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100);
-  header.space = run.space();
-  header.precision = to_string(run.precision());
-  header.threads = run.threads();
-  header.shape = run.scene().lattice.shape;
-  return header;
-}
-
-io::Scalars as_scalars(Sample const& sample) {
-  auto const& m = sample.magnetization;
-  return {sample.energy.value, sample.norm_defect, {m.x, m.y, m.z}};
-}
-
-}  // namespace
-
 RunRecorder::RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path,
                          bool overwrite, std::string const& git_commit)
     : run_(run),
@@ -38,7 +13,8 @@ RunRecorder::RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path 
       end_(end),
       evaluations_before_(run.evaluations()),
       seconds_before_(run.step_seconds()),
-      file_(path, header_of(run, git_commit), overwrite) {}
+      file_(path, run_header(run.scene(), run.precision(), run.space(), run.threads(), git_commit),
+            run_output_options(run.scene(), overwrite)) {}
 
 std::int64_t RunRecorder::next() const {
   auto const& output = run_.scene().output;
@@ -56,15 +32,20 @@ void RunRecorder::look(bool last) {
   };
   bool const frame = due(output.every), scalars = due(output.scalars_every);
   if (!frame && !scalars) return;
-  auto const values = as_scalars(run_.sample());
+  // run_.sample() is in the scene's units already.
+  auto const values = as_scalars(run_.sample(), {});
   if (scalars) file_.write_scalars(now, run_.time(), values);
-  if (!frame) return;
-  written_ = now;
-  auto const spins = run_.spins();
-  if (run_.precision() == Precision::double_precision)
-    file_.write_frame(now, run_.time(), values, packed<double>(spins.vectors).data());
-  else
-    file_.write_frame(now, run_.time(), values, packed<float>(spins.vectors).data());
+  if (frame) {
+    auto const spins = run_.spins();
+    if (run_.precision() == Precision::double_precision)
+      std::ranges::copy(packed<double>(spins.vectors), file_.frame<double>());
+    else
+      std::ranges::copy(packed<float>(spins.vectors), file_.frame<float>());
+    file_.write_frame(now, run_.time(), values);
+    written_ = now;
+  }
+  // What runs between two looks may use HDF5, too.
+  file_.frames();
 }
 
 void RunRecorder::finish(bool as_planned) {

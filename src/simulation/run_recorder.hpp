@@ -3,13 +3,14 @@
 
 #include "scene_run.hpp"
 
-#include <cayspin/io/trajectory.hpp>
+#include <cayspin/io/run_output.hpp>
 
 #include <filesystem>
 
 namespace cayspin::simulation {
 
-/// Writes a run, from its present step to another, into a trajectory file, as `cayspin run` does:
+/// Writes a run, from its present step to another, into a file and those beside it, as `cayspin
+/// run` does:
 ///   RunRecorder recorder(run, end, "run.h5", false, commit);
 ///   for (recorder.look(); recorder.next() > run.steps(); recorder.look())
 ///     run.advance(recorder.next() - run.steps());
@@ -35,7 +36,7 @@ class RunRecorder {
   std::int64_t evaluations_before_;
   double seconds_before_;
   Kokkos::Timer clock_;
-  io::TrajectoryFile file_;
+  io::RunOutput file_;
 };
 
 }  // namespace cayspin::simulation

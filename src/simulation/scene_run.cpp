@@ -61,19 +61,55 @@ Plan plan_of(io::Scene const& scene, Precision precision) {
   return plan;
 }
 
-template <class From, class Real>
-std::vector<Real> packed_from(io::HostVectors const& vectors) {
+template <class Work>
+void for_each_number(io::HostVectors const& vectors, Work const& work) {
   auto const& [nz, ny, nx] = vectors.shape;
-  auto const* data = static_cast<From const*>(vectors.data);
   auto const& strides = vectors.strides;
-  std::vector<Real> numbers;
-  numbers.reserve(static_cast<std::size_t>(3 * nz * ny * nx));
   for (std::int64_t k = 0; k < nz; ++k)
     for (std::int64_t j = 0; j < ny; ++j)
       for (std::int64_t i = 0; i < nx; ++i)
         for (std::int64_t c = 0; c < 3; ++c)
-          numbers.push_back(static_cast<Real>(
-              data[k * strides[0] + j * strides[1] + i * strides[2] + c * strides[3]]));
+          work(k * strides[0] + j * strides[1] + i * strides[2] + c * strides[3]);
+}
+
+void scale(io::HostVectors const& vectors, double factor) {
+  if (factor == 1) return;
+  for_each_number(vectors, [&](std::int64_t at) {
+    if (vectors.is_double)
+      static_cast<double*>(vectors.data)[at] *= factor;
+    else
+      static_cast<float*>(vectors.data)[at] *= static_cast<float>(factor);
+  });
+}
+
+// A program gives its fields in the units of its scene.
+io::Scene with_reduced_own_field(io::Scene scene) {
+  auto const units = scene.units;
+  auto& own = scene.field.own;
+  if (!units.si) return scene;
+  if (own.uniform)
+    own.uniform = [given = own.uniform, units](double t) {
+      auto field = given(t * units.time);
+      for (double& component : field) component /= units.field;
+      return field;
+    };
+  if (own.nonlocal)
+    own.nonlocal = [given = own.nonlocal, units](io::HostVectors const& spins,
+                                                 io::HostVectors const& field, double t) {
+      given(spins, field, t * units.time);
+      scale(field, 1 / units.field);
+    };
+  return scene;
+}
+
+template <class From, class Real>
+std::vector<Real> packed_from(io::HostVectors const& vectors) {
+  auto const& [nz, ny, nx] = vectors.shape;
+  auto const* data = static_cast<From const*>(vectors.data);
+  std::vector<Real> numbers;
+  numbers.reserve(static_cast<std::size_t>(3 * nz * ny * nx));
+  for_each_number(vectors,
+                  [&](std::int64_t at) { numbers.push_back(static_cast<Real>(data[at])); });
   return numbers;
 }
 
@@ -94,22 +130,23 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
   io::check_files(scene);
   auto const space = space_of(settings.space);
   start_kokkos(settings.threads);
-  auto const plan = plan_of(scene, settings.precision);
-  return in_space(space, settings.precision,
-                  [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
-                    return std::make_unique<SceneRunInSpace<Real, Space>>(
-                        scene, plan, settings.precision, space);
-                  });
+  auto const own = with_reduced_own_field(scene);
+  auto const plan = plan_of(own, settings.precision);
+  return in_space(
+      space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
+        return std::make_unique<SceneRunInSpace<Real, Space>>(own, plan, settings.precision, space);
+      });
 }
 
 std::int64_t SceneRun::step_at(double t) const {
-  double const steps = t / plan_.times.dt, whole = std::round(steps);
+  double const dt = plan_.times.dt * scene_.units.time;
+  double const steps = t / dt, whole = std::round(steps);
   if (!(std::abs(steps - whole) <= 1e-9 * std::max(1.0, 1e-6 * whole)) || !(whole >= 0) ||
       !(whole <= 0x1p53))
     throw UsageError(
         fmt::format("t = {} is {:.12g} steps of dt = {}; accepted: a whole number of "
                     "steps, such as t = {:.12g}",
-                    t, steps, plan_.times.dt, std::max(0.0, whole) * plan_.times.dt));
+                    t, steps, dt, std::max(0.0, whole) * dt));
   return static_cast<std::int64_t>(whole);
 }
 
@@ -122,7 +159,8 @@ Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
     throw UsageError(fmt::format(
         "step {} lies beyond step {}, t = {:.9g}, where the scene ends and its adaptive method "
         "stops; accepted: a later integrator.end, or integrator.steps = 0 for a run without end",
-        target, scene_.integrator.steps, plan_.times.at(scene_.integrator.steps)));
+        target, scene_.integrator.steps,
+        plan_.times.at(scene_.integrator.steps) * scene_.units.time));
   return advance_to(target, looks);
 }
 
@@ -145,19 +183,27 @@ void SceneRun::set_spins(io::HostVectors const& from) {
 
 Sample SceneRun::sample() {
   Turn const turn;
-  return look();
+  Sample now = look();
+  now.time *= scene_.units.time;
+  now.energy.value *= scene_.units.energy;
+  now.energy.magnitude *= scene_.units.energy;
+  return now;
 }
 
 std::vector<std::pair<std::string, double>> SceneRun::energies() {
   Turn const turn;
-  return term_energies();
+  auto energies = term_energies();
+  for (auto& [name, energy] : energies) energy *= scene_.units.energy;
+  return energies;
 }
 
 LentVectors SceneRun::field() {
   Turn const turn;
   if (scene_.system.kind != io::SystemKind::llg)
     throw UsageError("rigid bodies have no field; accepted: a scene with system.kind = \"llg\"");
-  return evaluated_field();
+  auto const field = evaluated_field();
+  scale(field.vectors, scene_.units.field);
+  return field;
 }
 
 }  // namespace cayspin::simulation

@@ -57,9 +57,9 @@ class SceneRun {
   std::string const& space() const { return space_; }
   int threads() const { return threads_; }  // 1 on devices
 
-  /// Steps taken, and the time after them.
+  /// Steps taken, and the time after them. Times, energies and fields are in the scene's units.
   std::int64_t steps() const { return number_; }
-  double time() const { return plan_.times.at(number_); }
+  double time() const { return reduced_time() * scene_.units.time; }
   std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
   double step_seconds() const { return step_seconds_; }      // stepping alone
 
@@ -87,6 +87,8 @@ class SceneRun {
 
  protected:
   SceneRun(io::Scene const& scene, Plan const& plan, Precision precision, std::string space);
+
+  double reduced_time() const { return plan_.times.at(number_); }
 
   virtual Advanced advance_to(std::int64_t target, Looks const& looks) = 0;
   virtual LentVectors lend_spins() = 0;

@@ -160,7 +160,7 @@ class SceneRunInSpace final
   LentVectors evaluated_field() override {
     Vectors const field("field", plan_.lattice);
     evaluate_field(simulation_.exec, simulation_.generator.landau_lifshitz().field(),
-                   simulation_.spins, time(), field);
+                   simulation_.spins, reduced_time(), field);
     simulation_.exec.fence("cayspin::SceneRun: field evaluated");
     if constexpr (on_host)
       return {host_vectors(field), std::make_shared<Vectors>(field)};
@@ -180,7 +180,7 @@ class SceneRunInSpace final
         numbers};
   }
 
-  Step now() const { return {number_, time(), plan_.times.dt, false}; }
+  Step now() const { return {number_, reduced_time(), plan_.times.dt, false}; }
 
   Simulation<Real, Space> simulation_;
   std::unique_ptr<OpenMethod> method_;

@@ -24,9 +24,9 @@ struct UnitAttribute {
   double Units::*member;
 };
 inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
-                                                     {"length_unit", &Units::length},
-                                                     {"field_unit", &Units::field},
-                                                     {"energy_unit", &Units::energy}};
+                                                    {"length_unit", &Units::length},
+                                                    {"field_unit", &Units::field},
+                                                    {"energy_unit", &Units::energy}};
 
 /// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame or at
 /// most `planes` of it along z, and where that passes `limit` bytes, the frame cut into equal slabs

@@ -61,7 +61,7 @@ class RunOutput::Implementation {
     if (options.xdmf)
       xdmf_.emplace(beside(path, ".xdmf"), path, header.shape, options.spacing, single_,
                     options.overwrite);
-    if (options.table) table_.emplace(beside(path, ".txt"), options.overwrite);
+    if (options.table) table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite);
     std::size_t bytes = 3 * (single_ ? sizeof(float) : sizeof(double));
     for (auto const extent : header.shape) bytes *= static_cast<std::size_t>(extent);
     for (auto& buffer : buffers_) {

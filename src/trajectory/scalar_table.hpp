@@ -13,7 +13,7 @@ namespace cayspin::io {
 class ScalarTable {
  public:
   /// Creates the file with the line of names. A file that exists is an error unless `overwrite`.
-  ScalarTable(std::filesystem::path path, bool overwrite);
+  ScalarTable(std::filesystem::path path, bool in_si, bool overwrite);
   ~ScalarTable();
   ScalarTable(ScalarTable const&) = delete;
   ScalarTable& operator=(ScalarTable const&) = delete;
