@@ -8,25 +8,15 @@
 namespace cayspin::io::detail {
 namespace {
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool begins_name(char c) { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; }
-bool in_name(char c) { return begins_name(c) || is_digit(c); }
-bool begins_exponent(char c) { return c == 'e' || c == 'E'; }
+bool in_name(char c) { return begins_name(c) || std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-// Where the number, the name or the single character that begins at `from` ends.
+// Where the name or the single character that begins at `from` ends. The exponent of a number is
+// taken for a name, which does no harm: it is not the variable.
 std::size_t end_of_token(std::string_view text, std::size_t from) {
-  std::size_t end = from;
-  auto const at = [&](std::size_t i) { return i < text.size() ? text[i] : ' '; };
-  if (begins_name(at(end))) {
-    while (in_name(at(end))) ++end;
-    return end;
-  }
-  if (!is_digit(at(end)) && at(end) != '.') return from + 1;
-  while (is_digit(at(end)) || at(end) == '.') ++end;
-  if (!begins_exponent(at(end))) return end;
-  auto const digits = at(end + 1) == '+' || at(end + 1) == '-' ? end + 2 : end + 1;
-  if (!is_digit(at(digits))) return end;
-  for (end = digits; is_digit(at(end));) ++end;
+  std::size_t end = from + 1;
+  if (begins_name(text[from]))
+    while (end < text.size() && in_name(text[end])) ++end;
   return end;
 }
 
