@@ -93,7 +93,7 @@ finish_installing_drawing() {
 
 install_python_package() {
   local venv=$root/build/venv
-  [ -x "$venv/bin/python" ] || logged venv python3 -m venv --system-site-packages "$venv"
+  [ -x "$venv/bin/python" ] || logged venv "$PYTHON" -m venv --system-site-packages "$venv"
   say "pip install . into build/venv (all of it in build/logs/pip.log)"
   mkdir -p "$logs"
   "$venv/bin/python" -m pip install --verbose . 2>&1 | tee "$logs/pip.log" |

@@ -60,9 +60,8 @@ class Scene:
             integrator = {**integrator, "steps": 0}
         typed, spins, own = _split({**tables, "system": system, "lattice": lattice, "field": field,
                                     "initial": initial, "integrator": integrator, "output": output})
-        text = "".join(f"# field.{key}: a function of the program that ran this scene\n"
-                       for key in own) + toml_text.document(typed)
-        self._finish(_cayspin.Scene.parse(text, "Scene", [], spins), own, None)
+        scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], spins)
+        self._finish(scene, own, None)
 
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:

@@ -8,6 +8,7 @@
 
 #include <cayspin/version.hpp>
 
+#include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -78,6 +79,12 @@ void define_scene(nb::module_& module) {
       .def(
           "set_own_field",
           [](io::Scene& scene, nb::object uniform, nb::object nonlocal) {
+            auto const note = [&](char const* key, nb::object const& function) {
+              if (!function.is_none())
+                scene.text += fmt::format("# field.{}: a function of the program\n", key);
+            };
+            note("applied", uniform);
+            note("nonlocal", nonlocal);
             scene.field.own = own_field(std::move(uniform), std::move(nonlocal));
             io::check_combination(scene);
           },
