@@ -30,7 +30,7 @@ auto column(std::vector<Sample> const& samples, Member const& member) {
 template <class Value>
 std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, std::int64_t end,
                                Extents const& inner, std::filesystem::path const& path) {
-  std::vector<Value> values(end - begin);
+  std::vector<Value> values(static_cast<std::size_t>(end - begin));
   if (values.empty()) return values;
   Extents extents{values.size()};
   extents.insert(extents.end(), inner.begin(), inner.end());

@@ -28,10 +28,10 @@ bool has_ended(io::SweptRun const& run) {
 // What makes the sweep in the file another one, or nothing.
 std::string difference(io::SweepHeader const& now, io::SweepHeader const& before) {
   auto const keys = [](io::SweepHeader const& header) {
-    std::vector<std::string> keys;
+    std::string text;
     for (auto const& key : header.keys)
-      keys.push_back(fmt::format("{}={}", key.key, fmt::join(key.values, ",")));
-    return fmt::format("{}", fmt::join(keys, " "));
+      text += fmt::format("{}{}={}", text.empty() ? "" : " ", key.key, fmt::join(key.values, ","));
+    return text;
   };
   if (keys(now) != keys(before)) return fmt::format("over {}", keys(before));
   if (now.precision != before.precision) return fmt::format("in {} precision", before.precision);

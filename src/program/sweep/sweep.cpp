@@ -99,9 +99,9 @@ bool run_all(SweepOptions const& options, Grid const& grid, Session& session) {
   Display display(grid, list, options.quiet);
   std::vector<Job> jobs;
   auto const running = [&] {
-    std::vector<Running> running;
-    for (auto const& job : jobs) running.push_back({job.run, job.child->share()});
-    return running;
+    std::vector<Running> now;
+    for (auto const& job : jobs) now.push_back({job.run, job.child->share()});
+    return now;
   };
   while (!open.empty() || !jobs.empty()) {
     while (!open.empty() && jobs.size() < static_cast<std::size_t>(sharing.jobs)) {
