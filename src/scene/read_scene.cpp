@@ -82,11 +82,6 @@ Scene read_scene(std::filesystem::path const& path, std::vector<std::string> con
   return parse_scene(read_text(path), path, overrides, std::move(given_spins));
 }
 
-Scene parse_scene(std::string text, std::filesystem::path const& name,
-                  std::vector<std::string> const& overrides) {
-  return read(std::move(text), name, overrides);
-}
-
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
   auto changed = parse_scene(scene.text, scene.path, overrides, scene.given_spins);
   changed.places = scene.places;

@@ -161,16 +161,11 @@ struct Scene {
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {},
                  std::shared_ptr<std::vector<double> const> given_spins = {});
 
-/// The same for a text in memory. Messages name it `name`, and its files lie in the folder of
-/// `name`.
-Scene parse_scene(std::string text, std::filesystem::path const& name,
-                  std::vector<std::string> const& overrides = {},
-                  std::shared_ptr<std::vector<double> const> given_spins = {});
-
 /// The same for a text in memory, such as that in a trajectory file. Messages name it `name`, and
 /// its files lie in the folder of `name`.
 Scene parse_scene(std::string text, std::filesystem::path const& name,
-                  std::vector<std::string> const& overrides = {});
+                  std::vector<std::string> const& overrides = {},
+                  std::shared_ptr<std::vector<double> const> given_spins = {});
 
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.
