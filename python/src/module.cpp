@@ -103,7 +103,8 @@ void define_scene(nb::module_& module) {
       .def_prop_ro(
           "method",
           [](io::Scene const& scene) { return std::string(scene.integrator.method->word); })
-      .def_prop_ro("dt", [](io::Scene const& scene) { return scene.integrator.dt; })
+      .def_prop_ro("dt",
+                   [](io::Scene const& scene) { return scene.integrator.dt * scene.units.time; })
       .def_prop_ro("steps", [](io::Scene const& scene) { return scene.integrator.steps; })
       .def_prop_ro("output", [](io::Scene const& scene) { return scene.output.file; })
       .def_prop_ro("guard_period",
