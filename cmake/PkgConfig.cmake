@@ -4,6 +4,11 @@
 
 # Calls itself along the libraries that a target is linked with; lists them in the order of a linker.
 function(cayspin_link_flags target flags)
+  # Kokkos in our own tree finds these for itself alone.
+  if(NOT TARGET ${target} AND target MATCHES "^(OpenMP|Threads|CUDA)::")
+    string(REPLACE CUDA CUDAToolkit package ${CMAKE_MATCH_1})
+    find_package(${package} QUIET)
+  endif()
   if(NOT TARGET ${target})
     if(target MATCHES "^cayspin_") # configured later: headers alone
       return()

@@ -10,6 +10,9 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 /* A run of a scene: its spins, its method and the time. */
 typedef struct cayspin_simulation cayspin_simulation;
@@ -77,6 +80,9 @@ cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magn
 /* Ends a simulation; NULL does nothing. */
 cayspin_status cayspin_close(cayspin_simulation* simulation);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif
