@@ -53,11 +53,11 @@ io::TrajectoryHeader make_header(io::Scene const& typed, io::Scene const& scene,
 
 io::RunOutputOptions output_options(io::Scene const& scene, RunOptions const& options) {
   auto const& output = scene.output;
-  return {options.overwrite,
-          {output.compression, output.chunk},
-          output.xdmf,
-          output.table,
-          scene.lattice.spacing};
+  return {.overwrite = options.overwrite,
+          .storage = {output.compression, output.chunk},
+          .xdmf = output.xdmf,
+          .table = output.table,
+          .spacing = scene.lattice.spacing};
 }
 
 template <class Real, class Space>

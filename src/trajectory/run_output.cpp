@@ -61,7 +61,9 @@ class RunOutput::Implementation {
     if (options.xdmf)
       xdmf_.emplace(beside(path, ".xdmf"), path, header.shape, options.spacing, single_,
                     options.overwrite);
-    if (options.table) table_.emplace(beside(path, ".txt"), options.overwrite);
+    if (options.table)
+      table_.emplace(beside(path, ".txt"), options.time_unit, options.energy_unit,
+                     options.overwrite);
     std::size_t bytes = 3 * (single_ ? sizeof(float) : sizeof(double));
     for (auto const extent : header.shape) bytes *= static_cast<std::size_t>(extent);
     for (auto& buffer : buffers_) {

@@ -15,9 +15,12 @@
 
 namespace cayspin::io {
 
-ScalarTable::ScalarTable(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
+ScalarTable::ScalarTable(std::filesystem::path path, std::string const& time_unit,
+                         std::string const& energy_unit, bool overwrite)
+    : path_(std::move(path)) {
   FileBeside file(path_, overwrite);
-  file.stream() << "# t ()\tmx ()\tmy ()\tmz ()\tE_total ()\tnorm_defect ()\n";
+  file.stream() << fmt::format("# t ({})\tmx ()\tmy ()\tmz ()\tE_total ({})\tnorm_defect ()\n",
+                               time_unit, energy_unit);
   file.commit();
   file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file_ < 0)

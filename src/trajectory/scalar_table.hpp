@@ -4,6 +4,7 @@
 #include "scalar_series.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace cayspin::io {
@@ -13,7 +14,8 @@ namespace cayspin::io {
 class ScalarTable {
  public:
   /// Creates the file with the line of names. A file that exists is an error unless `overwrite`.
-  ScalarTable(std::filesystem::path path, bool overwrite);
+  ScalarTable(std::filesystem::path path, std::string const& time_unit,
+              std::string const& energy_unit, bool overwrite);
   ~ScalarTable();
   ScalarTable(ScalarTable const&) = delete;
   ScalarTable& operator=(ScalarTable const&) = delete;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 namespace cayspin::io {
 
@@ -17,6 +18,7 @@ struct RunOutputOptions {
   bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
   bool table = false;                         ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
+  std::string time_unit, energy_unit;         ///< for the table; empty: reduced units
 };
 
 /// Writes the files of a run while the run goes on: a thread of its own takes up to two frames from
