@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <csignal>
 #include <numeric>
 
 namespace cayspin::program {
@@ -87,6 +88,9 @@ void create_folder(fs::path const& folder) {
 }  // namespace
 
 int export_ovf(ExportOptions const& options) {
+#if defined(SIGXFSZ)
+  std::signal(SIGXFSZ, SIG_IGN);  // then a write past the limit of a file's size is an error
+#endif
   auto const info = io::read_info(options.file);
   auto const frames = chosen_frames(options, info.frames);
   auto const mesh = mesh_of(info);

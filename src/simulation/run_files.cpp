@@ -28,7 +28,11 @@ io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite) 
   auto const& output = scene.output;
   auto spacing = scene.lattice.spacing;
   for (double& along_axis : spacing) along_axis *= scene.units.length;
-  return {overwrite, {output.compression, output.chunk}, output.xdmf, output.table, spacing};
+  return {.overwrite = overwrite,
+          .storage = {output.compression, output.chunk},
+          .xdmf = output.xdmf,
+          .table = output.table,
+          .spacing = spacing};
 }
 
 io::Scalars as_scalars(Sample const& sample, io::Units const& units) {

@@ -4,6 +4,7 @@
 #include "scalar_series.hpp"
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace cayspin::io {

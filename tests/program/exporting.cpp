@@ -102,6 +102,16 @@ TEST_F(Exporting, WrongUsesAreOneLine) {
       contains(start({"export", "none.h5", "--ovf", "ovf"}).errors, "none.h5: cannot open"));
 }
 
+TEST_F(Exporting, FullDiskLeavesNoFile) {
+  run(chain_scene());
+  auto const outcome = start({"export", "out.h5", "--ovf", "ovf"}, {.file_limit = 1500});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(is_one_line(outcome.errors));
+  EXPECT_TRUE(
+      contains(outcome.errors, "ovf/out_000003.ovf: cannot write the file: File too large"));
+  EXPECT_EQ(files(), 0U);
+}
+
 // The start is normalised whatever file it comes from, so both runs begin with the same bits.
 TEST_F(Exporting, RunsFromOvfAreRunsFromTheTrajectory) {
   for (std::string const precision : {"double", "single"}) {

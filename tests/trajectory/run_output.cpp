@@ -185,13 +185,16 @@ TEST_F(TrajectoryTest, FilesBesideTheTrajectoryAreKeptUnlessOverwritten) {
 }
 
 TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
-  RunOutput output(folder_ / "a.h5", small_header(), {.table = true});
+  auto header = small_header();
+  header.units.si = true;
+  RunOutput output(folder_ / "a.h5", header, {.table = true});
   Scalars const awkward{-1 / 3., 5e-324, {0.1, 1 - 1e-16, -1e300}};
   output.write_scalars(1, 1 / 7., awkward);
   output.finish({});
   std::ifstream stream(folder_ / "a.txt");
   std::string line;
   std::getline(stream, line);
+  EXPECT_EQ(line, "# t (s)\tmx ()\tmy ()\tmz ()\tE_total (J)\tnorm_defect ()");
   std::getline(stream, line);
   double numbers[6];
   char const* at = line.c_str();
