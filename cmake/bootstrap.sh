@@ -142,7 +142,7 @@ provide_kokkos
 [ "$verb $preset" != "test release" ] || provide_nanobind
 case $verb in
   deps) provide_style_tools; finish_installing_drawing; print_cmake_option ;;
-  build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
+  build) build cayspin_program cayspin_c; say "the program: $build_dir/bin/cayspin" ;;
   compile)
     finish_installing_drawing
     build all
