@@ -147,7 +147,7 @@ case $verb in
     provide_interchange_tools
     print_cmake_option
     ;;
-  build) build cayspin_program; say "the program: $build_dir/bin/cayspin" ;;
+  build) build cayspin_program cayspin_c; say "the program: $build_dir/bin/cayspin" ;;
   compile)
     finish_installing_drawing
     build all
