@@ -14,11 +14,11 @@ namespace cayspin::io {
 /// What a run writes besides its trajectory.
 struct RunOutputOptions {
   bool overwrite = false;
-  TrajectoryStorage storage;
-  bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
-  bool table = false;                         ///< FILE.txt, a line for each sample
-  std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
-  std::string time_unit, energy_unit;         ///< for the table; empty: reduced units
+  TrajectoryStorage storage = {};
+  bool xdmf = false;                             ///< FILE.xdmf, which describes FILE.h5 to viewers
+  bool table = false;                            ///< FILE.txt, a line for each sample
+  std::array<double, 3> spacing = {1, 1, 1};     ///< of the lattice, for the XDMF file
+  std::string time_unit = {}, energy_unit = {};  ///< for the table; empty: reduced units
 };
 
 /// Writes the files of a run while the run goes on: a thread of its own takes up to two frames from
