@@ -39,8 +39,9 @@ void expect_frames(fs::path const& path, int frames) {
   ASSERT_EQ(info.frames, frames);
   EXPECT_EQ(info.samples, frames);
   for (int frame = 0; frame < frames; ++frame) {
-    EXPECT_EQ(info.frame_steps[frame], 10 * frame);
-    EXPECT_EQ(info.frame_scalars[frame].energy, numbered_scalars(frame).energy);
+    auto const at = static_cast<std::size_t>(frame);
+    EXPECT_EQ(info.frame_steps[at], 10 * frame);
+    EXPECT_EQ(info.frame_scalars[at].energy, numbered_scalars(frame).energy);
     auto const expected = numbered_spins<Real>(small_header(), frame);
     EXPECT_EQ(read_spins(path, small_header().shape, frame),
               std::vector<double>(expected.begin(), expected.end()));

@@ -7,14 +7,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <string>
 
 namespace cayspin::io {
 
 /// What a run writes besides its trajectory.
 struct RunOutputOptions {
   bool overwrite = false;
-  TrajectoryStorage storage;
+  TrajectoryStorage storage = {};
   bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
   bool table = false;                         ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
