@@ -45,6 +45,7 @@ enum class Advanced { whole, interrupted, at_rest };
 /// N calls of advance(1) give the bits of one advance(N), and those of `cayspin run`.
 class SceneRun {
  public:
+  /// The fields of the program, scene.field.own, are in the scene's units, too.
   /// Throws io::SceneError, or UsageError for a space that is not compiled in.
   static std::unique_ptr<SceneRun> open(io::Scene const& scene, RunSettings const& settings);
 
