@@ -60,7 +60,7 @@ cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
    that is NULL the scene's output.file. A file that exists is an error unless `overwrite`. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
-/* Reduced units. */
+/* In the units of the scene: reduced, or seconds. */
 cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time);
 cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps);
 
@@ -71,7 +71,7 @@ cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_arra
 /* Copies spins in, normalised, of either precision. Methods that remember steps begin again. */
 cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array const* spins);
 
-/* Summed over sites; reduced units. */
+/* Summed over sites; in reduced units, or in joules for a scene in SI. */
 cayspin_status cayspin_energy(cayspin_simulation* simulation, double* energy);
 
 /* The mean of the spins. */
