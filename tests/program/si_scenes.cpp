@@ -2,7 +2,12 @@
 // Scenes in SI from end to end: the motion of the reduced scene to the bit, and numbers in SI.
 #include "si_scene.hpp"
 
+#include <cayspin/io/ovf.hpp>
+
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 namespace cayspin::program::test {
@@ -81,6 +86,32 @@ TEST_F(SiScene, TheFileSaysItsUnits) {
   EXPECT_TRUE(contains(said, "step 1, t = 1e-13 s: energy "));
   EXPECT_EQ(run(macrospin_scene(), {"--overwrite"}).header.units, io::Units{});
   EXPECT_TRUE(contains(start({"info", "out.h5"}).output, "units        reduced\n"));
+}
+
+TEST_F(SiScene, FilesOfOtherToolsAreInSi) {
+  auto const info = run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 10", "[0, 0, 0.1]"),
+                        {"--set", "output.table=true", "--set", "output.xdmf=true"});
+  EXPECT_EQ(start({"export", "out.h5", "--ovf", "."}).status, 0);
+  auto const field = io::read_ovf(in_folder("out_000001.ovf"));
+  EXPECT_EQ(field.mesh.unit, "m");
+  std::array const cell{4e-9, 5e-9, 3e-9};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(field.mesh.step[axis] / cell[axis], 1, 1e-15);
+    EXPECT_NEAR(field.mesh.base[axis] / cell[axis], 0.5, 1e-15);
+  }
+  std::string const before = "Total simulation time: ", time = field.description.at(0);
+  EXPECT_EQ(time.substr(0, before.size()), before);
+  EXPECT_EQ(std::stod(time.substr(before.size())), info.frame_times[1]);
+  EXPECT_EQ(time.substr(time.size() - 2), " s");
+  std::ifstream table(in_folder("out.txt"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line, "# t (s)\tmx ()\tmy ()\tmz ()\tE_total (J)\tnorm_defect ()");
+  std::getline(table, line);
+  std::getline(table, line);
+  EXPECT_EQ(std::stod(line), info.frame_times[1]);
+  std::ifstream xdmf(in_folder("out.xdmf"));
+  EXPECT_TRUE(contains(std::string(std::istreambuf_iterator<char>(xdmf), {}), "4e-09"));
 }
 
 }  // namespace
