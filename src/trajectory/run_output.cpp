@@ -41,13 +41,6 @@ void require_free_beside(std::filesystem::path const& path, char const* extensio
   require_free(other, overwrite);
 }
 
-/// What the run hands over at once: samples, and then a frame or none.
-struct Part {
-  std::vector<Sample> samples;
-  std::optional<Sample> frame;
-  std::byte* spins = nullptr;
-};
-
 }  // namespace
 
 class RunOutput::Implementation {
@@ -123,6 +116,13 @@ class RunOutput::Implementation {
   std::filesystem::path const& path() const { return file_->path(); }
 
  private:
+  // What the run hands over at once: samples, and then a frame or none.
+  struct Part {
+    std::vector<Sample> samples;
+    std::optional<Sample> frame;
+    std::byte* spins = nullptr;
+  };
+
   void require_open() const {
     if (ended_) throw std::logic_error(path().string() + ": the run has ended");
   }
