@@ -96,6 +96,7 @@ class ReducedUnits {
 /// length unit the cell's extent along x.
 class Micromagnetic : public ReducedUnits {
  public:
+  /// What the units are made of.
   struct Material {
     double Ms = 0;                    ///< saturation magnetization, A/m
     std::array<double, 3> cell = {};  ///< extents of a cell, m
@@ -137,6 +138,7 @@ class Micromagnetic : public ReducedUnits {
 /// - K sum of (S.e)^2 - mu_s sum of S.B. Lattices have a spacing of 1.
 class Atomistic : public ReducedUnits {
  public:
+  /// What the units are made of.
   struct Material {
     double mu_s = 0;                ///< moment of an atom, J/T
     double energy = 0;              ///< unit of energy, such as |J|, in joules

@@ -62,9 +62,11 @@ struct SweepInfo {
   bool one_file = false;  ///< the runs are in the file itself
 };
 
-/// The folder and the name of a run's own file until it is taken into the file of the sweep.
+/// The folder of the runs' own files until they are taken into the file of the sweep.
 std::filesystem::path sweep_folder(std::filesystem::path const& file);
+/// The name of a run: its group in the file of the sweep, and its own file without extension.
 std::string swept_run_name(std::int64_t run);
+/// A run's own file.
 std::filesystem::path swept_run_file(std::filesystem::path const& file, std::int64_t run);
 
 /// Writes PATH.partial and renames it: at every moment there is a whole file. With `one_file` the
@@ -75,6 +77,7 @@ bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
 
 /// Is it an HDF5 file with a sweep?
 bool is_sweep(std::filesystem::path const& path);
+/// Reads all but the runs' trajectories. Throws std::runtime_error with one line.
 SweepInfo read_sweep(std::filesystem::path const& path);
 
 }  // namespace cayspin::io
