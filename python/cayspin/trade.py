@@ -93,6 +93,7 @@ class Advice:
     steps: int
     tolerance: float | None  #: of adaptive methods
     horizon: float  #: the time up to which the error is predicted
+    units: str  #: of dt and horizon, the scene's: "reduced" or "SI"
     scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
     others: list[dict]  #: method and seconds of the next ones
 

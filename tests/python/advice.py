@@ -40,7 +40,8 @@ class Advice(PackageTest):
         keys = set(json.loads(subprocess.run([*command, "--json"], check=True, text=True,
                                              capture_output=True).stdout))
         self.assertEqual(keys, {"method", "precision", "dt", "steps", "tolerance", "error",
-                                "seconds", "memory", "horizon", "overrides", "others"})
+                                "seconds", "memory", "horizon", "units", "overrides",
+                                "others"})
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         for word in ("scene ", "method ", "error ", "memory ", "run it ", "next to it"):
             self.assertIn(word, text)
