@@ -2,8 +2,10 @@
 #pragma once
 
 // scene -> lattice + field -> generator -> stepper (rotation, isotropy) -> observer -> files
+#include <cayspin/checkpoint.hpp>
 #include <cayspin/concepts.hpp>
 #include <cayspin/evaluate.hpp>
+#include <cayspin/exchange_memory.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>

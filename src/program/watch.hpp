@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "checkpoint_schedule.hpp"
 #include "progress.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_files.hpp"
@@ -34,17 +35,20 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
 
  public:
   using OpenFile = std::function<io::RunOutput()>;
+  using StoreCheckpoint = std::function<void(Step const&)>;
 
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
   /// `first`: the step after which the run begins.
   Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
-        std::int64_t first, OpenFile open_file, Listener listener)
+        std::int64_t first, OpenFile open_file, StoreCheckpoint store_checkpoint, Listener listener)
       : first_(first),
         generator_(generator),
         output_(scene.output),
         units_(scene.units),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
+        store_checkpoint_(std::move(store_checkpoint)),
+        checkpoints_(scene.output.checkpoint_every, first),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
         progress_(first, scene.integrator.steps, spins.sites(), listener),
         frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())) {
@@ -53,14 +57,15 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
 
   bool due(Step const& step) const override {
     return guard_.due(step) || frame_due(step) || scalars_due(step) || progress_.due(step) ||
-           interrupt_requested();
+           checkpoints_.due(step) || interrupt_requested();
   }
 
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
     if (progress_.due(step)) progress_.show(step);
     bool const interrupt = interrupt_requested();
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
-    if (!recorded && !guard_.due(step)) return Next::proceed;
+    bool const stored = checkpoints_.due(step);
+    if (!recorded && !stored && !guard_.due(step)) return Next::proceed;
 
     Sample const now = torque_ ? sample(exec, generator_, step, spins, *torque_)
                                : sample(exec, generator_, step, spins);
@@ -72,7 +77,13 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     interrupted_ = interrupt && !at_rest_ && !step.last;
     if (recorded || ends)
       write(exec, now, spins, frame_due(step) || ends, scalars_due(step) || ends);
-    return ends ? Next::stop : Next::proceed;
+    if (ends) return Next::stop;
+    if (stored) {
+      file_->frames();  // HDF5 is the writer's until it has written
+      store_checkpoint_(step);
+      checkpoints_.wait();
+    }
+    return Next::proceed;
   }
 
   /// Why the run failed, if it did.
@@ -81,6 +92,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   Sample const& last_frame() const { return last_frame_; }
   std::optional<io::RunOutput>& file() { return file_; }
   Progress& progress() { return progress_; }
+  Guard& guard() { return guard_; }
 
  private:
   bool at(Step const& step, std::int64_t every) const {
@@ -114,6 +126,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   io::Units units_;
   std::optional<double> until_torque_;
   OpenFile open_file_;
+  StoreCheckpoint store_checkpoint_;
+  CheckpointSchedule checkpoints_;
   std::optional<io::RunOutput> file_;
   Guard guard_;
   Progress progress_;
@@ -143,9 +157,12 @@ class ControlledWatch : public RunObserver<Space, SpinField<Real, typename Space
 
   std::int64_t evaluations() const { return control_.evaluations_done(); }
 
+  using Control = EnergyControl<Spins, SceneGenerator<Spins>>;
+  Control& control() { return control_; }
+
  private:
   Watch<Real, Space>& watch_;
-  EnergyControl<Spins, SceneGenerator<Spins>> control_;
+  Control control_;
 };
 
 }  // namespace cayspin::program

@@ -89,6 +89,20 @@ Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrid
   return changed;
 }
 
+std::string as_override(std::string const& scene_text, std::string const& name) {
+  auto const document = parse(scene_text, "a scene");
+  std::ostringstream stream;
+  stream << name << '=';
+  if (auto const* const table = document[name].as_table()) {
+    auto in_line = *table;
+    in_line.is_inline(true);
+    stream << in_line;
+  } else {
+    stream << "{}";
+  }
+  return stream.str();
+}
+
 SceneError scene_error(Scene const& scene, std::string_view key, std::string_view message) {
   for (auto known = key;; known = known.substr(0, known.find_last_of(".["))) {
     auto const found = scene.places.find(known);

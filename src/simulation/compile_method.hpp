@@ -160,6 +160,9 @@ class Compiled {
       return integrate(simulation_.exec, stepper_, generator(simulation_.generator),
                        simulation_.spins, simulation_.times, *simulation_.observer);
     }
+    void exchange_memory(Checkpoint& checkpoint) override {
+      cayspin::exchange_memory(stepper_, checkpoint, "method.");
+    }
 
    private:
     using Of = Stepper<typename Simulation::Spins, Rotation>;
@@ -197,6 +200,7 @@ class Compiled {
             .rotations = rotations(),
             .order = Stepper<HostSpins, Cayley>::order,
             .evaluations = evaluations(),
+            .remembers = remembers_steps<Stepper<HostSpins, Cayley>>,
             .work_fields = work_fields(),
             .work_bytes = work_bytes,
             .stable_step = stable_step,

@@ -37,7 +37,24 @@ class Guard {
   /// What is wrong with a state, if anything: one line with step and time.
   std::optional<std::string> judge(Step const& step, Energy const& energy, double norm_defect);
 
+  /// The step of the last look; -1 before the first one.
+  std::int64_t last_look() const { return last_ ? last_->step : -1; }
   double first_energy() const { return first_->energy; }
+
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    bool looked = first_.has_value();
+    visit("looked", looked);
+    if (!looked) return;
+    Look first = first_.value_or(Look{}), last = last_.value_or(Look{});
+    visit("first_step", first.step);
+    visit("first_energy", first.energy);
+    visit("last_step", last.step);
+    visit("last_energy", last.energy);
+    first_ = first;
+    last_ = last;
+  }
 
  private:
   struct Look {

@@ -110,7 +110,10 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   // Two frames on their way, and the copies of one that a compressing filter reads and writes.
   bool const copies = scene.output.compression > 0 || scene.output.chunk > 0;
   std::int64_t const frames = (copies ? 4 : 2) * static_cast<std::int64_t>(sizeof(Real)) * numbers;
-  memory.files = std::max(start - memory.work, frames);
+  // A field on its way into a checkpoint, in double.
+  bool const stores = !scene.output.checkpoint_every.is_never();
+  std::int64_t const checkpoint = stores ? (sizeof(Real) == sizeof(double) ? 8 : 12) * numbers : 0;
+  memory.files = std::max(start - memory.work, frames + checkpoint);
   return memory;
 }
 

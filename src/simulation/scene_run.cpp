@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_run.hpp"
 
+#include "restart.hpp"
 #include "scene_run_in_space.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
+#include <cayspin/version.hpp>
 
 #include <fmt/format.h>
 
@@ -132,10 +136,34 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
   start_kokkos(settings.threads);
   auto const own = with_reduced_own_field(scene);
   auto const plan = plan_of(own, settings.precision);
-  return in_space(
-      space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
-        return std::make_unique<SceneRunInSpace<Real, Space>>(own, plan, settings.precision, space);
-      });
+  std::optional<Restart> restart;
+  if (settings.restart)
+    restart.emplace(LeftBehind(*settings.restart), own, plan, settings.precision,
+                    std::numeric_limits<std::int64_t>::max());
+  auto run = in_space(space, settings.precision,
+                      [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
+                        return std::make_unique<SceneRunInSpace<Real, Space>>(
+                            own, plan, settings.precision, space,
+                            restart ? restart->spins() : io::initial_spins(own));
+                      });
+  if (!restart) return run;
+  run->number_ = restart->step();
+  if (restart->memory()) run->exchange(*restart->memory());
+  return run;
+}
+
+void SceneRun::save(std::filesystem::path const& checkpoint) {
+  Turn const turn;
+  io::CheckpointWriter file(checkpoint, {.scene_text = scene_.text,
+                                         .resolved_scene = {},
+                                         .cayspin_version = CAYSPIN_VERSION_STRING,
+                                         .precision = std::string(to_string(precision_)),
+                                         .shape = scene_.lattice.shape,
+                                         .step = number_,
+                                         .time = time(),
+                                         .si = scene_.units.si});
+  exchange(file);
+  file.commit();
 }
 
 std::int64_t SceneRun::step_at(double t) const {

@@ -3,11 +3,13 @@
 
 #include "plan.hpp"
 
+#include <cayspin/checkpoint.hpp>
 #include <cayspin/io/own_field.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +23,7 @@ struct RunSettings {
   Precision precision = Precision::double_precision;
   std::optional<std::string> space = {};  // default: Kokkos' default
   std::optional<int> threads = {};        // of host spaces; only the first run of a process has it
+  std::optional<std::filesystem::path> restart = {};  // a checkpoint or trajectory to go on from
 };
 
 /// Vectors of all sites in host memory, which stays there and unchanged as long as `owner` does.
@@ -62,7 +65,10 @@ class SceneRun {
   std::int64_t steps() const { return number_; }
   double time() const { return reduced_time() * scene_.units.time; }
   std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
-  double step_seconds() const { return step_seconds_; }      // stepping alone
+  /// Of an adaptive method: steps taken, and those thrown away.
+  std::int64_t own_steps() const { return own_steps_; }
+  std::int64_t rejected_steps() const { return rejected_; }
+  double step_seconds() const { return step_seconds_; }  // stepping alone
 
   /// The step at time t. Throws UsageError when t is no whole number of steps.
   std::int64_t step_at(double t) const;
@@ -79,6 +85,10 @@ class SceneRun {
   /// io::SceneError for a zero or non-finite spin, UsageError for another shape.
   void set_spins(io::HostVectors const& from);
 
+  /// Stores all that another run needs to go on with the same bits, by RunSettings::restart.
+  /// Throws std::runtime_error when the file cannot be; one that exists is replaced.
+  void save(std::filesystem::path const& checkpoint);
+
   /// Energy, norm defect and magnetization now.
   Sample sample();
   /// The energy of each term of the scene, which it names; of rigid bodies "rotation".
@@ -94,13 +104,14 @@ class SceneRun {
   virtual Advanced advance_to(std::int64_t target, Looks const& looks) = 0;
   virtual LentVectors lend_spins() = 0;
   virtual void replace_spins(std::vector<double> const& start) = 0;
+  virtual void exchange(Checkpoint& checkpoint) = 0;
   virtual Sample look() = 0;
   virtual std::vector<std::pair<std::string, double>> term_energies() = 0;
   virtual LentVectors evaluated_field() = 0;
 
   io::Scene scene_;
   Plan plan_;
-  std::int64_t number_ = 0, evaluations_ = 0;
+  std::int64_t number_ = 0, evaluations_ = 0, own_steps_ = 0, rejected_ = 0;
   double step_seconds_ = 0;
   int threads_ = 1;
 

@@ -3,6 +3,7 @@
 
 #include "guard.hpp"
 #include "interrupt_poll.hpp"
+#include "run_state.hpp"
 #include "scene_run.hpp"
 
 #include <cayspin/evaluate.hpp>
@@ -25,9 +26,9 @@ class SceneRunInSpace final
 
  public:
   SceneRunInSpace(io::Scene const& scene, Plan const& plan, Precision precision,
-                  std::string const& space)
+                  std::string const& space, std::vector<double> const& start)
       : SceneRun(scene, plan, precision, space),
-        simulation_(scene, plan.lattice, plan.times, io::initial_spins(scene)),
+        simulation_(scene, plan.lattice, plan.times, start),
         method_(plan.variant.open(&simulation_, plan.options)),
         guard_(scene, epsilon) {
     if (on_host) threads_ = simulation_.exec.concurrency();
@@ -62,6 +63,8 @@ class SceneRunInSpace final
     }
     number_ += ending.summary.steps;
     evaluations_ += ending.summary.evaluations;
+    own_steps_ += ending.summary.own_steps;
+    rejected_ += ending.summary.rejected;
     step_seconds_ += ending.summary.step_seconds;
     if (failure_) throw NumbersFailed(scene_.path.string() + ": " + *failure_);
     continues_ = true;
@@ -132,6 +135,14 @@ class SceneRunInSpace final
     looked_ = -1;
     next_look_ = number_;
     if (control_) control_->reset();
+  }
+
+  void exchange(Checkpoint& checkpoint) override {
+    exchange_state(checkpoint, simulation_, *method_, continues_, guard_,
+                   control_ ? &*control_ : nullptr);
+    if (!checkpoint.restores()) return;
+    looked_ = guard_.last_look();
+    next_look_ = looked_ < 0 ? number_ : std::numeric_limits<std::int64_t>::max();
   }
 
   Sample look() override {

@@ -3,6 +3,7 @@
 
 #include "simulate.hpp"
 
+#include <cayspin/checkpoint.hpp>
 #include <cayspin/io/method.hpp>
 #include <cayspin/stepper/step_control.hpp>
 
@@ -27,6 +28,8 @@ class OpenMethod {
   virtual ~OpenMethod() = default;
   /// Integrates over the simulation's times, under its observer.
   virtual Summary advance() = 0;
+  /// Stores or restores what it remembers.
+  virtual void exchange_memory(Checkpoint& checkpoint) = 0;
 };
 
 /// One compiled integrator: a method with what changes its stepper's type.
@@ -40,6 +43,7 @@ struct Variant {
 
   int order = 0;
   std::optional<int> evaluations = {};  // of the generator, per step, where that is a fixed number
+  bool remembers = false;               // steps before the present one
   int work_fields = 0;                  // spin fields of work memory, where stages go one by one
 
   /// Bytes of work memory. by_time_alone: the scene's field needs no spins to be made ready.

@@ -43,14 +43,5 @@ TEST_F(CompensatedRuns, TakeTheStepsOfTheirMethod) {
 }
 
 // What rounding left over is not in the file.
-TEST_F(CompensatedRuns, DoNotGoOnFromAFile) {
-  end("method='rkmk4',compensated=true", "double");
-  auto const outcome =
-      start({"run", "scene.toml", "--quiet", "--output", "more.h5", "--restart", "out.h5", "--set",
-             "integrator={method='rkmk4',dt=1e-4,end=2.0,compensated=true}"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_TRUE(contains(outcome.errors, "accepted: a run without it")) << outcome.errors;
-}
-
 }  // namespace
 }  // namespace cayspin::program::test

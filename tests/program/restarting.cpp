@@ -2,6 +2,11 @@
 // --restart: a run that goes on from a file is the run without a break.
 #include "program_test.hpp"
 
+#include <cayspin/io/checkpoint.hpp>
+#include <cayspin/io/scene.hpp>
+
+#include <csignal>
+
 namespace cayspin::program::test {
 namespace {
 
@@ -61,6 +66,119 @@ TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
   EXPECT_EQ(last_spins("first.h5"), before);
   std::filesystem::remove(in_folder("first.h5"));
   expect_refused({}, "first.h5");
+}
+
+/// What makes a run remember more than its spins.
+std::vector<Arguments> const memories{
+    {"--set", "integrator.method='ab2'"},
+    {"--set", "integrator.method='fx4'"},
+    {"--set", "integrator.compensated=true", "--precision", "single"},
+    {"--set", "integrator.energy_control=true", "--set", "system.damping=0"},
+    {"--set", "integrator.until_torque=1e-9"},
+    {"--set", "integrator.method='euler'", "--set",
+     "integrator.isotropy='finite_difference_backward'"}};
+
+TEST_F(Restarting, GoesOnFromTheCheckpointOfAMethodThatRemembers) {
+  for (auto const& memory : memories) {
+    SCOPED_TRACE(memory.back());
+    auto with = [&](Arguments more) {
+      more.insert(more.end(), memory.begin(), memory.end());
+      more.push_back("--overwrite");
+      return more;
+    };
+    run_to("25", "whole.h5", with({"--space", "serial"}));
+    run_to("12", "first.h5", with({"--threads", "1"}));
+    EXPECT_TRUE(std::filesystem::exists(in_folder("first.checkpoint.h5")));
+    run_to("25", "second.h5", with({"--threads", "2", "--restart", "first.h5"}));
+    EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
+    run_to("25", "third.h5", with({"--restart", "first.checkpoint.h5"}));
+    EXPECT_EQ(last_spins("third.h5"), last_spins("whole.h5"));
+  }
+}
+
+TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
+  Arguments const ab2{"--set", "integrator.method='ab2'"};
+  run_to("12", "first.h5", ab2);
+  auto const checkpoint = in_folder("first.checkpoint.h5");
+  std::filesystem::rename(checkpoint, in_folder("kept.h5"));
+  expect_refused(ab2, "first.checkpoint.h5 is not there");
+  // Of another scene than the file's.
+  run_to("7", "other.h5", ab2);
+  std::filesystem::rename(in_folder("other.checkpoint.h5"), checkpoint);
+  expect_refused(ab2, "is of another scene");
+  std::filesystem::rename(in_folder("kept.h5"), checkpoint);
+  auto const size = std::filesystem::file_size(checkpoint);
+  std::filesystem::resize_file(checkpoint, size / 2);
+  expect_refused(ab2, "first.checkpoint.h5");
+}
+
+TEST_F(Restarting, BeginsAnewByAnotherMethod) {
+  run_to("12", "first.h5");
+  run_to("25", "second.h5", {"--set", "integrator.method='ab2'", "--restart", "first.h5"});
+  run_to("25", "third.h5",
+         {"--set", "integrator.method='ab2'", "--set", "initial={file='first.h5'}"});
+  EXPECT_EQ(io::read_info(in_folder("second.h5")).frame_steps.front(), 12);
+}
+
+TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
+  run_to("12", "first.h5", {"--set", "output.checkpoint_every='5 steps'"});
+  EXPECT_FALSE(std::filesystem::exists(in_folder("first.checkpoint.h5"))) << "the last frame is it";
+  run_to("12", "never.h5",
+         {"--set", "integrator.method='ab2'", "--set", "output.checkpoint_every=0"});
+  EXPECT_FALSE(std::filesystem::exists(in_folder("never.checkpoint.h5")));
+  write("second.checkpoint.h5", "kept");
+  expect_refused({}, "second.checkpoint.h5: cannot write the file: it exists");
+}
+
+// Killed without notice, far from its end.
+TEST_F(Restarting, GoesOnFromTheCheckpointOfAKilledRun) {
+  for (std::string const method : {"rkmk4", "ab2", "dp5"}) {
+    SCOPED_TRACE(method);
+    auto const run_into = [&](std::string const& file, Arguments const& more = {}) {
+      Arguments arguments{
+          "run", write("scene.toml", chain_scene()), "--quiet", "--overwrite", "--output", file};
+      for (std::string const set :
+           {"integrator.method='" + method + "'", std::string("integrator.dt=0.001"),
+            std::string("integrator.steps=60000"), std::string("output.every=60000")})
+        arguments.insert(arguments.end(), {"--set", set});
+      if (method == "dp5")
+        arguments.insert(arguments.end(), {"--set", "integrator.tolerance=1e-6"});
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return arguments;
+    };
+    auto const checkpoint = in_folder("first.checkpoint.h5");
+    std::filesystem::remove(checkpoint);
+    auto const process =
+        begin(run_into("first.h5", {"--set", "output.checkpoint_every='500 steps'"}));
+    EXPECT_TRUE(eventually([&] { return std::filesystem::exists(checkpoint); }));
+    EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
+    auto const step = io::CheckpointReader(checkpoint).header().step;
+    ASSERT_GT(step, 0);
+    auto const second = start(run_into("second.h5", {"--restart", "first.h5"}));
+    EXPECT_EQ(second.status, 0) << second.errors;
+    auto const whole = start(run_into("whole.h5"));
+    EXPECT_EQ(whole.status, 0) << whole.errors;
+    EXPECT_EQ(io::read_info(in_folder("second.h5")).frame_steps.front(), step);
+    EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
+  }
+}
+
+TEST_F(Restarting, TakesTheMethodThatAutoChoseBefore) {
+  auto const to = [](char const* steps) {
+    return std::string("integrator={method='auto',error=1e-4,dt=0.1,steps=") + steps + "}";
+  };
+  run_to("5", "first.h5", {"--set", to("5")});
+  auto const first = io::read_info(in_folder("first.h5")).header.resolved_scene;
+  // What stands in the file is taken, whatever would be chosen.
+  auto const before = io::parse_scene(first, "scene.toml").integrator;
+  run_to("10", "second.h5", {"--set", to("10"), "--restart", "first.h5"});
+  auto const second = io::read_info(in_folder("second.h5"));
+  auto const after = io::parse_scene(second.header.resolved_scene, "scene.toml").integrator;
+  EXPECT_EQ(after.method, before.method);
+  EXPECT_EQ(after.dt, before.dt);
+  EXPECT_EQ(after.tolerance, before.tolerance);
+  EXPECT_EQ(after.steps, 2 * before.steps);
+  EXPECT_EQ(second.frame_steps.front(), before.steps);
 }
 
 }  // namespace

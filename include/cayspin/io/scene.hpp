@@ -107,6 +107,15 @@ struct Integrator {
   }
 };
 
+/// How often a run stores what it needs to go on with the same bits, in FILE.checkpoint.h5: after
+/// so many steps, or after so many seconds of its own time. Never where both are 0.
+struct CheckpointPeriod {
+  double seconds = 600;
+  std::int64_t steps = 0;
+
+  bool is_never() const { return seconds == 0 && steps == 0; }
+};
+
 /// The table [output].
 struct Output {
   std::optional<std::filesystem::path> file;  ///< as typed: relative to the working directory
@@ -116,6 +125,7 @@ struct Output {
   std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all
   bool xdmf = false;               ///< FILE.xdmf for viewers
   bool table = false;              ///< FILE.txt with the scalar samples
+  CheckpointPeriod checkpoint_every;
 
   static constexpr auto flags() {
     return std::to_array<Flag<Output>>({{"xdmf", &Output::xdmf}, {"table", &Output::table}});
@@ -170,6 +180,9 @@ Scene parse_scene(std::string text, std::filesystem::path const& name,
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides);
+
+/// A table of a scene's text, as the override "NAME={...}" that puts it into another scene.
+std::string as_override(std::string const& scene_text, std::string const& name);
 
 /// Refuses what has no meaning together, as read_scene does: method, generator, isotropy, rotation,
 /// system, lattice and field. Throws SceneError.

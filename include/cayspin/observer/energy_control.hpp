@@ -117,6 +117,17 @@ class EnergyControl {
   /// Forgets the energy: the next call takes the spins' own, or that of the options.
   void reset() { energy_ = options_.energy; }
 
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    bool holds = energy_.has_value();
+    visit("holds", holds);
+    if (!holds) return;
+    double energy = energy_.value_or(0);
+    visit("energy", energy);
+    energy_ = energy;
+  }
+
   bool due(Step const& step) const { return !energy_ || step.number % options_.period == 0; }
 
   /// Changes `spins` in place. Throws std::invalid_argument when they are not of the lattice given

@@ -70,6 +70,12 @@ class StageMemory {
     exec.fence(label);
   }
 
+  /// Calls visit(name, field) for the fields that the step before left.
+  template <class Visit>
+  void visit_carried(Visit const& visit) const {
+    for (std::size_t i = 0; i < carried_.size(); ++i) visit(Update::carried[i], carried_[i]);
+  }
+
   /// The spins at the end of a step that does not end in place.
   Spins& end() { return levels_[0]; }
 

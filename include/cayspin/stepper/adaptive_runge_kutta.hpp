@@ -80,6 +80,26 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   /// Forgets the run so far: the next step begins at its own t and spins.
   void reset() { running_ = false; }
 
+  /// For cayspin::exchange_memory: the own step under way, and what chooses the next one.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    visit("evaluations", evaluations_done_);
+    visit("accepted", accepted_);
+    visit("rejected", rejected_);
+    visit("running", running_);
+    if (!running_) return;
+    controller_.visit_memory(visit);
+    visit("begin_time", begin_time_);
+    visit("end_time", end_time_);
+    visit("dt", dt_);
+    visit("next_dt", next_dt_);
+    visit("begin", begin_);
+    visit("end", end_);
+    visit("last_generator", last_);
+    for (std::size_t i = 0; i < increments_.size(); ++i)
+      visit("increment_" + std::to_string(i + 1), increments_[i]);
+  }
+
   /// Brings `spins` from t to t + dt under `generator`. Waits.
   /// Throws StepTooSmall when no step is small enough, std::invalid_argument when `spins` is not of
   /// the lattice given at construction, dt is negative or options.end is before t + dt.

@@ -95,8 +95,18 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   }
 
   /// Forgets what the stepper remembers of the step before.
-  void reset() {
-    if constexpr (requires { stepper_.reset(); }) stepper_.reset();
+  void reset()
+    requires requires(Stepper& inner) { inner.reset(); }
+  {
+    stepper_.reset();
+  }
+
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit)
+    requires requires(Stepper& inner) { inner.visit_memory(visit); }
+  {
+    stepper_.visit_memory(visit);
   }
 
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so

@@ -84,6 +84,19 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   /// changed the spins or the generator. cayspin::integrate calls it for each run.
   void reset() { past_.forget(); }
 
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    past_.visit_memory(visit);
+    visit("evaluations", evaluations_done_);
+    visit("starts", starts_);
+    if constexpr (Estimates) {
+      visit("has_error", has_error_);
+      visit("largest_of_late", largest_of_late_);
+      if (has_error_) visit("error", angles_);
+    }
+  }
+
   /// The largest error estimated for the step before the last one, as an angle in radians; NaN
   /// until Order + 1 steps are taken from a start. Waits.
   template <class Exec>

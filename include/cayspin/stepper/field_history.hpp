@@ -54,6 +54,16 @@ class FieldHistory {
   /// The step from the last field that was stored.
   double last_step() const { return steps_[0]; }
 
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    visit("known", known_);
+    for (std::size_t back = 0; back < known_; ++back) {
+      visit("step_" + std::to_string(back), steps_[back]);
+      visit("field_" + std::to_string(back), (*this)[back]);
+    }
+  }
+
   /// Times of the state after `skipped` steps before the last one, as 0, and of the Nodes - 1
   /// fields before it, with steps of `unit`.
   template <std::size_t Nodes>

@@ -55,6 +55,12 @@ class RedBlack : public detail::StepperBase<Spins> {
   /// Evaluations of the generator so far, rounded up to whole ones.
   std::int64_t evaluations_done() const { return (passes_done_ + 1) / 2; }
 
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    visit("passes", passes_done_);
+  }
+
   /// Advances `spins` from t to t + dt, in place, under `generator`: a LandauLifshitz, or a
   /// generator whose prepare returns one. Throws std::invalid_argument when `spins` is not of the
   /// lattice given at construction, and when the field needs all spins beforehand.

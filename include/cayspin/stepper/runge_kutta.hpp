@@ -106,6 +106,14 @@ class RungeKutta : public detail::StepperBase<Spins> {
     memory_.forget(this->label("::reset"));
   }
 
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit)
+    requires(detail::carried_fields<Update>() > 0)
+  {
+    memory_.visit_carried(visit);
+  }
+
   /// Can `batch` take these steps? Few spins on a host space, under a generator that is the same at
   /// every step.
   template <class Exec, class Generator>

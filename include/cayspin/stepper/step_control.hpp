@@ -89,6 +89,13 @@ class StepController {
     rejected_ = false;
   }
 
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    visit("error_before", before_);
+    visit("after_rejection", rejected_);
+  }
+
  private:
   static constexpr double safety = 0.9, smallest = 0.1, largest = 5;
 

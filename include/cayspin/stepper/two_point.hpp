@@ -58,7 +58,20 @@ class TwoPoint : public detail::StepperBase<Spins> {
 
   /// Forgets the step before; the next one is a first step. cayspin::integrate does it for each
   /// run.
-  void reset() { last_dt_ = 0; }
+  void reset()
+    requires(Method::remembers)
+  {
+    last_dt_ = 0;
+  }
+
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit)
+    requires(Method::remembers)
+  {
+    visit("last_dt", last_dt_);
+    if (last_dt_ != 0) visit("kept_generator", kept_);
+  }
 
   /// Takes `spins` as the state at t, one step of dt before the next one.
   template <class Exec, class Generator>

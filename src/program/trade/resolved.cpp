@@ -85,4 +85,32 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
   return io::with_overrides(scene, resolve(scene, *advised.choice).overrides);
 }
 
+std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string const& typed_before,
+                                        std::string const& resolved_before) {
+  if (!scene.integrator.method->automatic || resolved_before.empty()) return std::nullopt;
+  auto const parsed = [&](std::string const& text) {
+    return io::parse_scene(text, scene.path, {}, scene.given_spins);
+  };
+  auto const typed = parsed(typed_before), resolved = parsed(resolved_before);
+  // What is due at steps of the scene is due at so many times as many of the chosen method.
+  double const ratio = typed.integrator.dt / resolved.integrator.dt;
+  auto const steps = [&](std::int64_t of_scene) {
+    return std::llround(static_cast<double>(of_scene) * ratio);
+  };
+  bool const same_choice = typed.integrator.error == scene.integrator.error &&
+                           typed.integrator.dt == scene.integrator.dt;
+  double const whole = static_cast<double>(scene.integrator.steps) * ratio;
+  if (!same_choice || std::abs(whole - std::round(whole)) > 1e-6) return std::nullopt;
+  std::vector overrides{io::as_override(resolved_before, "integrator"),
+                        fmt::format("integrator.steps={}", steps(scene.integrator.steps))};
+  auto const keep = [&](char const* key, std::int64_t every) {
+    if (scene.places.contains(std::string("output.") + key))
+      overrides.push_back(
+          fmt::format("output.{}={}", key, std::max<std::int64_t>(1, steps(every))));
+  };
+  keep("every", scene.output.every);
+  keep("scalars_every", scene.output.scalars_every);
+  return io::with_overrides(scene, overrides);
+}
+
 }  // namespace cayspin::program::trade

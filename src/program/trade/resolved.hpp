@@ -3,6 +3,7 @@
 
 #include "advice.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,5 +23,10 @@ Resolved resolve(io::Scene const& scene, Advice const& advice);
 /// other scene as it is. Inside a KokkosSession. Throws NumbersFailed when nothing gets there.
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
                       OnTry const& on_try = {});
+
+/// A scene of method "auto" with the method that was chosen for it in a run before, of which the
+/// scene as typed and as resolved are given. None where no such choice was made.
+std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string const& typed_before,
+                                        std::string const& resolved_before);
 
 }  // namespace cayspin::program::trade

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/checkpoint.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <concepts>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace cayspin {
+
+namespace detail {
+
+/// Brings one member after the other to a checkpoint, or from it.
+class ExchangeMemory {
+ public:
+  explicit ExchangeMemory(Checkpoint& with, std::string prefix = {})
+      : with_(with), prefix_(std::move(prefix)) {}
+
+  template <class Number>
+    requires std::integral<Number> || std::floating_point<Number>
+  void operator()(std::string const& name, Number& number) const {
+    double value = static_cast<double>(number);
+    with_.number(prefix_ + name, value);
+    number = static_cast<Number>(value);
+  }
+
+  template <class Real, int Components, class MemorySpace>
+  void operator()(std::string const& name,
+                  SiteField<Real, Components, MemorySpace> const& field) const {
+    std::vector<double> numbers;
+    if (!with_.restores()) {
+      auto held = copy_to_host(field);
+      if constexpr (std::is_same_v<Real, double>)
+        numbers = std::move(held);
+      else
+        numbers.assign(held.begin(), held.end());
+    }
+    with_.field(prefix_ + name, numbers);
+    if (with_.restores()) copy_from_host(numbers, field);
+  }
+
+ private:
+  Checkpoint& with_;
+  std::string prefix_;
+};
+
+}  // namespace detail
+
+/// Does a stepper carry something from one step to the next? A multistep, adaptive or compensated
+/// one does.
+template <class Stepper>
+inline constexpr bool remembers_steps = requires(Stepper& stepper) { stepper.reset(); };
+
+/// Brings what `stepper`, or an EnergyControl, remembers to a checkpoint that takes, or from one
+/// that gives back. Then integrate with times.continues goes on as the other one would have. Work
+/// on the stepper's fields must have finished; waits.
+/// Throws what the checkpoint throws, and std::invalid_argument for fields of another size.
+template <class Stepper>
+void exchange_memory(Stepper& stepper, Checkpoint& checkpoint, std::string const& prefix = {}) {
+  detail::ExchangeMemory const visit(checkpoint, prefix);
+  if constexpr (requires { stepper.visit_memory(visit); }) {
+    stepper.visit_memory(visit);
+  } else {
+    static_assert(!remembers_steps<Stepper>,
+                  "A stepper with a member reset() remembers steps: it needs visit_memory(visit), "
+                  "which calls visit(name, member) for what they are remembered by.");
+  }
+}
+
+}  // namespace cayspin

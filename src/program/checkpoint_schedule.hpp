@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "simulation/interrupt_poll.hpp"
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/step.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+namespace cayspin::program {
+
+/// When a run stores a checkpoint on its way.
+class CheckpointSchedule {
+ public:
+  CheckpointSchedule(io::CheckpointPeriod const& period, std::int64_t first)
+      : period_(period), first_(first) {
+    wait();
+  }
+
+  bool due(Step const& step) const {
+    if (step.number == first_ || step.last) return false;
+    return period_.steps > 0 ? step.number % period_.steps == 0 : elapsed_ && (*elapsed_)();
+  }
+  /// To be called when one is stored.
+  void wait() {
+    if (period_.seconds == 0) return;
+    std::chrono::duration<double> const period(period_.seconds);
+    elapsed_.emplace(
+        [begin = Clock::now(), period] { return Clock::now() - begin >= period; });
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  io::CheckpointPeriod period_;
+  std::int64_t first_;
+  mutable std::optional<simulation::InterruptPoll> elapsed_;  // asked at most some times a second
+};
+
+}  // namespace cayspin::program

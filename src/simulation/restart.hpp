@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "plan.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
+#include <cayspin/io/trajectory.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// What a run left behind for another one: a trajectory, the checkpoint beside it, or a checkpoint.
+struct LeftBehind {
+  explicit LeftBehind(std::filesystem::path path);
+
+  /// The scene as it ran, with the method that was chosen where that is "auto".
+  std::string const& scene_as_run() const;
+  /// The scene as typed; resolved_scene is empty unless its method is "auto".
+  std::string const& scene_text() const;
+  std::string const& resolved_scene() const;
+
+  std::filesystem::path path;
+  std::optional<io::TrajectoryInfo> trajectory;
+  std::unique_ptr<io::CheckpointReader> checkpoint;
+};
+
+/// The state from which a run of a scene goes on with the bits of a run without a break.
+class Restart {
+ public:
+  /// Throws UsageError when there is no such state: the lattice, the precision or the units are
+  /// others, its time is not that of its step, no step is left before `end`, or the method
+  /// remembers steps that are in no checkpoint.
+  Restart(LeftBehind from, io::Scene const& scene, Plan const& plan, Precision precision,
+          std::int64_t end);
+
+  std::int64_t step() const { return step_; }
+  /// As io::read_spins gives them: bits are kept.
+  std::vector<double> spins() const;
+  /// What the run remembered, where that is needed.
+  io::CheckpointReader* memory() const { return memory_; }
+  /// The files that it reads.
+  std::vector<std::filesystem::path> files() const;
+
+ private:
+  LeftBehind from_;
+  std::int64_t step_ = 0;
+  bool uses_checkpoint_ = false;
+  io::CheckpointReader* memory_ = nullptr;
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "fletcher32.hpp"
+#include "format.hpp"
+#include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
+#include "hdf5/error.hpp"
+#include "new_file.hpp"
+#include "open_file_space.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <functional>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace cayspin::io {
+namespace {
+
+constexpr char const* format_mark = "checkpoint_format";
+constexpr std::int64_t checkpoint_version = 1;
+constexpr std::uint64_t overhead_bytes = 64 * 1024;
+
+// Never 0, so that a block of zeros is no field with its checksum.
+std::int64_t checksum(std::span<double const> numbers) {
+  auto const bytes = std::as_bytes(numbers);
+  return std::int64_t{1} + fletcher32(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+std::filesystem::path checkpoint_beside(std::filesystem::path trajectory) {
+  return trajectory.replace_extension(".checkpoint.h5");
+}
+
+class CheckpointWriter::Implementation {
+ public:
+  Implementation(std::filesystem::path path, CheckpointHeader const& header)
+      : path_(std::move(path)),
+        stored_(header.precision == single_precision ? H5T_IEEE_F32LE : H5T_IEEE_F64LE),
+        file_(path_, true, true),
+        space_(file_.get(), path_) {
+    auto const [nx, ny, nz] = header.shape;
+    for (auto const extent : {nz, ny, nx}) extents_.push_back(static_cast<hsize_t>(extent));
+    space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
+    RootAttributes const attributes(file_.get(), path_);
+    attributes.create(format_mark, checkpoint_version);
+    attributes.create("cayspin_version", header.cayspin_version);
+    attributes.create("scene", header.scene_text);
+    attributes.create("resolved_scene", header.resolved_scene);
+    attributes.create("precision", header.precision);
+    attributes.create("step", header.step);
+    attributes.create("time", header.time);
+    attributes.create("units", std::string(header.si ? si_units : reduced_units));
+    numbers_ = GroupHandle(
+        check(H5Gcreate2(file_.get(), "numbers", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path_,
+              "cannot create group numbers"));
+  }
+
+  void number(std::string const& name, double value) {
+    RootAttributes(numbers_.get(), path_).create(name.c_str(), value);
+  }
+
+  void field(std::string const& name, std::vector<double> const& numbers) {
+    space_.reserve(numbers.size() * sizeof(double) + overhead_bytes, path_);
+    auto const sites =
+        std::accumulate(extents_.begin(), extents_.end(), hsize_t{1}, std::multiplies<>{});
+    auto extents = extents_;
+    extents.push_back(numbers.size() / sites);
+    auto const action = "cannot write dataset " + name;
+    DataspaceHandle const space(check(
+        H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), path_, action));
+    DatasetHandle const dataset(check(H5Dcreate2(file_.get(), name.c_str(), stored_, space.get(),
+                                                 H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                      path_, action));
+    check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+          path_, action);
+    RootAttributes(dataset.get(), path_).create("checksum", checksum(numbers));
+  }
+
+  void commit() {
+    std::string const action = "cannot write the file";
+    numbers_.close();
+    check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, action);
+    space_.trim();
+    void* descriptor = nullptr;
+    check(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor), path_, action);
+    if (::fsync(*static_cast<int*>(descriptor)) != 0 && errno != EINVAL)
+      throw_failure(path_, action, std::strerror(errno));
+    check(file_.commit().close(), path_, action);
+  }
+
+ private:
+  std::filesystem::path path_;
+  hid_t stored_;
+  Extents extents_;
+  NewFile file_;
+  OpenFileSpace space_;
+  GroupHandle numbers_;
+};
+
+CheckpointWriter::CheckpointWriter(std::filesystem::path path, CheckpointHeader const& header) {
+  QuietErrors const quiet;
+  implementation_ = std::make_unique<Implementation>(std::move(path), header);
+}
+
+CheckpointWriter::~CheckpointWriter() {
+  QuietErrors const quiet;
+  implementation_.reset();
+}
+
+void CheckpointWriter::number(std::string const& name, double& value) {
+  QuietErrors const quiet;
+  implementation_->number(name, value);
+}
+
+void CheckpointWriter::field(std::string const& name, std::vector<double>& numbers) {
+  QuietErrors const quiet;
+  implementation_->field(name, numbers);
+}
+
+void CheckpointWriter::commit() {
+  QuietErrors const quiet;
+  implementation_->commit();
+}
+
+class CheckpointReader::Implementation {
+ public:
+  explicit Implementation(std::filesystem::path path)
+      : path_(std::move(path)), file_(open_file(path_)) {
+    RootAttributes const attributes(file_.get(), path_);
+    if (!attributes.has(format_mark))
+      throw_failure(path_, "cannot read the checkpoint", "it is not one");
+    auto const version = attributes.read_integer(format_mark);
+    if (version != checkpoint_version)
+      throw_failure(path_, "cannot read the checkpoint",
+                    "its format is " + std::to_string(version) + "; accepted is " +
+                        std::to_string(checkpoint_version));
+    header_.cayspin_version = attributes.read_text("cayspin_version");
+    header_.scene_text = attributes.read_text("scene");
+    header_.resolved_scene = attributes.read_text("resolved_scene");
+    header_.precision = attributes.read_text("precision");
+    header_.step = attributes.read_integer("step");
+    header_.time = attributes.read_real("time");
+    header_.si = attributes.read_text("units") == si_units;
+    auto const extents =
+        dataset_extents(open_dataset(file_.get(), "spins", 4, path_).get(), path_);
+    for (int axis = 0; axis < 3; ++axis)
+      header_.shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);
+    numbers_ = GroupHandle(check(H5Gopen2(file_.get(), "numbers", H5P_DEFAULT), path_,
+                                 "cannot open group numbers"));
+  }
+
+  double number(std::string const& name) const {
+    return RootAttributes(numbers_.get(), path_).read_real(name.c_str());
+  }
+
+  std::vector<double> field(std::string const& name) const {
+    auto const dataset = open_dataset(file_.get(), name.c_str(), 4, path_);
+    auto const extents = dataset_extents(dataset.get(), path_);
+    // Before memory is taken for them.
+    if (!std::equal(header_.shape.rbegin(), header_.shape.rend(), extents.begin()) ||
+        extents[3] > most_components)
+      throw_failure(path_, "cannot read dataset " + name, "its extents are not those of the spins");
+    std::vector<double> numbers(
+        std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>{}));
+    read_block(dataset.get(), H5T_NATIVE_DOUBLE, Extents(4), extents, numbers.data(), path_);
+    if (RootAttributes(dataset.get(), path_).read_integer("checksum") != checksum(numbers))
+      throw_failure(path_, "cannot read dataset " + name, "its numbers are not those written");
+    return numbers;
+  }
+
+  CheckpointHeader const& header() const { return header_; }
+  std::filesystem::path const& path() const { return path_; }
+
+ private:
+  static constexpr hsize_t most_components = 3;
+
+  std::filesystem::path path_;
+  FileHandle file_;
+  GroupHandle numbers_;
+  CheckpointHeader header_;
+};
+
+CheckpointReader::CheckpointReader(std::filesystem::path path) {
+  QuietErrors const quiet;
+  implementation_ = std::make_unique<Implementation>(std::move(path));
+}
+
+CheckpointReader::~CheckpointReader() = default;
+CheckpointHeader const& CheckpointReader::header() const { return implementation_->header(); }
+std::filesystem::path const& CheckpointReader::path() const { return implementation_->path(); }
+
+void CheckpointReader::number(std::string const& name, double& value) {
+  QuietErrors const quiet;
+  value = implementation_->number(name);
+}
+
+void CheckpointReader::field(std::string const& name, std::vector<double>& numbers) {
+  QuietErrors const quiet;
+  numbers = implementation_->field(name);
+}
+
+bool is_checkpoint(std::filesystem::path const& path) {
+  QuietErrors const quiet;
+  auto const file = open_file(path);
+  return RootAttributes(file.get(), path).has(format_mark);
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A stepper that gets back what another one remembered goes on with its bits and counts.
+#include "../support/figures.hpp"
+#include "../support/landau_lifshitz.hpp"
+
+#include <tuple>
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+using isotropy::FiniteDifferenceBackward;
+
+Slab const slab{.lattice = Lattice::chain(8),
+                .exchange = 1,
+                .anisotropy = 0.8,
+                .axis = {1, 2, 3},
+                .applied = {0.5, -0.7, 0.9},
+                .damping = 0.2};
+
+template <class Of>
+Of made_like(typename Of::spins_type const& spins) {
+  if constexpr (AdaptiveStepper<Of>)
+    return Of(spins, StepOptions{.tolerance = 1e-4, .end = 20 * 0.05});
+  else
+    return Of(spins);
+}
+
+template <class Stepper>
+class Checkpoints : public ::testing::Test {};
+template <class Real>
+using Field = SpinField<Real, Space::memory_space>;
+template <class Spins>
+using Estimating = FieldExtrapolation4<Spins, true>;
+using Kinds = ::testing::Types<
+    LieAdamsBashforth2<Field<double>>, LieAdamsBashforth2<Field<float>>,
+    LieEuler<Field<double>, FiniteDifferenceBackward>, Compensated<Rkmk4<Field<double>>>,
+    Compensated<Rkmk4<Field<float>>>, FieldExtrapolation3<Field<float>>,
+    FieldExtrapolation4<Field<double>>, Estimating<Field<double>>, AdaptiveRkmk<Field<double>>,
+    AdaptiveRkmk<Field<float>>, AdaptiveStereographic<Field<double>, tableau::BogackiShampine3>,
+    AdaptiveProjected<Field<double>>>;
+TYPED_TEST_SUITE(Checkpoints, Kinds);
+
+template <class Stepper>
+std::tuple<std::int64_t, std::int64_t> counts(Stepper const& stepper) {
+  if constexpr (AdaptiveStepper<Stepper>)
+    return {stepper.accepted_steps(), stepper.rejected_steps()};
+  else if constexpr (requires { stepper.evaluations_done(); })
+    return {stepper.evaluations_done(), 0};
+  else
+    return {0, 0};
+}
+
+// At every step, the first ones of a multistep method among them, and within steps of an adaptive
+// one.
+TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
+  static_assert(remembers_steps<TypeParam>);
+  using Spins = typename TypeParam::spins_type;
+  constexpr std::int64_t steps = 20;
+  auto const start = [] {
+    Spins spins("spins", slab.lattice);
+    copy_from_host(copy_to_host(random_spins(slab.lattice, 5)), spins);
+    return spins;
+  };
+  auto const go = [](TypeParam& stepper, Spins& spins, std::int64_t from, std::int64_t to) {
+    integrate(Space{}, stepper, slab.natural(), spins, Times{0, 0.05, to, from, from > 0});
+  };
+  for (std::int64_t const cut : {1, 2, 3, 4, 7, 13}) {
+    Spins whole = start();
+    TypeParam first = made_like<TypeParam>(whole);
+    go(first, whole, 0, cut);
+    CheckpointInMemory checkpoint;
+    exchange_memory(first, checkpoint);
+    checkpoint.close();
+    Spins second = start();
+    copy_from_host(copy_to_host(whole), second);
+    TypeParam other = made_like<TypeParam>(second);
+    Spins elsewhere = start();  // what it remembers of another run is replaced
+    go(other, elsewhere, 0, 5);
+    exchange_memory(other, checkpoint);
+    go(first, whole, cut, steps);
+    go(other, second, cut, steps);
+    EXPECT_EQ(copy_to_host(second), copy_to_host(whole)) << "cut after " << cut << " steps";
+    EXPECT_EQ(counts(other), counts(first)) << "cut after " << cut << " steps";
+  }
+}
+
+TEST(Checkpoint, HoldsNothingOfAnotherLattice) {
+  using Stepper = LieAdamsBashforth2<Field<double>>;
+  Field<double> const small("spins", Lattice::chain(4));
+  Field<double> spins("spins", Lattice::chain(8));
+  Stepper stepper(spins), other(small);
+  stepper.step(Space{}, slab.natural(), spins, 0, 0.1);
+  CheckpointInMemory checkpoint;
+  exchange_memory(stepper, checkpoint);
+  checkpoint.close();
+  EXPECT_THROW(exchange_memory(other, checkpoint), std::invalid_argument);
+  CheckpointInMemory empty;
+  empty.close();
+  EXPECT_THROW(exchange_memory(stepper, empty), std::out_of_range);
+}
+
+}  // namespace
