@@ -20,6 +20,9 @@ class Simulation:
     `precision` is "double" or "single", `space` one of the execution spaces compiled in (default:
     that of Kokkos), `threads` their number: the first simulation of a process decides that.
 
+    `restart` names a file of save(), or the trajectory of a run: the simulation goes on from there
+    with the bits of one without a break.
+
     While it steps, other Python threads run. Ctrl-C stops it between two steps with
     KeyboardInterrupt, and it can go on from there. N calls of step() give the bits of one step(N),
     and those of `cayspin run`.
@@ -28,8 +31,9 @@ class Simulation:
     """
 
     def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
-                 threads: int | None = None):
-        self._run = _cayspin.Run(scene._scene, precision, space, threads)
+                 threads: int | None = None, restart: str | os.PathLike | None = None):
+        self._run = _cayspin.Run(scene._scene, precision, space, threads,
+                                 None if restart is None else os.fspath(restart))
         self._scene = scene
         self._observers: list[tuple[int, Callable[[Simulation], Any]]] = []
 
@@ -72,6 +76,11 @@ class Simulation:
             recorder.finish(False)
             raise
         recorder.finish(True)
+
+    def save(self, checkpoint: str | os.PathLike) -> None:
+        """Stores all that Simulation(scene, restart=checkpoint) needs to go on with the same bits.
+        A file of that name is replaced as a whole."""
+        self._run.save(os.fspath(checkpoint))
 
     def _advance(self, end, guard_period, until_torque, recorder):
         run = self._run

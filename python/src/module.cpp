@@ -111,15 +111,35 @@ void define_scene(nb::module_& module) {
                    [](io::Scene const& scene) { return Guard::period_of(io::sites(scene)); });
 }
 
+// HDF5 has its lock in h5py, which holds the GIL: so does what reads or writes files.
+template <class Work>
+auto as_error(Work const& work) {
+  try {
+    return work();
+  } catch (UsageError const&) {
+    throw;
+  } catch (io::SceneError const&) {
+    throw;
+  } catch (std::runtime_error const& error) {
+    throw UsageError(error.what());
+  }
+}
+
 void define_run(nb::module_& module) {
   nb::class_<SceneRun>(module, "Run", nb::is_weak_referenceable())
       .def(nb::new_([](io::Scene const& scene, std::string const& precision,
-                       std::optional<std::string> const& space, std::optional<int> threads) {
-             RunSettings const settings{precision_of(precision), space, threads};
+                       std::optional<std::string> const& space, std::optional<int> threads,
+                       std::optional<std::filesystem::path> const& restart) {
+             RunSettings const settings{precision_of(precision), space, threads, restart};
+             if (restart) return as_error([&] { return SceneRun::open(scene, settings); });
              nb::gil_scoped_release const released;
              return SceneRun::open(scene, settings);
            }),
-           "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none())
+           "scene"_a, "precision"_a, "space"_a.none(), "threads"_a.none(), "restart"_a.none())
+      .def("save",
+           [](SceneRun& run, std::filesystem::path const& checkpoint) {
+             as_error([&] { run.save(checkpoint); });
+           })
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
       .def("step_at", &SceneRun::step_at)
       .def("spins", [](SceneRun& run) { return array_of(without_gil<&SceneRun::spins>(run)); })
@@ -154,29 +174,18 @@ void define_run(nb::module_& module) {
                    [](SceneRun const& run) { return std::string(to_string(run.precision())); });
 }
 
-// HDF5 has its lock in h5py, which holds the GIL: so do these.
 void define_recorder(nb::module_& module) {
-  auto const as_error = [](auto const& work) {
-    try {
-      return work();
-    } catch (UsageError const&) {
-      throw;
-    } catch (std::runtime_error const& error) {
-      throw UsageError(error.what());
-    }
-  };
   nb::class_<RunRecorder>(module, "Recorder")
-      .def(nb::new_([as_error](SceneRun& run, std::int64_t end, std::filesystem::path const& path,
-                               bool overwrite) {
+      .def(nb::new_([](SceneRun& run, std::int64_t end, std::filesystem::path const& path,
+                       bool overwrite) {
              return as_error([&] {
                return std::make_unique<RunRecorder>(run, end, path, overwrite, CAYSPIN_GIT_COMMIT);
              });
            }),
            "run"_a, "end"_a, "path"_a, "overwrite"_a, nb::keep_alive<0, 1>())
       .def_prop_ro("next", &RunRecorder::next)
-      .def("look",
-           [as_error](RunRecorder& recorder, bool last) { as_error([&] { recorder.look(last); }); })
-      .def("finish", [as_error](RunRecorder& recorder, bool as_planned) {
+      .def("look", [](RunRecorder& recorder, bool last) { as_error([&] { recorder.look(last); }); })
+      .def("finish", [](RunRecorder& recorder, bool as_planned) {
         as_error([&] { recorder.finish(as_planned); });
       });
 }

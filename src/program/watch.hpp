@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "checkpoint_schedule.hpp"
 #include "progress.hpp"
+#include "simulation/checkpoint_schedule.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/simulate.hpp"

@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "run_recorder.hpp"
 
+#include "files/file_beside.hpp"
 #include "run_files.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
 
 #include <algorithm>
 
 namespace cayspin::simulation {
+namespace {
+
+constexpr std::int64_t most_steps = 4096;  // from one look at the clock to the next
+
+std::filesystem::path free_checkpoint(std::filesystem::path const& path, bool overwrite) {
+  auto checkpoint = io::checkpoint_beside(path);
+  io::require_free(checkpoint, overwrite);
+  return checkpoint;
+}
+
+}  // namespace
+
 RunRecorder::RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path,
                          bool overwrite, std::string const& git_commit)
     : run_(run),
@@ -13,20 +28,30 @@ RunRecorder::RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path 
       end_(end),
       evaluations_before_(run.evaluations()),
       seconds_before_(run.step_seconds()),
+      checkpoint_(free_checkpoint(path, overwrite)),
+      checkpoints_(run.scene().output.checkpoint_every, first_),
       file_(path, run_header(run.scene(), run.precision(), run.space(), run.threads(), git_commit),
-            run_output_options(run.scene(), overwrite)) {}
+            run_output_options(run.scene(), overwrite)) {
+  std::filesystem::remove(checkpoint_);
+}
 
 std::int64_t RunRecorder::next() const {
   auto const& output = run_.scene().output;
   std::int64_t const now = run_.steps();
   auto const after = [&](std::int64_t every) { return (now / every + 1) * every; };
-  return std::min({after(output.every), after(output.scalars_every), std::max(now, end_)});
+  auto const& period = output.checkpoint_every;
+  return std::min({after(output.every), after(output.scalars_every),
+                   after(period.steps > 0 ? period.steps : most_steps), std::max(now, end_)});
 }
 
 void RunRecorder::look(bool last) {
   auto const& output = run_.scene().output;
   std::int64_t const now = run_.steps();
   if (now == written_) return;
+  if (checkpoints_.due({now, run_.time(), 0, last || now == end_})) {
+    run_.save(checkpoint_);
+    checkpoints_.wait();
+  }
   auto const due = [&](std::int64_t every) {
     return last || now == first_ || now == end_ || now % every == 0;
   };
@@ -52,6 +77,12 @@ void RunRecorder::finish(bool as_planned) {
   io::RunCost const cost{run_.evaluations() - evaluations_before_, clock_.seconds(),
                          run_.step_seconds() - seconds_before_};
   as_planned ? file_.finish(cost) : file_.close(cost);
+  // A run whose numbers failed is past its last frame: what was stored before is worth more.
+  if (run_.scene().output.checkpoint_every.is_never() || written_ != run_.steps()) return;
+  if (run_.remembers())
+    run_.save(checkpoint_);
+  else
+    std::filesystem::remove(checkpoint_);
 }
 
 }  // namespace cayspin::simulation

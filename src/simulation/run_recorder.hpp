@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "checkpoint_schedule.hpp"
 #include "scene_run.hpp"
 
 #include <cayspin/io/run_output.hpp>
@@ -23,7 +24,8 @@ class RunRecorder {
   RunRecorder(RunRecorder const&) = delete;
   RunRecorder& operator=(RunRecorder const&) = delete;
 
-  /// The step at which the file next wants a frame or a sample; the present one at the end.
+  /// The step at which the file next wants a frame, a sample or a question about the time; the
+  /// present one at the end.
   std::int64_t next() const;
   /// Writes what is due at the present step; with `last`, a frame in any case.
   void look(bool last = false);
@@ -36,6 +38,8 @@ class RunRecorder {
   std::int64_t evaluations_before_;
   double seconds_before_;
   Kokkos::Timer clock_;
+  std::filesystem::path checkpoint_;
+  CheckpointSchedule checkpoints_;
   io::RunOutput file_;
 };
 

@@ -166,6 +166,8 @@ void SceneRun::save(std::filesystem::path const& checkpoint) {
   file.commit();
 }
 
+bool SceneRun::remembers() const { return simulation::remembers(scene_, plan_); }
+
 std::int64_t SceneRun::step_at(double t) const {
   double const dt = plan_.times.dt * scene_.units.time;
   double const steps = t / dt, whole = std::round(steps);

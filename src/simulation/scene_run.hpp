@@ -70,6 +70,9 @@ class SceneRun {
   std::int64_t rejected_steps() const { return rejected_; }
   double step_seconds() const { return step_seconds_; }  // stepping alone
 
+  /// Does it need more than its spins to go on with the same bits?
+  bool remembers() const;
+
   /// The step at time t. Throws UsageError when t is no whole number of steps.
   std::int64_t step_at(double t) const;
 

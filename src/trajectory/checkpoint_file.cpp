@@ -56,9 +56,9 @@ class CheckpointWriter::Implementation {
     attributes.create("step", header.step);
     attributes.create("time", header.time);
     attributes.create("units", std::string(header.si ? si_units : reduced_units));
-    numbers_ = GroupHandle(
-        check(H5Gcreate2(file_.get(), "numbers", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path_,
-              "cannot create group numbers"));
+    numbers_ =
+        GroupHandle(check(H5Gcreate2(file_.get(), "numbers", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                          path_, "cannot create group numbers"));
   }
 
   void number(std::string const& name, double value) {
@@ -72,8 +72,9 @@ class CheckpointWriter::Implementation {
     auto extents = extents_;
     extents.push_back(numbers.size() / sites);
     auto const action = "cannot write dataset " + name;
-    DataspaceHandle const space(check(
-        H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), path_, action));
+    DataspaceHandle const space(
+        check(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), path_,
+              action));
     DatasetHandle const dataset(check(H5Dcreate2(file_.get(), name.c_str(), stored_, space.get(),
                                                  H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                                       path_, action));
@@ -147,12 +148,11 @@ class CheckpointReader::Implementation {
     header_.step = attributes.read_integer("step");
     header_.time = attributes.read_real("time");
     header_.si = attributes.read_text("units") == si_units;
-    auto const extents =
-        dataset_extents(open_dataset(file_.get(), "spins", 4, path_).get(), path_);
+    auto const extents = dataset_extents(open_dataset(file_.get(), "spins", 4, path_).get(), path_);
     for (int axis = 0; axis < 3; ++axis)
       header_.shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);
-    numbers_ = GroupHandle(check(H5Gopen2(file_.get(), "numbers", H5P_DEFAULT), path_,
-                                 "cannot open group numbers"));
+    numbers_ = GroupHandle(
+        check(H5Gopen2(file_.get(), "numbers", H5P_DEFAULT), path_, "cannot open group numbers"));
   }
 
   double number(std::string const& name) const {

@@ -35,6 +35,33 @@ class Bits(PackageTest):
                     np.testing.assert_array_equal(pieces.spins, ran)
                     self.assertEqual(pieces.evaluations, whole.evaluations)
 
+    def test_saved_and_restarted(self):
+        for name, keys in METHODS.items():
+            with self.subTest(name):
+                of = scene(integrator=keys)
+                whole = cayspin.Simulation(of)
+                whole.step(17)
+                file = self.folder / "run.checkpoint.h5"
+                whole.save(file)
+                again = cayspin.Simulation(of, restart=file)
+                self.assertEqual((again.steps, again.time), (whole.steps, whole.time))
+                for sim in (whole, again):
+                    sim.step(23)
+                np.testing.assert_array_equal(again.spins, whole.spins)
+        with self.assertRaisesRegex(cayspin.CayspinError, "missing.h5"):
+            cayspin.Simulation(of, restart="missing.h5")
+
+    def test_run_leaves_a_checkpoint(self):
+        of = scene(integrator={"method": "ab2"}, output={"checkpoint_every": "7 steps"})
+        whole, first = cayspin.Simulation(of), cayspin.Simulation(of)
+        whole.step(40)
+        first.observe(23, lambda sim: True)
+        first.run(output=self.folder / "first.h5")
+        second = cayspin.Simulation(of, restart=self.folder / "first.h5")
+        self.assertEqual(second.steps, 23)
+        second.step(17)
+        np.testing.assert_array_equal(second.spins, whole.spins)
+
     def test_energy_control_in_pieces(self):
         of = scene(system={"damping": 0}, integrator={"energy_control": True})
         sim = cayspin.Simulation(of)

@@ -29,8 +29,8 @@ class RandomRun {
 
   /// TOML that may have no meaning: then parse_scene refuses it.
   std::string scene(Variant const& variant) {
-    bool const bodies = variant.of_rigid_bodies || (variant.isotropy == io::Isotropy::zero &&
-                                                    !variant.in_chart && one_in(8));
+    bool const bodies = variant.of_rigid_bodies ||
+                        (variant.isotropy == io::Isotropy::zero && !variant.in_chart && one_in(8));
     auto text = bodies ? rigid_bodies() : lattice_and_field(variant);
     text += fmt::format("[initial]\nrandom = {{ seed = {} }}\n", 1 + below(1000));
     text += fmt::format("[integrator]\n{}\n", integrator(variant, bodies));

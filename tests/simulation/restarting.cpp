@@ -34,9 +34,9 @@ State state_of(SceneRun& run, SceneRun const* before = nullptr) {
   auto const sum = [&](auto member) {
     return (run.*member)() + (before ? (before->*member)() : 0);
   };
-  return {packed<double>(run.spins().vectors), run.steps(),      sum(&SceneRun::evaluations),
-          sum(&SceneRun::own_steps),           sum(&SceneRun::rejected_steps),
-          run.sample().energy.value};
+  return {packed<double>(run.spins().vectors), run.steps(),
+          sum(&SceneRun::evaluations),         sum(&SceneRun::own_steps),
+          sum(&SceneRun::rejected_steps),      run.sample().energy.value};
 }
 
 class Restarting : public testing::Test {
@@ -65,8 +65,8 @@ class Restarting : public testing::Test {
     auto const first = SceneRun::open(*scene, {.precision = precision, .space = spaces[0]});
     first->advance(cut);
     first->save(file_);
-    auto const second = SceneRun::open(
-        *scene, {.precision = precision, .space = spaces[1], .restart = file_});
+    auto const second =
+        SceneRun::open(*scene, {.precision = precision, .space = spaces[1], .restart = file_});
     EXPECT_EQ(second->steps(), cut);
     EXPECT_EQ(state_of(*second).spins, state_of(*first).spins);
     second->advance(RandomRun::steps - cut);

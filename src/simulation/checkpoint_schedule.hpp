@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "simulation/interrupt_poll.hpp"
+#include "interrupt_poll.hpp"
 
 #include <cayspin/io/scene.hpp>
 #include <cayspin/step.hpp>
@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace cayspin::program {
+namespace cayspin::simulation {
 
 /// When a run stores a checkpoint on its way.
 class CheckpointSchedule {
@@ -28,15 +28,14 @@ class CheckpointSchedule {
   void wait() {
     if (period_.seconds == 0) return;
     std::chrono::duration<double> const period(period_.seconds);
-    elapsed_.emplace(
-        [begin = Clock::now(), period] { return Clock::now() - begin >= period; });
+    elapsed_.emplace([begin = Clock::now(), period] { return Clock::now() - begin >= period; });
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   io::CheckpointPeriod period_;
   std::int64_t first_;
-  mutable std::optional<simulation::InterruptPoll> elapsed_;  // asked at most some times a second
+  mutable std::optional<InterruptPoll> elapsed_;  // asked at most some times a second
 };
 
-}  // namespace cayspin::program
+}  // namespace cayspin::simulation
