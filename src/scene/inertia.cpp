@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "hdf5/real_dataset.hpp"
+#include "hdf5/survives.hpp"
 #include "sections.hpp"
 #include "start_file.hpp"
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cayspin::io {
 namespace {
@@ -36,12 +38,14 @@ std::vector<InertiaTensor> read_file(Scene const& scene, std::filesystem::path c
   std::vector<InertiaTensor> tensors(static_cast<std::size_t>(sites(scene)));
   double tolerance = 0;
   try {
-    auto const dataset = open_inertia(path, sites(scene));
-    auto const values = dataset.read();
+    auto const [values, epsilon] = read_guarded(path, [&] {
+      auto const dataset = open_inertia(path, sites(scene));
+      return std::pair(dataset.read(), dataset.epsilon());
+    });
     for (std::size_t body = 0; body < tensors.size(); ++body) {
       std::copy_n(values.data() + 9 * body, 9, tensors[body].begin());
     }
-    tolerance = 16 * dataset.epsilon();
+    tolerance = 16 * epsilon;
   } catch (std::runtime_error const& error) {
     throw scene_error(scene, key, error.what());
   }
@@ -78,7 +82,7 @@ void check_files(Scene const& scene) {
   auto const* const file = std::get_if<InertiaFile>(&scene.system.inertia);
   if (scene.system.kind == SystemKind::rigid_body && file != nullptr) {
     try {
-      open_inertia(file->path, sites(scene));
+      try_in_child(file->path, [&] { open_inertia(file->path, sites(scene)); });
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "system.inertia.file", error.what());
     }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "start_file.hpp"
 
+#include "hdf5/survives.hpp"
 #include "trajectory/stored_spins.hpp"
 
 #include <cayspin/io/ovf.hpp>
+#include <cayspin/io/trajectory.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,12 +29,12 @@ void check_start_file(std::filesystem::path const& path, std::array<std::int64_t
   if (is_ovf(path))
     require_nodes(read_ovf_mesh(path), path, shape);
   else
-    StoredSpins(path, shape);
+    try_in_child(path, [&] { StoredSpins(path, shape); });
 }
 
 std::vector<double> read_start_file(std::filesystem::path const& path,
                                     std::array<std::int64_t, 3> const& shape) {
-  if (!is_ovf(path)) return StoredSpins(path, shape).last();
+  if (!is_ovf(path)) return read_spins(path, shape);
   require_nodes(read_ovf_mesh(path), path, shape);
   return read_ovf(path).values;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "format.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
+#include "hdf5/survives.hpp"
 #include "scalar_series.hpp"
 #include "trajectory_reader.hpp"
 
@@ -43,7 +45,7 @@ void FollowedTrajectory::read_times_of_file() {
 
 void FollowedTrajectory::read_series(hid_t group, Series& series, bool all) const {
   auto const stored = ScalarSeries::open(group, path_);
-  auto const in_file = stored.size(path_);
+  auto const in_file = stored.readable(all ? 0 : most_pending, path_);
   auto const begin = static_cast<std::int64_t>(series.steps.size());
   if (in_file < begin)
     throw_failure(path_, "cannot read the trajectory", "samples are missing that were there");
@@ -56,8 +58,7 @@ void FollowedTrajectory::read_series(hid_t group, Series& series, bool all) cons
   series.seen = in_file;
 }
 
-void FollowedTrajectory::look() {
-  QuietErrors const quiet;
+void FollowedTrajectory::read_file() {
   read_times_of_file();
   auto const file = open_file(path_, Locking::off);
   // `complete` is written last: once it is there, so is all else.
@@ -69,6 +70,13 @@ void FollowedTrajectory::look() {
   header_ = info.header;
   cost_ = info.cost;
   complete_ = info.complete;
+}
+
+// The child's look is its own: what the file says is believed here alone.
+void FollowedTrajectory::look() {
+  QuietErrors const quiet;
+  try_in_child(path_, [&] { read_file(); });
+  read_file();
 }
 
 std::optional<bool> is_being_written(std::filesystem::path const& path) {

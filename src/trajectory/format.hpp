@@ -16,6 +16,7 @@ inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
 inline constexpr std::size_t checksum_bytes = 4;
+inline constexpr int most_pending = 512;  // samples that are written at once
 inline constexpr char const* reduced_units = "reduced";
 inline constexpr char const* si_units = "SI";
 

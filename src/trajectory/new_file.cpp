@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <string>
 
@@ -30,21 +31,26 @@ void require_folder(fs::path const& path) {
                 "the folder " + folder.string() + (exists ? " is a file" : " does not exist"));
 }
 
+bool is_locked(int file) { return ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
+
 // Writing to the old file is only tried, so that one which is protected, or locked by HDF5 in
 // another program, is not replaced behind its back.
 void require_replaceable(fs::path const& path) {
   int const file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
-  bool const locked = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  bool const locked = is_locked(file);
   ::close(file);
   if (locked) throw_failure(path, action, "another program has it open");
 }
 
 // Here as always, HDF5 is not to be the one that finds the disk full.
-void create_with_room(fs::path const& written, fs::path const& path, bool may_exist) {
-  int const flags = O_WRONLY | O_CREAT | O_CLOEXEC | (may_exist ? 0 : O_EXCL);
-  int const file = ::open(written.c_str(), flags, 0666);
+void create_with_room(fs::path const& written, fs::path const& path) {
+  int const file = ::open(written.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file < 0) throw_failure(path, action, std::strerror(errno));
+  if (is_locked(file)) {
+    ::close(file);
+    throw_failure(path, action, "another program is writing " + written.string());
+  }
   int const error = take_room(file, 0, room_for_header);
   ::close(file);
   if (error == 0) return;
@@ -52,26 +58,47 @@ void create_with_room(fs::path const& written, fs::path const& path, bool may_ex
   throw_failure(path, action, std::strerror(error));
 }
 
+// All that HDF5 writes for itself has checksums. Its version 3 of a file's head would have a mark
+// for files that are being written, which a kill leaves behind and others then refuse: so
+// version 2.
+FileHandle create_file(fs::path const& path) {
+  PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_attr_phase_change(creation.get(), 64, 0);
+  H5Pset_link_phase_change(creation.get(), 64, 0);
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
+  FileHandle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
+  if (file.get() >= 0) H5Fset_libver_bounds(file.get(), H5F_LIBVER_V110, H5F_LIBVER_LATEST);
+  return file;
+}
+
+// A file that came to be meanwhile stays, where the file system knows how. Returns errno, or 0.
+int put_in_place(fs::path const& from, fs::path const& to, bool replaces) {
+  if (!replaces) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    if (errno != EINVAL && errno != ENOSYS) return errno;
+  }
+  return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
+}
+
 }  // namespace
 
-NewFile::NewFile(fs::path path, bool overwrite, bool always_beside)
-    : path_(std::move(path)), target_(path_), written_(path_) {
+NewFile::NewFile(fs::path path, bool overwrite, bool shared)
+    : path_(std::move(path)), target_(path_) {
   require_folder(path_);
   std::error_code error;
   auto const status = fs::status(path_, error);
-  bool const replaces = fs::exists(status);
-  if (replaces && !fs::is_regular_file(status))
+  replaces_ = fs::exists(status);
+  if (replaces_ && !fs::is_regular_file(status))
     throw_failure(path_, action, "it exists and is not a regular file");
-  if (replaces && !overwrite)
+  if (replaces_ && !overwrite)
     throw_failure(path_, action, "it exists (choose another name, or overwrite with --overwrite)");
-  if (replaces) {
-    if (!always_beside) require_replaceable(path_);
+  if (replaces_) {
+    if (!shared) require_replaceable(path_);
     target_ = fs::canonical(path_);
   }
-  bool const beside = replaces || always_beside;
-  if (beside) written_ = target_.string() + ".partial";
-  create_with_room(written_, path_, beside);
-  file_ = FileHandle(H5Fcreate(written_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  written_ = target_.string() + ".partial";
+  create_with_room(written_, path_);
+  file_ = create_file(written_);
   if (file_.get() >= 0) return;
   auto const reason = failure_reason();
   ::unlink(written_.c_str());
@@ -86,9 +113,8 @@ NewFile::~NewFile() {
 }
 
 FileHandle NewFile::commit() {
-  std::error_code error;
-  if (written_ != target_) fs::rename(written_, target_, error);
-  if (error) throw_failure(path_, action, error.message());
+  if (int const error = put_in_place(written_, target_, replaces_))
+    throw_failure(path_, action, std::strerror(error));
   return std::move(file_);
 }
 

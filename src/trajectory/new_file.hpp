@@ -7,12 +7,11 @@
 
 namespace cayspin::io {
 
-/// An HDF5 file in the making, which takes its place only when commit() says so. A new name is
-/// written directly; an existing file stays untouched beside PATH.partial until then. With
-/// `always_beside` a new name is written so, too, and an existing file may have readers.
+/// An HDF5 file in the making, written as PATH.partial until commit(): at no moment is there a torn
+/// file at PATH. An existing file stays untouched until then; with `shared` it may have readers.
 class NewFile {
  public:
-  NewFile(std::filesystem::path path, bool overwrite, bool always_beside = false);
+  NewFile(std::filesystem::path path, bool overwrite, bool shared = false);
   /// Uncommitted: removes what the constructor created.
   ~NewFile();
   NewFile(NewFile const&) = delete;
@@ -27,6 +26,7 @@ class NewFile {
   std::filesystem::path path_;  // as given
   std::filesystem::path target_;
   std::filesystem::path written_;
+  bool replaces_;
   FileHandle file_;
 };
 

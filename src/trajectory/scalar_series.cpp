@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scalar_series.hpp"
 
+#include "checksum.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 namespace cayspin::io {
 namespace {
@@ -51,6 +53,7 @@ ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path
   std::array<hsize_t, 2> const chunk{samples_per_chunk, 3};
   series.magnetization_ =
       create_growing_dataset(group, "magnetization", H5T_IEEE_F64LE, chunk, PropertyHandle(), path);
+  series.checksum_ = create_column(group, "checksum", H5T_STD_U64LE, path);
   return series;
 }
 
@@ -63,22 +66,31 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path) 
   series.magnetization_ = open_dataset(group, "magnetization", 2, path);
   if (dataset_extents(series.magnetization_.get(), path)[1] != 3)
     throw_failure(path, "cannot read dataset magnetization", "its second extent is not 3");
+  auto const has_checksums =
+      check(H5Lexists(group, "checksum", H5P_DEFAULT), path, "cannot read dataset checksum");
+  if (has_checksums > 0) series.checksum_ = open_dataset(group, "checksum", 1, path);
   return series;
 }
 
-void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path) {
+// Without the filter fletcher32: a chunk is written again and again, and a kill in between would
+// then lose all 512 of its samples.
+void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
+                          std::uint32_t spins) {
   if (samples.empty()) return;
   auto const times = column(samples, [](auto const& s) { return s.time; });
   auto const steps = column(samples, [](auto const& s) { return s.step; });
   auto const energies = column(samples, [](auto const& s) { return s.scalars.energy; });
   auto const defects = column(samples, [](auto const& s) { return s.scalars.norm_defect; });
   auto const means = column(samples, [](auto const& s) { return s.scalars.magnetization; });
+  auto const checksums =
+      column(samples, [&](auto const& s) { return std::uint64_t{row_checksum(s)} << 32U | spins; });
   hsize_t const count = samples.size();
   append_block(time_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, times.data(), path);
   append_block(step_.get(), H5T_NATIVE_INT64, {size_}, {count}, steps.data(), path);
   append_block(energy_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, energies.data(), path);
   append_block(norm_defect_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, defects.data(), path);
   append_block(magnetization_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {count, 3}, means.data(), path);
+  append_block(checksum_.get(), H5T_NATIVE_UINT64, {size_}, {count}, checksums.data(), path);
   size_ += count;
 }
 
@@ -86,7 +98,28 @@ std::int64_t ScalarSeries::size(std::filesystem::path const& path) const {
   auto shortest = dataset_extents(time_.get(), path)[0];
   for (auto const* dataset : {&step_, &energy_, &norm_defect_, &magnetization_})
     shortest = std::min(shortest, dataset_extents(dataset->get(), path)[0]);
+  if (has_checksums()) shortest = std::min(shortest, dataset_extents(checksum_.get(), path)[0]);
   return static_cast<std::int64_t>(shortest);
+}
+
+bool ScalarSeries::is_readable(std::int64_t sample, std::filesystem::path const& path) const {
+  try {
+    return read(sample, sample + 1, path).size() == 1;
+  } catch (std::runtime_error const&) {
+    return false;
+  }
+}
+
+std::int64_t ScalarSeries::readable(std::int64_t most_torn,
+                                    std::filesystem::path const& path) const {
+  auto end = size(path);
+  if (most_torn == 0 || end == 0 || is_readable(end - 1, path)) return end;
+  auto begin = std::max(end - most_torn, std::int64_t{0});
+  for (--end; begin < end;) {
+    auto const middle = begin + (end - begin) / 2;
+    is_readable(middle, path) ? begin = middle + 1 : end = middle;
+  }
+  return end;
 }
 
 std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
@@ -103,7 +136,24 @@ std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < times.size(); ++i)
     samples.push_back({steps[i], times[i], {energies[i], defects[i], means[i]}});
+  if (!has_checksums()) return samples;
+  auto const checksums = read_checksums(begin, end, path);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (checksums[i] >> 32U != row_checksum(samples[i]))
+      throw_failure(path, "cannot read the trajectory",
+                    "sample " + std::to_string(begin + static_cast<std::int64_t>(i)) +
+                        " is damaged: its checksum differs");
   return samples;
+}
+
+std::uint32_t ScalarSeries::spins_checksum(std::int64_t frame,
+                                           std::filesystem::path const& path) const {
+  return static_cast<std::uint32_t>(read_checksums(frame, frame + 1, path).at(0));
+}
+
+std::vector<std::uint64_t> ScalarSeries::read_checksums(std::int64_t begin, std::int64_t end,
+                                                        std::filesystem::path const& path) const {
+  return read_column<std::uint64_t>(checksum_.get(), H5T_NATIVE_UINT64, begin, end, {}, path);
 }
 
 }  // namespace cayspin::io

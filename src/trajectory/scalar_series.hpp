@@ -18,25 +18,40 @@ struct Sample {
   Scalars scalars;
 };
 
-/// The datasets time, step, energy, norm_defect and magnetization of one group.
+/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group. Files of
+/// earlier versions have no checksums.
 class ScalarSeries {
  public:
   static ScalarSeries create(hid_t group, std::filesystem::path const& path);
   static ScalarSeries open(hid_t group, std::filesystem::path const& path);
 
-  void append(std::vector<Sample> const& samples, std::filesystem::path const& path);
+  /// `spins`: the checksum of a frame's spins, and 1 for samples without.
+  void append(std::vector<Sample> const& samples, std::filesystem::path const& path,
+              std::uint32_t spins = 1);
 
   /// Samples that are whole: the shortest of the datasets counts.
   std::int64_t size(std::filesystem::path const& path) const;
-  /// Of these samples, the first `count`, or those from `begin` to `end`.
+  /// Of these samples, those that can be read. A killed process may have left up to `most_torn`
+  /// that cannot: what it was adding at that moment.
+  std::int64_t readable(std::int64_t most_torn, std::filesystem::path const& path) const;
+  /// Of these samples, the first `count`, or those from `begin` to `end`. Throws where one is not
+  /// as it was written.
   std::vector<Sample> read(std::int64_t count, std::filesystem::path const& path) const {
     return read(0, count, path);
   }
   std::vector<Sample> read(std::int64_t begin, std::int64_t end,
                            std::filesystem::path const& path) const;
 
+  bool has_checksums() const { return checksum_.get() >= 0; }
+  /// The checksum of the spins of a frame, which has_checksums() has.
+  std::uint32_t spins_checksum(std::int64_t frame, std::filesystem::path const& path) const;
+
  private:
-  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_;
+  bool is_readable(std::int64_t sample, std::filesystem::path const& path) const;
+  std::vector<std::uint64_t> read_checksums(std::int64_t begin, std::int64_t end,
+                                            std::filesystem::path const& path) const;
+
+  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_, checksum_;
   hsize_t size_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
+#include "hdf5/survives.hpp"
 #include "sweep_format.hpp"
 
 #include <cayspin/io/sweep.hpp>
@@ -142,16 +143,12 @@ bool has_external_link(hid_t runs) {
   return found;
 }
 
-}  // namespace
-
-bool is_sweep(fs::path const& path) {
-  QuietErrors const quiet;
+bool has_sweep_format(fs::path const& path) {
   auto const file = open_file(path);
   return RootAttributes(file.get(), path).has(sweep_format);
 }
 
-SweepInfo read_sweep(fs::path const& path) {
-  QuietErrors const quiet;
+SweepInfo read_whole_sweep(fs::path const& path) {
   auto const file = open_file(path);
   RootAttributes const attributes(file.get(), path);
   if (!attributes.has(sweep_format)) throw_failure(path, "cannot read the sweep", "it holds none");
@@ -171,6 +168,18 @@ SweepInfo read_sweep(fs::path const& path) {
   sweep.runs = read_results(reader, static_cast<std::size_t>(sweep.header.runs()));
   sweep.one_file = sweep.complete && !has_external_link(reader.group("runs").get());
   return sweep;
+}
+
+}  // namespace
+
+bool is_sweep(fs::path const& path) {
+  QuietErrors const quiet;
+  return read_guarded(path, [&] { return has_sweep_format(path); });
+}
+
+SweepInfo read_sweep(fs::path const& path) {
+  QuietErrors const quiet;
+  return read_guarded(path, [&] { return read_whole_sweep(path); });
 }
 
 }  // namespace cayspin::io

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "checksum.hpp"
 #include "fletcher32.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
@@ -24,7 +25,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto longest_wait = std::chrono::seconds(1);
-constexpr std::size_t most_pending = 512;
 
 // What a frame, or as many samples as may be pending, can take besides the spins: index nodes and a
 // new chunk in each of the ten scalar datasets.
@@ -49,6 +49,7 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   attributes.create("threads", std::int64_t{header.threads});
   attributes.create("precision", header.precision);
   write_units(attributes, header.units);
+  attributes.create("text_checksum", std::bit_cast<std::int64_t>(text_checksum(header)));
   attributes.create("evaluations", std::int64_t{0});
   attributes.create("wall_seconds", 0.0);
   attributes.create("step_seconds", 0.0);
@@ -113,7 +114,7 @@ class TrajectoryFile::Implementation {
   void write_frame(Sample const& sample, void const* spins, bool single) {
     if (single != single_)
       throw std::logic_error(path_.string() + ": spins given in another precision than the file's");
-    write_frame(sample, [&] {
+    write_whole(sample, static_cast<std::byte const*>(spins), [&] {
       append_block(spins_.get(), single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
                    {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_, spins, path_);
     });
@@ -122,7 +123,7 @@ class TrajectoryFile::Implementation {
   // What the filter of HDF5 would do takes it two copies of the frame.
   void write_frame_with_room(Sample const& sample, std::byte* spins) {
     if (!raw_chunks_) return write_frame(sample, spins, single_);
-    write_frame(sample, [&] {
+    write_whole(sample, spins, [&] {
       auto const checksum = fletcher32(spins, frame_bytes_);
       std::memcpy(spins + frame_bytes_, &checksum, checksum_bytes);
       append_raw_chunk(spins_.get(), {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_,
@@ -132,13 +133,13 @@ class TrajectoryFile::Implementation {
 
   // Readers count a frame once its scalars are there, so those reach the disk after its spins.
   template <class WriteSpins>
-  void write_frame(Sample const& sample, WriteSpins const& write_spins) {
+  void write_whole(Sample const& sample, std::byte const* spins, WriteSpins const& write_spins) {
     require_open();
     space_.reserve(frame_bytes_ + overhead_bytes, path_);
     write_pending();
     write_spins();
     flush();
-    frame_series_.append({sample}, path_);
+    frame_series_.append({sample}, path_, spins_checksum(sample, {spins, frame_bytes_}));
     flush();
     ++frames_;
   }

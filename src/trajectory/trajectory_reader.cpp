@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "trajectory_reader.hpp"
 
+#include "checksum.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/handle.hpp"
+#include "hdf5/survives.hpp"
 #include "scalar_series.hpp"
 
 #include <cayspin/io/trajectory.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 namespace cayspin::io {
@@ -23,6 +26,16 @@ Units read_units(RootAttributes const& attributes) {
   if (units.si)
     for (auto const& [name, member] : unit_attributes) units.*member = attributes.read_real(name);
   return units;
+}
+
+// Texts lie where HDF5 has no checksums.
+void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader const& header,
+                         std::filesystem::path const& path) {
+  if (!attributes.has("text_checksum")) return;
+  auto const stored = std::bit_cast<std::uint64_t>(attributes.read_integer("text_checksum"));
+  if (stored != text_checksum(header))
+    throw_failure(path, "cannot read the trajectory",
+                  "its attributes are damaged: their checksum differs");
 }
 
 }  // namespace
@@ -46,6 +59,7 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   info.header.threads = static_cast<int>(attributes.read_integer("threads"));
   info.header.precision = attributes.read_text("precision");
   info.header.units = read_units(attributes);
+  require_whole_texts(attributes, info.header, path);
   info.cost.evaluations = attributes.read_integer("evaluations");
   info.cost.wall_seconds = attributes.read_real("wall_seconds");
   info.cost.step_seconds = attributes.read_real("step_seconds");
@@ -58,12 +72,13 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   return info;
 }
 
-TrajectoryInfo read_info(std::filesystem::path const& path) {
-  QuietErrors const quiet;
+namespace {
+
+TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
   auto const file = open_file(path);
   auto info = read_header(file.get(), path);
   auto const series = ScalarSeries::open(file.get(), path);
-  info.frames = std::min(info.frames, series.size(path));
+  info.frames = std::min(info.frames, series.readable(info.complete ? 0 : 1, path));
   for (auto const& sample : series.read(info.frames, path)) {
     info.frame_steps.push_back(sample.step);
     info.frame_times.push_back(sample.time);
@@ -71,8 +86,16 @@ TrajectoryInfo read_info(std::filesystem::path const& path) {
   }
   GroupHandle const scalars(
       check(H5Gopen2(file.get(), "scalars", H5P_DEFAULT), path, "cannot open group scalars"));
-  info.samples = ScalarSeries::open(scalars.get(), path).size(path);
+  info.samples =
+      ScalarSeries::open(scalars.get(), path).readable(info.complete ? 0 : most_pending, path);
   return info;
+}
+
+}  // namespace
+
+TrajectoryInfo read_info(std::filesystem::path const& path) {
+  QuietErrors const quiet;
+  return read_guarded(path, [&] { return read_whole_info(path); });
 }
 
 }  // namespace cayspin::io

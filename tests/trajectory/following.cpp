@@ -148,7 +148,7 @@ TEST_F(TrajectoryTest, AFollowerBelievesNothingHalfWritten) {
     }
   };
   int torn = 0;
-  for (std::size_t half = 0; half <= after.size(); half += 512) {
+  for (std::size_t half = 0; half <= after.size(); half += 5120) {
     put(copy, before);
     FollowedTrajectory run(copy);
     run.look();

@@ -52,6 +52,7 @@ class FollowedTrajectory {
   Series const& longer() const {
     return frames_.steps.size() > samples_.steps.size() ? frames_ : samples_;
   }
+  void read_file();
   void read_times_of_file();
   void read_series(std::int64_t group, Series& series, bool all) const;
 

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "survives.hpp"
+
+#include "error.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define CAYSPIN_SHADOW_MEMORY
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CAYSPIN_SHADOW_MEMORY
+#endif
+
+namespace cayspin::io {
+namespace {
+
+bool is_child = false;
+
+// The first byte that a child sends. Behind `failed` comes the message.
+enum Outcome : char { survived = 's', failed = 'f', out_of_memory = 'm' };
+
+constexpr int faults[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGXCPU};
+
+void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t most, rlim_t spare = 0) {
+  rlimit limit{};
+  if (::getrlimit(resource, &limit) != 0) return;
+  limit.rlim_max = std::min(limit.rlim_max, most + spare);
+  limit.rlim_cur = std::min(limit.rlim_cur, most);
+  ::setrlimit(resource, &limit);
+}
+
+// Memory that can still be had, and what is in use already: in bytes.
+std::uint64_t room_in_memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string word;
+  for (std::uint64_t kilobytes = 0; file >> word;)
+    if (word == "MemAvailable:" && file >> kilobytes) return 1024 * kilobytes;
+  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t address_space() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// A megabyte may be a gigabyte that was compressed, but not a hundred of them.
+rlim_t most_seconds(std::filesystem::path const& path) {
+  std::error_code error;
+  auto const bytes = std::filesystem::file_size(path, error);
+  if (error) return 2;
+  return 2 + std::min<rlim_t>(bytes >> 18U, 60) + (bytes >> 26U);
+}
+
+// A fault ends the child at once, in silence; what the terminal sends is left to the parent.
+void settle_signals(pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  sigset_t blocked;
+  sigfillset(&blocked);
+  for (int const fault : faults) {
+    std::signal(fault, SIG_DFL);
+    sigdelset(&blocked, fault);
+  }
+  ::sigprocmask(SIG_SETMASK, &blocked, nullptr);
+}
+
+void limit_resources(std::filesystem::path const& path) {
+  std::ofstream("/proc/self/oom_score_adj") << 1000;  // the first to go where memory runs out
+#ifndef CAYSPIN_SHADOW_MEMORY
+  lower_limit(RLIMIT_AS, address_space() + room_in_memory());
+#endif
+  lower_limit(RLIMIT_CPU, most_seconds(path), 5);
+  lower_limit(RLIMIT_CORE, 0);
+  ::prctl(PR_SET_DUMPABLE, 0);  // not by a program that collects them either
+}
+
+void send(int pipe, std::string const& text) {
+  for (std::size_t sent = 0; sent < text.size();) {
+    auto const count = ::write(pipe, text.data() + sent, text.size() - sent);
+    if (count <= 0) return;
+    sent += static_cast<std::size_t>(count);
+  }
+}
+
+std::string answer(std::function<void()> const& reading) {
+  try {
+    reading();
+  } catch (std::runtime_error const& error) {
+    return std::string(1, failed) + error.what();
+  } catch (std::bad_alloc const&) {
+    return std::string(1, out_of_memory);
+  } catch (std::length_error const&) {
+    return std::string(1, out_of_memory);
+  } catch (...) {  // the parent's to meet
+  }
+  return std::string(1, survived);
+}
+
+[[noreturn]] void read_as_child(int pipe, pid_t parent, std::filesystem::path const& path,
+                                std::function<void()> const& reading) {
+  is_child = true;
+  settle_signals(parent);
+  int const nowhere = ::open("/dev/null", O_RDWR);
+  ::dup2(nowhere, STDOUT_FILENO);
+  ::dup2(nowhere, STDERR_FILENO);
+  limit_resources(path);
+  send(pipe, answer(reading));
+  ::_exit(0);  // without what the parent has to do at its exit
+}
+
+std::string receive(int pipe) {
+  std::string text;
+  char buffer[4096];
+  while (true) {
+    auto const count = ::read(pipe, buffer, sizeof buffer);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(buffer, static_cast<std::size_t>(count));
+  }
+}
+
+// Why a child left no answer. A caller that ignores SIGCHLD leaves no status.
+std::string cause_of(std::optional<int> status) {
+  if (!status || !WIFSIGNALED(*status)) return "reading it fails";
+  int const signal = WTERMSIG(*status);
+  if (signal == SIGXCPU) return "reading it takes too long";
+  return std::string("reading it ends with ") + ::strsignal(signal);
+}
+
+std::optional<int> status_of(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return std::nullopt;
+  return status;
+}
+
+}  // namespace
+
+void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading) {
+  if (is_child) return;
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return;
+  pid_t const parent = ::getpid(), child = ::fork();
+  if (child == 0) read_as_child(ends[1], parent, path, reading);
+  ::close(ends[1]);
+  auto const text = child > 0 ? receive(ends[0]) : std::string(1, survived);
+  ::close(ends[0]);
+  if (child < 0) return;  // where no process can be had, the file is read all the same
+  auto const status = status_of(child);
+  auto const* const action = "cannot read the file";
+  if (text.empty()) throw_failure(path, action, "it is damaged (" + cause_of(status) + ")");
+  if (text[0] == failed) throw std::runtime_error(text.substr(1));
+  if (text[0] == out_of_memory)
+    throw_failure(path, action, "it is damaged (reading it takes more memory than there is)");
+}
+
+}  // namespace cayspin::io

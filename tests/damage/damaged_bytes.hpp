@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+
+namespace cayspin::test {
+
+inline long number_from(char const* variable, long otherwise) {
+  char const* const text = std::getenv(variable);
+  return text ? std::atol(text) : otherwise;
+}
+
+/// The same on every platform, unlike the distributions of the standard library.
+class Chance {
+ public:
+  explicit Chance(std::uint64_t seed) : engine_(seed) {}
+  /// From 0 to `end` - 1.
+  std::size_t below(std::size_t end) { return end == 0 ? 0 : engine_() % end; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+inline std::string read_bytes(std::filesystem::path const& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void write_bytes(std::filesystem::path const& path, std::string const& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// Bytes after one of: bits flipped, bytes replaced, the end cut off, a block zeroed, two blocks
+/// swapped, a block repeated elsewhere. Half of the damage lies in the first 4 KiB.
+inline std::string damaged(std::string bytes, Chance& chance) {
+  auto const place = [&] {
+    return chance.below(chance.below(2) ? bytes.size() : std::min<std::size_t>(bytes.size(), 4096));
+  };
+  auto const block = std::size_t{1} << chance.below(13);
+  auto const room = bytes.size() - std::min(bytes.size(), block);
+  auto const from = std::min(place(), room), to = std::min(place(), room);
+  switch (chance.below(6)) {
+    case 0:
+      for (auto left = 1 + chance.below(8); left > 0; --left)
+        bytes[place()] ^= static_cast<char>(1U << chance.below(8));
+      break;
+    case 1:
+      for (auto left = 1 + chance.below(64); left > 0; --left)
+        bytes[place()] = static_cast<char>(chance.below(256));
+      break;
+    case 2:
+      bytes.resize(chance.below(bytes.size()));
+      break;
+    case 3:
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(from),
+                  std::min(block, bytes.size()), '\0');
+      break;
+    case 4:
+      for (std::size_t i = 0; i < block && std::max(from, to) + i < bytes.size(); ++i)
+        std::swap(bytes[from + i], bytes[to + i]);
+      break;
+    default:
+      bytes.replace(to, std::min(block, bytes.size()), bytes.substr(from, block));
+  }
+  return bytes;
+}
+
+}  // namespace cayspin::test

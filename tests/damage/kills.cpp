@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// `cayspin run`, killed at random times, out of disk, or with its file cut. CAYSPIN_KILLS and
+// CAYSPIN_SEED: how many of each kind, and which.
+#include "damaged_bytes.hpp"
+#include "program/program_test.hpp"
+
+#include <cayspin/io/follow.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <thread>
+
+namespace cayspin::program::test {
+namespace {
+
+using cayspin::test::Chance;
+using cayspin::test::number_from;
+namespace fs = std::filesystem;
+
+// Frames as fast as they can be written.
+std::string const scene = R"([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [10, 3]
+[field]
+exchange = 1.0
+applied = [0.3, -0.2, 0.1]
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "rkmk4"
+dt = 1e-4
+steps = 20000000
+[output]
+every = 4
+scalars_every = 1
+)";
+
+class Kills : public ProgramTest {
+ protected:
+  Kills() { write("scene.toml", scene); }
+
+  Arguments run_to(std::string const& name, Arguments const& more = {}) const {
+    Arguments arguments{"run",      "scene.toml", "--quiet", "--threads", "1",
+                        "--output", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  std::string fresh_name() { return "run_" + std::to_string(number_++) + ".h5"; }
+
+  // What another process finds in the file while it is written.
+  std::vector<std::int64_t> visible(fs::path const& path) const {
+    try {
+      io::FollowedTrajectory run(path);
+      run.look();
+      run.look();
+      return run.steps();
+    } catch (std::runtime_error const&) {  // half written, or not there yet
+      return {};
+    }
+  }
+
+  // Every step that was seen is there with its spins, and the run can go on.
+  void expect_nothing_lost(std::string const& name, std::vector<std::int64_t> const& seen) {
+    auto const path = in_folder(name);
+    if (!fs::exists(path)) {
+      EXPECT_TRUE(seen.empty());
+      ++counts_["no file yet"];
+      return;
+    }
+    auto const info = start({"info", name});
+    ASSERT_EQ(info.status, 0) << info.errors << keep(path);
+    auto const file = io::read_info(path);
+    EXPECT_FALSE(file.complete);
+    ASSERT_EQ(file.frame_steps.size(), static_cast<std::size_t>(file.frames));
+    // Samples and frames: a sample of a frame's step is in the file before the frame.
+    auto const last_seen = seen.empty() ? 0 : seen.back();
+    EXPECT_GE(file.samples, static_cast<std::int64_t>(seen.size()));
+    auto const last = file.frames == 0 ? -1 : file.frame_steps.back();
+    EXPECT_GE(last, last_seen - last_seen % 4 - (last_seen % 4 == 0 ? 4 : 0)) << keep(path);
+    // SIGTERM may add a frame at its step.
+    for (std::size_t frame = 0; frame + 1 < file.frame_steps.size(); ++frame)
+      EXPECT_EQ(file.frame_steps[frame], 4 * static_cast<std::int64_t>(frame));
+    frames_ += file.frames;
+    if (file.frames > 0) expect_restart(name, last);
+    ++counts_["whole"];
+  }
+
+  void expect_restart(std::string const& name, std::int64_t last) {
+    auto const again = "again.h5";
+    auto const outcome = start(run_to(again, {"--overwrite", "--restart", name, "--set",
+                                              "integrator.steps=" + std::to_string(last + 8)}));
+    ASSERT_EQ(outcome.status, 0) << outcome.errors << keep(in_folder(name));
+    auto const file = io::read_info(in_folder(again));
+    EXPECT_TRUE(file.complete);
+    EXPECT_EQ(file.frame_steps.front(), last);
+    EXPECT_EQ(io::read_spins(in_folder(again), file.header.shape, 0),
+              io::read_spins(in_folder(name), file.header.shape));
+  }
+
+  std::string keep(fs::path const& path) const {
+    auto const kept = fs::temp_directory_path() / "cayspin_killed.h5";
+    fs::copy_file(path, kept, fs::copy_options::overwrite_existing);
+    return " kept as " + kept.string();
+  }
+
+  // The files of a test, through another build of HDF5.
+  void expect_h5py_opens_all() const {
+    auto const command = std::string(CAYSPIN_PYTHON) + " -B " + CAYSPIN_OPEN_ALL + " " +
+                         folder_.string() + "/run_*.h5";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+  }
+
+  void kill_with(int signal, long kills) {
+    for (long kill = 0; kill < kills; ++kill) {
+      auto const name = fresh_name();
+      auto const process = begin(run_to(name));
+      std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(300'000)));
+      auto const seen = visible(in_folder(name));
+      std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(2'000)));
+      int const status = end(process, signal);
+      EXPECT_TRUE(status == 128 + signal || (signal == SIGTERM && status == 130)) << status;
+      expect_nothing_lost(name, seen);
+    }
+  }
+
+  void print_summary(char const* what) const {
+    std::cout << what << ':';
+    for (auto const& [outcome, count] : counts_) std::cout << ' ' << count << ' ' << outcome << ',';
+    std::cout << ' ' << frames_ << " frames" << (HasFailure() ? "" : ", all there") << '\n';
+  }
+
+  long kills_ = number_from("CAYSPIN_KILLS", 5);
+  Chance chance_{static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1))};
+  std::map<std::string, long> counts_;
+  std::int64_t frames_ = 0;
+  int number_ = 0;
+};
+
+TEST_F(Kills, SigkillLosesNoFrameThatWasSeen) {
+  kill_with(SIGKILL, 2 * kills_);
+  expect_h5py_opens_all();
+  print_summary("SIGKILL");
+}
+
+TEST_F(Kills, SigtermLosesNoFrameThatWasSeen) {
+  kill_with(SIGTERM, kills_);
+  expect_h5py_opens_all();
+  print_summary("SIGTERM");
+}
+
+TEST_F(Kills, FullDiskLosesNoFrameThatWasSeen) {
+  for (long run = 0; run < kills_; ++run) {
+    auto const name = fresh_name();
+    auto const limit = static_cast<long>(600'000 + chance_.below(2'000'000));
+    auto const outcome = start(run_to(name), {.file_limit = limit});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors));
+    if (fs::exists(in_folder(name))) expect_nothing_lost(name, {0});
+  }
+  expect_h5py_opens_all();
+  print_summary("full disk");
+}
+
+TEST_F(Kills, CutFilesAreRefusedOrRead) {
+  auto const whole = in_folder("whole.h5");
+  ASSERT_EQ(start(run_to("whole.h5", {"--set", "integrator.steps=2000"})).status, 0);
+  auto const bytes = cayspin::test::read_bytes(whole);
+  for (long cut = 0; cut < kills_; ++cut) {
+    cayspin::test::write_bytes(in_folder("cut.h5"), bytes.substr(0, chance_.below(bytes.size())));
+    for (auto const& arguments : {Arguments{"info", "cut.h5"}, run_to("again.h5", {"--restart",
+                                                                                "cut.h5"})}) {
+      auto const outcome = start(arguments);
+      EXPECT_EQ(outcome.status, 2);
+      EXPECT_TRUE(is_one_line(outcome.errors));
+      ++counts_["refused"];
+    }
+  }
+  print_summary("cut");
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

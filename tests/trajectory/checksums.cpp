@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What tells a damaged file from a whole one.
+#include "hdf5/handle.hpp"
+#include "hdf5/survives.hpp"
+#include "trajectory/checksum.hpp"
+#include "trajectory_test.hpp"
+
+#include <sys/wait.h>
+
+#include <bit>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+
+namespace cayspin::io {
+namespace {
+
+std::span<std::byte const> bytes_of(std::string const& text) {
+  return std::as_bytes(std::span(text));
+}
+
+TEST(Xxh64, IsThatOfItsAuthor) {
+  EXPECT_EQ(xxh64(bytes_of("")), 0xef46db3751d8e999u);
+  EXPECT_EQ(xxh64(bytes_of("a")), 0xd24ec4f1a98c6e5bu);
+  EXPECT_EQ(xxh64(bytes_of("abc")), 0x44bc2cf5ad770999u);
+  EXPECT_EQ(xxh64(bytes_of("Nobody inspects the spammish repetition")), 0xfbcea83c8a378bf1u);
+}
+
+TEST(Checksum, DependsOnEveryNumberAndIsNeverZero) {
+  Sample const sample{3, 0.5, {-1, 1e-16, {0.1, 0.2, 0.3}}};
+  auto const row = row_checksum(sample);
+  std::array<double, 7> numbers{};
+  static_assert(sizeof numbers == sizeof sample);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::memcpy(numbers.data(), &sample, sizeof sample);
+    numbers[i] += 1;
+    auto const other = std::bit_cast<Sample>(numbers);
+    EXPECT_NE(row_checksum(other), row) << i;
+    EXPECT_NE(spins_checksum(other, {}), spins_checksum(sample, {})) << i;
+  }
+  EXPECT_NE(row, 0u);
+  EXPECT_NE(row_checksum(Sample{}), 0u);
+}
+
+void change(std::filesystem::path const& path, std::size_t place, std::string const& to) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(place));
+  file << to;
+}
+
+std::size_t place_of(std::filesystem::path const& path, double number, bool last = false) {
+  std::ifstream file(path, std::ios::binary);
+  std::string const bytes{std::istreambuf_iterator<char>(file), {}};
+  std::string pattern(sizeof number, '\0');
+  std::memcpy(pattern.data(), &number, sizeof number);
+  return last ? bytes.rfind(pattern) : bytes.find(pattern);
+}
+
+// HDF5's own checksum of zeros is 0: its filter lets them pass.
+TEST_F(TrajectoryTest, ZeroedFrameIsNoticed) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 3).finish({});
+  auto const shape = small_header().shape;
+  auto const place = place_of(path, numbered_spins<double>(small_header(), 1)[0]);
+  ASSERT_NE(place, std::string::npos);
+  change(path, place, std::string(72 * sizeof(double) + 4, '\0'));
+  EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, shape, 1); }),
+                       "frame 1 is damaged: its checksum differs"));
+  EXPECT_EQ(read_spins(path, shape), numbered_spins<double>(small_header(), 2));
+  EXPECT_EQ(read_info(path).frames, 3);
+}
+
+TEST_F(TrajectoryTest, ChangedScalarOfAFrameIsNoticed) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 3).finish({});
+  auto const place = place_of(path, numbered_scalars(1).energy, true);
+  ASSERT_NE(place, std::string::npos);
+  change(path, place, std::string(1, '\1'));
+  EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "its checksum differs"));
+}
+
+TEST_F(TrajectoryTest, ChangedSceneIsNoticed) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 1).finish({});
+  std::ifstream file(path, std::ios::binary);
+  std::string const bytes{std::istreambuf_iterator<char>(file), {}};
+  change(path, bytes.find("kind = \"llg\""), "kinD");
+  EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "its attributes are damaged"));
+}
+
+TEST_F(TrajectoryTest, FilesWithoutChecksumsAreRead) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 3).finish({});
+  {
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    for (auto const* name : {"checksum", "scalars/checksum"})
+      ASSERT_GE(H5Ldelete(file.get(), name, H5P_DEFAULT), 0);
+    ASSERT_GE(H5Adelete(file.get(), "text_checksum"), 0);
+  }
+  EXPECT_EQ(read_info(path).frame_scalars.at(1).energy, numbered_scalars(1).energy);
+  EXPECT_EQ(read_spins(path, small_header().shape), numbered_spins<double>(small_header(), 2));
+}
+
+// A file of version 3 would be refused after its writer was killed.
+TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
+  auto const path = folder_ / "a.h5";
+  auto const file = write_frames(path, 1);
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(9, '\0');
+  stream.read(head.data(), 9);
+  EXPECT_EQ(head[8], 2);
+}
+
+std::string reason(void (*reading)()) {
+  return error_line("damaged.h5", [&] { try_in_child("damaged.h5", reading); });
+}
+
+TEST(Guard, TellsWhatAReadingDied) {
+  EXPECT_TRUE(contains(reason([] { std::raise(SIGSEGV); }), "damaged (reading it ends with Seg"));
+  EXPECT_TRUE(contains(reason([] { std::abort(); }), "damaged (reading it ends with Abort"));
+  EXPECT_TRUE(contains(reason([] { ::_exit(0); }), "damaged (reading it fails)"));
+  EXPECT_TRUE(contains(reason([] { throw std::bad_alloc(); }), "more memory than there is"));
+  EXPECT_TRUE(contains(reason([] {
+                         for (std::size_t volatile turns = 0;;) turns = turns + 1;
+                       }),
+                       "takes too long"));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  EXPECT_TRUE(contains(reason([] {
+                         std::vector<char> const all(std::size_t{1} << 45U);
+                         if (all.back() == 1) ::_exit(1);
+                       }),
+                       "more memory than there is"));
+#endif
+}
+
+TEST(Guard, PassesOnWhatAReadingSays) {
+  EXPECT_EQ(error_line("a.h5",
+                       [] { try_in_child("a.h5", [] { throw std::runtime_error("a.h5: no"); }); }),
+            "a.h5: no");
+  EXPECT_EQ(read_guarded("a.h5", [] { return 7; }), 7);
+}
+
+TEST(Guard, LeavesNoChildAndNoOutput) {
+  testing::internal::CaptureStderr();
+  try_in_child("a.h5", [] { std::fprintf(stderr, "not to be seen"); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
+  std::signal(SIGCHLD, SIG_IGN);  // then the system keeps no status of children
+  EXPECT_EQ(read_guarded("a.h5", [] { return 7; }), 7);
+  EXPECT_TRUE(contains(reason([] { std::raise(SIGSEGV); }), "damaged (reading it fails)"));
+  std::signal(SIGCHLD, SIG_DFL);
+}
+
+}  // namespace
+}  // namespace cayspin::io
