@@ -18,6 +18,11 @@ namespace cayspin {
 
 namespace detail {
 
+inline Lattice const& validated(Lattice const& lattice) {
+  lattice.validate();
+  return lattice;
+}
+
 /// A field's first numbers: tasks are its rows and then its margins, before, between and after the
 /// components. Packs at the ends of rows read a few numbers there that belong to no site; they are
 /// discarded, but must not trap or be denormal.
@@ -73,7 +78,8 @@ struct CopySites {
 }  // namespace detail
 
 /// Components numbers on every site of a lattice, each component an array of its own (RowLayout).
-/// A handle: copies share the memory, as copies of a Kokkos::View do.
+/// A handle: copies share the memory, as copies of a Kokkos::View do. One that is
+/// default-constructed or moved from has no sites, and every call refuses it.
 template <std::floating_point Real, int Components,
           class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class SiteField {
@@ -86,10 +92,19 @@ class SiteField {
   static constexpr int components = Components;
 
   SiteField() = default;
+  SiteField(SiteField const&) = default;
+  SiteField& operator=(SiteField const&) = default;
+  SiteField(SiteField&& other) noexcept : SiteField() { swap(*this, other); }
+  SiteField& operator=(SiteField&& other) noexcept {
+    SiteField moved(std::move(other));
+    swap(*this, moved);
+    return *this;
+  }
+  ~SiteField() = default;
 
   /// Allocates; every site starts as (0, .., 0, last_component).
   SiteField(std::string const& label, Lattice const& lattice, Real last_component = Real(0))
-      : lattice_(validated(lattice)),
+      : lattice_(detail::validated(lattice)),
         layout_(detail::RowLayout::of<Real>(lattice)),
         data_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + label),
               layout_.allocation(Components)) {
@@ -116,7 +131,7 @@ class SiteField {
   /// The allocation, for deep copies between fields of one lattice.
   Kokkos::View<Real*, MemorySpace> const& allocation() const { return data_; }
 
-  /// The numbers of one site, for host code on fields in host memory.
+  /// The numbers of one site, for host code on fields in host memory. `site` is not checked.
   Vec3<Real> get(std::int64_t site) const
     requires(Components == 3 && std::is_same_v<MemorySpace, Kokkos::HostSpace>)
   {
@@ -139,12 +154,7 @@ class SiteField {
   }
 
  private:
-  static Lattice const& validated(Lattice const& lattice) {
-    lattice.validate();
-    return lattice;
-  }
-
-  Lattice lattice_;
+  Lattice lattice_{{0, 0, 0}};  // that of no other field
   detail::RowLayout layout_;
   Kokkos::View<Real*, MemorySpace> data_;
 };

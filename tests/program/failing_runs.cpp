@@ -29,6 +29,27 @@ TEST_F(FailingRun, EnergyThatRisesIsStatusThree) {
     EXPECT_LT(info.frame_scalars[frame].energy, info.frame_scalars[frame - 1].energy);
 }
 
+// Many sites are looked at in every tenth step alone, few in every step: 4096 are few.
+TEST_F(FailingRun, AmongManySitesIsFoundInATenthStep) {
+  auto const failing_step = [&](std::string const& sites) -> std::int64_t {
+    write("chain.toml", chain_scene());
+    auto const outcome =
+        start({"run", "chain.toml", "--quiet", "--overwrite", "--set",
+               "lattice.shape=[" + sites + "]", "--set",
+               "integrator={method='euler',dt=0.25,steps=1000}", "--set", "output.every=100000"});
+    EXPECT_EQ(outcome.status, 3);
+    auto const failure = outcome.errors.substr(outcome.errors.find('\n') + 1);
+    EXPECT_TRUE(contains(failure, "energy rose by"));
+    EXPECT_TRUE(contains(failure, "the last good frame is 0 in chain.h5 (step 0, t = 0)"));
+    std::string const before = "chain.toml: step ";
+    auto const place = failure.find(before);
+    EXPECT_NE(place, std::string::npos) << failure;
+    return std::stoll(failure.substr(place + before.size()));
+  };
+  EXPECT_EQ(failing_step("4096"), 1);
+  EXPECT_EQ(failing_step("4097"), 10);
+}
+
 TEST_F(FailingRun, EnergyGuardCanBeSwitchedOff) {
   write("chain.toml", chain_scene());
   auto const outcome = start({"run", "chain.toml", "--quiet", "--set", "integrator.method='euler'",

@@ -28,6 +28,9 @@ def attributes(file):
 
 class Demo(unittest.TestCase):
     def assert_same_files(self, demo, program):
+        here, there = demo.attrs["git_commit"], program.attrs["git_commit"]
+        self.assertEqual(here, there, "built from different sources: build cayspin_demo and "
+                                      "cayspin_program together, and try again")
         self.assertEqual(attributes(demo), attributes(program))
         here, there = datasets(demo), datasets(program)
         self.assertEqual(here.keys(), there.keys())

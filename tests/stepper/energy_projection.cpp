@@ -51,6 +51,23 @@ TEST(EnergyProjection, KeepsOrderAndEnergy) {
   expect_order_and_energy<LieHeun<Spins>>("bodies, Heun", body, 2, ladder);
 }
 
+// Euler's steps are so rough that each of the corrections still changes the energy.
+TEST(EnergyProjection, CorrectsThreeTimesUnlessToldOtherwise) {
+  Spins const start = random_spins(slab.lattice, 3);
+  double const before = energy(Space{}, slab.natural(), start).value;
+  auto const left = [&](auto... corrections) {
+    Spins spins = copy_of(start);
+    EnergyProjection stepper(spins, LieEuler(spins), corrections...);
+    stepper.step(Space{}, slab.natural(), spins, 0, 0.2);
+    return std::abs(energy(Space{}, slab.natural(), spins).value - before);
+  };
+  EXPECT_EQ(left(), left(3));
+  EXPECT_GT(left(0), 10 * left(1));
+  EXPECT_GT(left(1), 10 * left(2));
+  EXPECT_GT(left(2), 10 * left(3));
+  EXPECT_GT(left(3), 10 * left(4));
+}
+
 TEST(EnergyProjection, RefusesWhatDoesNotConserve) {
   Slab damped = slab;
   damped.damping = 0.1;

@@ -97,14 +97,23 @@ constexpr void check_access() {
                 "This execution space cannot reach the memory space of the field or View.");
 }
 
+/// Throws std::invalid_argument for a field that was default-constructed or moved from.
+inline void require_sites(std::string const& where, std::int64_t sites) {
+  if (sites == 0) [[unlikely]]
+    throw std::invalid_argument(where + ": the field has no sites");
+}
+
 template <class View>
 void require_extents(char const* where, View const& view, std::int64_t sites, int components) {
+  require_sites(where, sites);
   if (static_cast<std::int64_t>(view.extent(0)) != sites ||
       static_cast<int>(view.extent(1)) != components)
     throw std::invalid_argument(std::string(where) + ": the View is " +
                                 std::to_string(view.extent(0)) + " x " +
                                 std::to_string(view.extent(1)) + ", the field " +
                                 std::to_string(sites) + " x " + std::to_string(components));
+  if (view.data() == nullptr)
+    throw std::invalid_argument(std::string(where) + ": the View has no memory");
 }
 
 inline void require_size(char const* where, std::size_t size, std::int64_t expected) {

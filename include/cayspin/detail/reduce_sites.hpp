@@ -156,11 +156,13 @@ struct ReduceOnDevice {
 };
 
 /// Combines what functor(site, values) puts into values[0 .. Count) over all sites; waits. Takes no
-/// memory from the heap on host spaces, and may run in several instances at once.
+/// memory from the heap on host spaces, and may run in several instances at once. Throws
+/// std::invalid_argument when there are no sites.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                                     RowLayout const& layout,
                                                     Functor const& functor) {
+  require_sites(label, layout.nx);
   std::array<double, std::size_t{Count}> total{};
   if constexpr (is_host_execution<Exec>) {
     std::int32_t const per_row = tasks_per_row(layout);

@@ -89,7 +89,7 @@ class LayerAveragedSlabDemag {
   LayerAveragedSlabDemag(Lattice const& lattice, int axis, double strength = 1)
       : axis_(checked(axis)),
         strength_(strength),
-        lattice_(lattice),
+        lattice_(detail::validated(lattice)),
         averages_("cayspin::LayerAveragedSlabDemag::averages",
                   static_cast<std::size_t>(layers() + detail::cache_line_bytes)) {}
 

@@ -30,6 +30,7 @@ class SlabDemagOnHost {
 
   template <class HostSpins>
   void operator()(HostSpins const& spins, HostSpins const& field, double) const {
+    require_lattice("cayspin::SlabDemagOnHost's field", field.lattice(), spins.lattice());
     using Real = typename HostSpins::value_type;
     auto const n = as_value<Real>(normal_);
     Real const strength = static_cast<Real>(-strength_);

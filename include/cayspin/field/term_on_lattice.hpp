@@ -27,7 +27,9 @@ class TermOnLattice : public Prepared {
  protected:
   template <class... Numbers>
   TermOnLattice(char const* name, Lattice const& lattice, Numbers const&... numbers)
-      : Prepared(lattice, numbers...), name_(name), lattice_(lattice) {}
+      : Prepared(lattice, numbers...), name_(name), lattice_(lattice) {
+    lattice.validate();
+  }
 
  private:
   char const* name_;  // for messages

@@ -36,6 +36,7 @@ struct NewtonNormalize {
 template <class Exec, class Real, class MemorySpace>
 void normalize(Exec const& exec, SpinField<Real, MemorySpace> const& spins) {
   detail::check_access<Exec, MemorySpace>();
+  detail::require_sites("cayspin::normalize", spins.sites());
   detail::for_each_site<Real>(exec, "cayspin::normalize", spins.layout(),
                               detail::NewtonNormalize<Real>{spins.array(), spins.output(false)});
 }

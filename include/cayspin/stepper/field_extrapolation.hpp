@@ -115,6 +115,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
+    this->require_other_memory(spins, next_);
     if (dt == 0) return;
     if (past_.known() > 0 && !(0 < dt / past_.last_step() && dt / past_.last_step() <= 2)) reset();
     if (past_.known() >= Order - 1) {

@@ -60,6 +60,8 @@ class Implicit : public StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
+    this->require_other_memory(spins, level_);
+    this->require_other_memory(spins, next_);
     double const when = AtMiddle ? t + 0.5 * dt : t + dt;
     bool corrected = false;
     auto const map = [&](Spins const& from, Spins const& to, bool to_middle) {

@@ -95,6 +95,7 @@ class RedBlack : public detail::StepperBase<Spins> {
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
     auto const region = this->begin_step(exec, spins, "::batch");
+    this->require_steps(count);
     if (!takes_batches(exec, generator, spins))
       throw std::invalid_argument(
           this->label("::batch: these steps have to be taken one by one (takes_batches)"));

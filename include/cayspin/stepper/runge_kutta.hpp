@@ -88,6 +88,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
+    if (exchanges()) this->require_other_memory(spins, memory_.end());
     if constexpr (has_sweep && detail::is_host_execution<Exec>) {
       if (path_ == Path::sweep) {
         if (detail::needs_time_alone(generator, exec, spins))
@@ -128,6 +129,8 @@ class RungeKutta : public detail::StepperBase<Spins> {
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
     auto const region = this->begin_step(exec, spins, "::batch");
+    this->require_steps(count);
+    if (exchanges()) this->require_other_memory(spins, memory_.end());
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
     if (!takes_batches(exec, generator, spins))
       throw std::invalid_argument(
@@ -145,6 +148,9 @@ class RungeKutta : public detail::StepperBase<Spins> {
   static constexpr bool has_sweep =
       stages > 1 &&
       (stages <= detail::SweepPlan::most_stages) && detail::is_host_execution<DefaultExec>;
+
+  /// Does a step exchange the memory of the spins?
+  bool exchanges() const { return stages == 1 || path_ == Path::sweep; }
 
   static bool can_sweep(detail::RowLayout const& layout) {
     return has_sweep && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);

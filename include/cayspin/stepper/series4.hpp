@@ -44,6 +44,7 @@ class Series4 : public detail::StepperBase<Spins> {
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
     auto const region = this->begin_step(exec, spins);
+    this->require_other_memory(spins, next_);
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
     if constexpr (detail::is_local<std::remove_const_t<decltype(prepared)>>) {
       using Kernel =

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,7 +24,9 @@ class StepperBase {
 
  protected:
   StepperBase(std::string const& name, Lattice const& lattice)
-      : lattice_(lattice), region_("cayspin::" + name) {}
+      : lattice_(lattice), region_("cayspin::" + name) {
+    lattice.validate();
+  }
 
   CAYSPIN_DETAIL_NOINLINE std::string label(char const* stage) const { return region_ + stage; }
   /// "::stage_1", "::stage_2", .. of so many stages.
@@ -42,6 +45,17 @@ class StepperBase {
     if (!(spins.lattice() == lattice_))
       throw std::invalid_argument(region_ + call + ": the spins are not of the stepper's lattice");
     return Kokkos::Profiling::ScopedRegion(region_);
+  }
+
+  /// Throws when `spins` is a second handle on memory that a step has exchanged for its own.
+  void require_other_memory(Spins const& spins, Spins const& own) const {
+    if (spins.allocation().data() == own.allocation().data()) [[unlikely]]
+      throw std::invalid_argument(
+          label("::step: the spins are the stepper's own memory, since a step exchanged it; take "
+                "the field that the step was given"));
+  }
+  void require_steps(std::int64_t count) const {
+    if (count < 1) throw std::invalid_argument(label("::batch: the number of steps is below 1"));
   }
 
   Lattice lattice_;

@@ -42,6 +42,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
+    this->require_other_memory(spins, next_);
     if constexpr (Method::remembers) {
       if (last_dt_ != 0) {
         stage(exec, generator, step_label_, method_.next(dt / last_dt_), spins, spins, next_, t,
@@ -79,7 +80,8 @@ class TwoPoint : public detail::StepperBase<Spins> {
                 double dt)
     requires(Method::remembers)
   {
-    auto const region = this->begin_step(exec, spins);
+    auto const region = this->begin_step(exec, spins, "::remember");
+    this->require_other_memory(spins, next_);
     stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
     last_dt_ = dt;
   }

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Steppers refuse fields and generators of others, in every call, and their own memory as spins.
+#include "wrong_calls.hpp"
+
+#include <cayspin_paper/rkmk4_as_printed.hpp>
+
+namespace cayspin::test {
+namespace {
+
+/// Calls visit(name, make), where make(like) is a new stepper, for one of each kind.
+template <class Visit>
+void for_each_stepper(Visit const& visit) {
+  visit("LieEuler", [](Spins const& like) { return LieEuler(like); });
+  visit("LieHeun", [](Spins const& like) { return LieHeun(like); });
+  visit("LieHeun, swept", [](Spins const& like) {
+    LieHeun stepper(like);
+    stepper.use(Path::sweep);
+    return stepper;
+  });
+  visit("LieAdamsBashforth2", [](Spins const& like) { return LieAdamsBashforth2(like); });
+#if !defined(__SANITIZE_ADDRESS__)  // with it the others take minutes to compile
+  visit("LieEuler, Analytic",
+        [](Spins const& like) { return LieEuler(like, isotropy::Analytic()); });
+  visit("Compensated", [](Spins const& like) { return Compensated<LieHeun<Spins>>(like); });
+  visit("ImplicitMidpoint", [](Spins const& like) { return ImplicitMidpoint(like); });
+  visit("Series4", [](Spins const& like) { return Series4(like); });
+  visit("FieldExtrapolation3", [](Spins const& like) { return FieldExtrapolation3(like); });
+  visit("RedBlack2", [](Spins const& like) { return RedBlack2(like); });
+  visit("AdaptiveRkmk", [](Spins const& like) {
+    return AdaptiveRkmk<Spins, tableau::BogackiShampine3>(like, {.tolerance = 1e-4});
+  });
+  visit("EnergyProjection",
+        [](Spins const& like) { return EnergyProjection(like, LieEuler(like)); });
+  visit("Rkmk4AsPrinted", [](Spins const& like) { return Rkmk4AsPrinted<Spins>(like); });
+#endif
+}
+
+/// Each call of a stepper with these spins and this generator.
+template <class Make>
+std::vector<WrongCall> calls_of(std::string const& what, Make const& make, Lattice const& own,
+                                Spins spins, Generator const& generator) {
+  Spins const like("like", own);
+  std::vector<WrongCall> calls{
+      {what + ", step", [=]() mutable { make(like).step(Exec(), generator, spins, 0, 0.1); }},
+      {what + ", integrate", [=]() mutable {
+         auto stepper = make(like);
+         integrate(Exec(), stepper, generator, spins, Times{0, 0.1, 3});
+       }}};
+  using Stepper = decltype(make(like));
+  if constexpr (requires(Stepper stepper) { stepper.batch(Exec(), generator, spins, 0, 0.1, 2); })
+    calls.push_back({what + ", batch",
+                     [=]() mutable { make(like).batch(Exec(), generator, spins, 0, 0.1, 2); }});
+  if constexpr (requires(Stepper stepper) { stepper.remember(Exec(), generator, spins, 0, 0.1); })
+    calls.push_back({what + ", remember",
+                     [=]() mutable { make(like).remember(Exec(), generator, spins, 0, 0.1); }});
+  return calls;
+}
+
+TEST(WrongCallsOfSteppers, SpinsOfOthers) {
+  for_each_stepper([](std::string const& name, auto const& make) {
+    for (auto const& own : own_lattices)
+      for (auto const& [kind, spins] : fields_of_others<Spins>(own))
+        expect_refused(calls_of(name + ", spins " + kind, make, own, spins, generator_on(own)));
+  });
+}
+
+TEST(WrongCallsOfSteppers, GeneratorsOfOthers) {
+  for_each_stepper([](std::string const& name, auto const& make) {
+    Lattice const own = own_lattices[0];
+    for (auto const& [kind, field] : fields_of_others<Spins>(own))
+      if (field.sites() != 0)
+        expect_refused(calls_of(name + ", generator " + kind, make, own, Spins("spins", own),
+                                generator_on(field.lattice())));
+  });
+}
+
+TEST(WrongCallsOfSteppers, MadeForNoField) {
+  for_each_stepper([](std::string const& name, auto const& make) {
+    expect_refused({{name, [&] { make(Spins()); }},
+                    {name + ", moved", [&] { make(moved_from<Spins>(own_lattices[0])); }}});
+  });
+}
+
+TEST(WrongCallsOfSteppers, BatchesOfNoSteps) {
+  Lattice const own = own_lattices[0];
+  for (std::int64_t const count : {0, -1, -2}) {
+    auto const batch = [&](auto stepper) {
+      return [&own, count, stepper]() mutable {
+        Spins spins("spins", own);
+        stepper.batch(Exec(), generator_on(own), spins, 0, 0.1, count);
+      };
+    };
+    Spins const like("like", own);
+    auto const text = std::to_string(count);
+    expect_refused({{"LieEuler, " + text, batch(LieEuler(like))},
+                    {"LieHeun, " + text, batch(LieHeun(like))},
+                    {"RedBlack2, " + text, batch(RedBlack2(like))}});
+  }
+}
+
+// A step exchanges the memory of the spins with the stepper's own. A second handle on the memory
+// from before is then the stepper's: it is refused, or the steps are as right as with the first.
+TEST(WrongCallsOfSteppers, ASecondHandleOnTheSpins) {
+  for_each_stepper([](std::string const& name, auto const& make) {
+    Lattice const own = own_lattices[0];
+    auto const generator = generator_on(own);
+    auto const start = [&] {
+      Spins spins("spins", own);
+      for (std::int64_t site = 0; site < spins.sites(); ++site)
+        spins.set(site, site % 2 == 0 ? Vec3<double>{0.6, 0, 0.8} : Vec3<double>{0, -0.6, 0.8});
+      return spins;
+    };
+    auto right = start(), spins = start(), second = spins;
+    auto reference = make(right), stepper = make(spins);
+    for (int step = 0; step < 6; ++step) {
+      reference.step(Exec(), generator, right, 0.1 * step, 0.1);
+      auto const before = copy_to_host(spins);
+      bool const exchanged = second.allocation().data() != spins.allocation().data();
+      if (exchanged) copy_from_host(before, second);
+      try {
+        stepper.step(Exec(), generator, second, 0.1 * step, 0.1);
+        spins = second;
+        EXPECT_EQ(copy_to_host(spins), copy_to_host(right)) << name << ", step " << step;
+      } catch (std::invalid_argument const& error) {
+        EXPECT_TRUE(exchanged) << name << ": " << error.what();
+        stepper.step(Exec(), generator, spins, 0.1 * step, 0.1);
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace cayspin::test
