@@ -34,7 +34,7 @@ namespace {
 
 bool is_child = false;
 
-// The first byte that a child sends. Behind `failed` comes the message.
+// The first byte that a child sends. After `failed` comes the message.
 enum Outcome : char { survived = 's', failed = 'f', out_of_memory = 'm' };
 
 constexpr int faults[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGTRAP, SIGSYS, SIGXCPU};

@@ -4,6 +4,7 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
+#include "hdf5/survives.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 
@@ -174,6 +175,18 @@ class CheckpointReader::Implementation {
     return numbers;
   }
 
+  void read_all() const {
+    std::vector<std::string> names;
+    auto const keep = [](hid_t, char const* name, H5L_info_t const*, void* to) -> herr_t {
+      static_cast<std::vector<std::string>*>(to)->emplace_back(name);
+      return 0;
+    };
+    check(H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names), path_,
+          "cannot read the checkpoint");
+    for (auto const& name : names)
+      if (name != "numbers") field(name);
+  }
+
   CheckpointHeader const& header() const { return header_; }
   std::filesystem::path const& path() const { return path_; }
 
@@ -188,6 +201,7 @@ class CheckpointReader::Implementation {
 
 CheckpointReader::CheckpointReader(std::filesystem::path path) {
   QuietErrors const quiet;
+  try_in_child(path, [&] { Implementation(path).read_all(); });
   implementation_ = std::make_unique<Implementation>(std::move(path));
 }
 
@@ -207,8 +221,10 @@ void CheckpointReader::field(std::string const& name, std::vector<double>& numbe
 
 bool is_checkpoint(std::filesystem::path const& path) {
   QuietErrors const quiet;
-  auto const file = open_file(path);
-  return RootAttributes(file.get(), path).has(format_mark);
+  return read_guarded(path, [&] {
+    auto const file = open_file(path);
+    return RootAttributes(file.get(), path).has(format_mark);
+  });
 }
 
 }  // namespace cayspin::io
