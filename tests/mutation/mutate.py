@@ -148,7 +148,8 @@ def self_test():
 
         def compiles(self, target):
             compiler = os.environ.get("CXX", "c++")
-            return run([compiler, "-o", self.build / "bin" / target, self.sources / "toy.cpp"], 60) == 0
+            program = self.build / "bin" / target
+            return run([compiler, "-o", program, self.sources / "toy.cpp"], 60) == 0
 
     text = ("// a > b in a comment\n"
             "int larger(int a, int b) { return a > b ? a : b; }\n"

@@ -11,7 +11,7 @@ SWAPS = [
 ]
 WORDS = {"true": "false", "false": "true", "std::min": "std::max", "std::max": "std::min"}
 NUMBER = re.compile(r"(?<![\w.'\"\[])(\d+(?:\.\d*)?(?:e[+-]?\d+)?)(?![\w.'\"])")
-STATEMENT = re.compile(r"^\s+(?!return|using|friend|static|const|auto|throw|break|template|else|case)"
+STATEMENT = re.compile(r"^\s+(?!return|using|friend|static|const|auto|throw|break|template|else)"
                        r"(?:[\w.>\[\]:()-]+(?:\(.*\))?|[\w.>\[\]()-]+ [-+*/]?= .*);\s*$")
 ARGUMENTS = re.compile(r"(?<=\()(\w[\w.:]*(?:\(\))?), (\w[\w.:]*(?:\(\))?)(?=[,)])")
 NOT_CODE = re.compile(r"^\s*(//|#|template <|using |namespace |friend |static_assert|typename )")
