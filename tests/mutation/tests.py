@@ -3,8 +3,8 @@
 import typing
 
 SOURCES = ["include/cayspin/stepper/*.hpp", "include/cayspin/observer/*.hpp",
-           "src/trajectory/*.cpp", "src/simulation/guard.[ch]pp", "src/program/*.[ch]pp", "src/program/sweep/*.[ch]pp",
-           "src/program/trade/*.[ch]pp"]
+           "src/trajectory/*.cpp", "src/simulation/guard.[ch]pp", "src/program/*.[ch]pp",
+           "src/program/sweep/*.[ch]pp", "src/program/trade/*.[ch]pp"]
 
 # These send signals and remove files: broken, they could reach what is not theirs.
 EXCLUDED = ["src/program/sweep/child.cpp", "src/program/sweep/session.cpp"]
