@@ -36,6 +36,7 @@ TEST_F(FifthOrder, TheErrorBeforeEntersWithPower4Over50) {
 }
 
 TEST_F(FifthOrder, ARejectedStepShrinksByTheFifthRoot) {
+  EXPECT_NEAR(factor(1.5), 0.9 * 0.9221079114817278, 1e-12);
   EXPECT_NEAR(factor(0x1p5), 0.45, 1e-12);
   EXPECT_NEAR(factor(0x1p15), 0.1125, 1e-12);
   EXPECT_NEAR(factor(0x1p20), 0.1, 1e-12);
@@ -47,6 +48,9 @@ TEST_F(FifthOrder, TheStepAfterARejectedOneDoesNotGrow) {
   EXPECT_NEAR(factor(0x1p-10), 1, 1e-12);
   // The rejected error is not the one before.
   EXPECT_NEAR(factor(1), 0.9 * 0.5743491774985175, 1e-12);  // 2^(-10 * 0.08)
+  EXPECT_GT(factor(0x1p-10), 1);
+  factor(0x1p5);
+  control.reset();
   EXPECT_GT(factor(0x1p-10), 1);
 }
 
@@ -87,6 +91,16 @@ TEST(StepControl, TheFirstStepTurnsByHalfTheRootOfTheTolerance) {
   EXPECT_EQ(limited.first_dt(0, 0.25), 0.25);
   EXPECT_EQ(limited.first_dt(std::nan(""), 0.25), 0.25);
   EXPECT_EQ(limited.first_dt(std::numeric_limits<double>::infinity(), 0.25), 0.25);
+}
+
+TEST(StepControl, OptionsAtTheirLimitsAreTaken) {
+  EXPECT_EQ(StepOptions::least_tolerance<float>(), 0x1p-18);
+  EXPECT_EQ(StepOptions::least_tolerance<double>(), 0x1p-47);
+  EXPECT_NO_THROW(controller({.tolerance = 1}));
+  EXPECT_NO_THROW(controller({.tolerance = 1e-14}));
+  EXPECT_NO_THROW(controller({.min_dt = 0.5, .max_dt = 0.5}));
+  EXPECT_THROW(controller({.tolerance = 0.9e-14}), std::invalid_argument);
+  EXPECT_THROW(controller({.min_dt = 0.5, .max_dt = 0.49}), std::invalid_argument);
 }
 
 TEST(StepControl, NoStepIsAboveTheLargest) {

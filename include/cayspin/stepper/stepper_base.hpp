@@ -49,7 +49,7 @@ class StepperBase {
 
   /// Throws when `spins` is a second handle on memory that a step has exchanged for its own.
   void require_other_memory(Spins const& spins, Spins const& own) const {
-    if (spins.allocation().data() == own.allocation().data()) [[unlikely]]
+    if (spins.array().data == own.array().data) [[unlikely]]
       throw std::invalid_argument(
           label("::step: the spins are the stepper's own memory, since a step exchanged it; take "
                 "the field that the step was given"));
