@@ -10,7 +10,7 @@ function(cayspin_add_test name)
     message(FATAL_ERROR "cayspin_add_test(${name}): wrong arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
   if(NOT arg_TIMEOUT)
-    set(arg_TIMEOUT 300)
+    set(arg_TIMEOUT ${CAYSPIN_TIMEOUT})
   endif()
 
   add_executable(test_${name} ${arg_SOURCES})

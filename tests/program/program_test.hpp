@@ -16,6 +16,18 @@ namespace cayspin::program::test {
 
 using Arguments = std::vector<std::string>;
 
+#if defined(CAYSPIN_WITHOUT_SERIAL)
+inline constexpr bool has_serial = false;  // the program, compiled without it, has OpenMP
+#else
+inline constexpr bool has_serial = true;
+#endif
+
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool address_sanitizer = true;
+#else
+inline constexpr bool address_sanitizer = false;
+#endif
+
 /// What a run of the program left behind.
 struct Outcome {
   int status = -1;  // 128 + signal when one killed it

@@ -27,10 +27,12 @@ TEST_F(Running, FramesDefaultToFirstAndLast) {
 }
 
 TEST_F(Running, AttributesSayWhatRan) {
-  auto const info = run(chain_scene(), {"--space", "serial", "--precision", "single"});
+  std::string const space = has_serial ? "serial" : "openmp";
+  auto const info =
+      run(chain_scene(), {"--space", space, "--threads", "1", "--precision", "single"});
   EXPECT_EQ(info.format, 1);
   EXPECT_EQ(info.header.scene_text, chain_scene());
-  EXPECT_EQ(info.header.space, "serial");
+  EXPECT_EQ(info.header.space, space);
   EXPECT_EQ(info.header.threads, 1);
   EXPECT_EQ(info.header.precision, "single");
   EXPECT_FALSE(info.header.cayspin_version.empty());
