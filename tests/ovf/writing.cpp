@@ -135,6 +135,8 @@ TEST_F(OvfTest, ValuesHaveToBeThoseOfTheMesh) {
 }
 
 TEST_F(OvfTest, FullDiskKeepsTheOldFile) {
+  if (std::getenv("CAYSPIN_COVERAGE"))
+    GTEST_SKIP() << "the counts of executed lines do not fit on this disk, either";
   auto const path = write("kept");
   EXPECT_EXIT(write_on_full_disk(path), testing::ExitedWithCode(3),
               "m.ovf: cannot write the file: File too large$");
