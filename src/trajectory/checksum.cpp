@@ -76,9 +76,9 @@ std::uint32_t row_checksum(Sample const& sample) { return never_zero(row_hash(sa
 
 std::uint64_t text_checksum(TrajectoryHeader const& header) {
   std::uint64_t hash = 0;
-  for (auto const* text : {&header.scene_text, &header.resolved_scene, &header.cayspin_version,
-                           &header.git_commit, &header.kokkos_version, &header.space,
-                           &header.precision})
+  for (auto const* text :
+       {&header.scene_text, &header.resolved_scene, &header.cayspin_version, &header.git_commit,
+        &header.kokkos_version, &header.space, &header.precision})
     hash = xxh64(std::as_bytes(std::span(*text)), hash);
   return hash;
 }

@@ -9,7 +9,7 @@
 
 namespace cayspin::io {
 
-/// The hash XXH64 of Yann Collet.
+/// The hash XXH64 of the library xxHash.
 std::uint64_t xxh64(std::span<std::byte const> data, std::uint64_t seed = 0);
 
 /// The 32 bits that stand for step, time and scalars; never 0.

@@ -58,8 +58,8 @@ inline std::string damaged(std::string bytes, Chance& chance) {
       bytes.resize(chance.below(bytes.size()));
       break;
     case 3:
-      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(from),
-                  std::min(block, bytes.size()), '\0');
+      std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(from), std::min(block, bytes.size()),
+                  '\0');
       break;
     case 4:
       for (std::size_t i = 0; i < block && std::max(from, to) + i < bytes.size(); ++i)

@@ -32,11 +32,11 @@ steps = 10
 // Everything that the readers of a trajectory say about it, as text that can be compared.
 std::string all_of(TrajectoryInfo const& info) {
   auto const& header = info.header;
-  std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", info.format,
-                                 info.complete, info.frames, info.samples, header.scene_text,
-                                 header.resolved_scene, header.cayspin_version, header.git_commit,
-                                 header.kokkos_version, header.space, header.threads,
-                                 header.precision, info.cost.evaluations);
+  std::string text =
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {}", info.format, info.complete, info.frames,
+                  info.samples, header.scene_text, header.resolved_scene, header.cayspin_version,
+                  header.git_commit, header.kokkos_version, header.space, header.threads,
+                  header.precision, info.cost.evaluations);
   text += fmt::format(" {} {}", info.cost.wall_seconds, info.cost.step_seconds);
   for (auto const extent : header.shape) text += fmt::format(" {}", extent);
   text += fmt::format(" {} {} {} {} {}", header.units.si, header.units.time, header.units.length,
@@ -73,9 +73,9 @@ struct Reading {
 };
 
 std::string spins_of_start(std::filesystem::path const& path) {
-  auto const scene = parse_scene(
-      "[system]\nkind = \"llg\"\ndamping = 0.1\n" + scene_head + "[initial]\nfile = \"" + path.string() + "\"\n",
-      "scene.toml");
+  auto const scene = parse_scene("[system]\nkind = \"llg\"\ndamping = 0.1\n" + scene_head +
+                                     "[initial]\nfile = \"" + path.string() + "\"\n",
+                                 "scene.toml");
   check_files(scene);
   return all_of(initial_spins(scene));
 }
@@ -92,8 +92,14 @@ std::string tensors(std::filesystem::path const& path) {
 
 constexpr Reading of_trajectories[] = {
     {"info", [](auto const& path) { return all_of(read_info(path)); }},
-    {"last spins", [](auto const& path) { return all_of(read_spins(path, {4, 3, 2})); }},
-    {"first spins", [](auto const& path) { return all_of(read_spins(path, {4, 3, 2}, 0)); }},
+    {"last spins",
+     [](auto const& path) {
+       return all_of(read_spins(path, {4, 3, 2}));
+     }},
+    {"first spins",
+     [](auto const& path) {
+       return all_of(read_spins(path, {4, 3, 2}, 0));
+     }},
     {"initial.file", spins_of_start},
     {"watch", followed}};
 constexpr Reading of_inertia[] = {{"inertia.file", tensors}};
@@ -182,8 +188,8 @@ TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
   hid_t const file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   hsize_t const extents[3] = {24, 3, 3};
   hid_t const space = H5Screate_simple(3, extents, nullptr);
-  hid_t const dataset = H5Dcreate2(file, "inertia", H5T_IEEE_F64LE, space, H5P_DEFAULT,
-                                   H5P_DEFAULT, H5P_DEFAULT);
+  hid_t const dataset =
+      H5Dcreate2(file, "inertia", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   std::vector<double> values(24 * 9, 0.0);
   for (std::size_t body = 0; body < 24; ++body)
     for (std::size_t axis = 0; axis < 3; ++axis)

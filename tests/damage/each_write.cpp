@@ -21,7 +21,8 @@ extern "C" ssize_t pwrite(int file, void const* data, size_t bytes, off_t offset
   constexpr off_t page = 4096;
   if (writes_left >= 0 && writes_left-- == 0) {
     auto const to_page = static_cast<size_t>(page - offset % page);
-    if (tears && bytes >= page && bytes % page == 0) ::syscall(SYS_pwrite64, file, data, to_page, offset);
+    if (tears && bytes >= page && bytes % page == 0)
+      ::syscall(SYS_pwrite64, file, data, to_page, offset);
     ::raise(SIGKILL);
   }
   return ::syscall(SYS_pwrite64, file, data, bytes, offset);

@@ -45,8 +45,7 @@ class Kills : public ProgramTest {
   Kills() { write("scene.toml", scene); }
 
   Arguments run_to(std::string const& name, Arguments const& more = {}) const {
-    Arguments arguments{"run",      "scene.toml", "--quiet", "--threads", "1",
-                        "--output", name};
+    Arguments arguments{"run", "scene.toml", "--quiet", "--threads", "1", "--output", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -173,8 +172,8 @@ TEST_F(Kills, CutFilesAreRefusedOrRead) {
   auto const bytes = cayspin::test::read_bytes(whole);
   for (long cut = 0; cut < kills_; ++cut) {
     cayspin::test::write_bytes(in_folder("cut.h5"), bytes.substr(0, chance_.below(bytes.size())));
-    for (auto const& arguments : {Arguments{"info", "cut.h5"}, run_to("again.h5", {"--restart",
-                                                                                "cut.h5"})}) {
+    for (auto const& arguments :
+         {Arguments{"info", "cut.h5"}, run_to("again.h5", {"--restart", "cut.h5"})}) {
       auto const outcome = start(arguments);
       EXPECT_EQ(outcome.status, 2);
       EXPECT_TRUE(is_one_line(outcome.errors));
