@@ -19,7 +19,9 @@ std::string one_line(std::string text) {
 }
 
 void write_header(std::ostream& stream, OvfField const& field) {
-  auto const& [nodes, step, base, unit] = field.mesh;
+  auto const& nodes = field.mesh.nodes;
+  auto const& step = field.mesh.step;
+  auto const& base = field.mesh.base;
   auto const line = [&](std::string_view label, auto const& value) {
     stream << fmt::format("# {}: {}\n", label, value);
   };
@@ -32,7 +34,7 @@ void write_header(std::ostream& stream, OvfField const& field) {
   line("Title", one_line(field.title));
   for (auto const& text : field.description) line("Desc", one_line(text));
   line("meshtype", "rectangular");
-  line("meshunit", unit);
+  line("meshunit", field.mesh.unit);
   per_axis("min", least);
   per_axis("max", [&](std::size_t axis) {
     return least(axis) + static_cast<double>(nodes[axis]) * step[axis];

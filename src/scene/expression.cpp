@@ -25,6 +25,13 @@ bool assigns(std::string_view text) {
   return false;
 }
 
+// A formula may have line breaks; a message has none.
+std::string in_one_line(std::string message) {
+  std::ranges::replace(message, '\n', ' ');
+  std::ranges::replace(message, '\r', ' ');
+  return message;
+}
+
 }  // namespace
 
 struct Expression::Compiled {
@@ -40,9 +47,9 @@ Expression::Expression(std::string text, std::vector<std::string> variables)
   compiled_->variables = std::move(variables);
   compiled_->values.resize(compiled_->variables.size());
   auto const refuse = [&](std::string_view reason) {
-    return std::invalid_argument(fmt::format("expression \"{}\": {}; accepted: a formula in {}",
-                                             compiled_->text, reason,
-                                             fmt::join(compiled_->variables, ", ")));
+    return std::invalid_argument(
+        in_one_line(fmt::format("expression \"{}\": {}; accepted: a formula in {}", compiled_->text,
+                                reason, fmt::join(compiled_->variables, ", "))));
   };
   auto& parser = compiled_->parser;
   try {
@@ -77,7 +84,7 @@ double Expression::operator()(double const* values) const {
     at += fmt::format("{}{} = {}", n == 0 ? "" : ", ", compiled_->variables[n], values[n]);
   }
   throw std::runtime_error(
-      fmt::format("expression \"{}\" is not finite at {}", compiled_->text, at));
+      in_one_line(fmt::format("expression \"{}\" is not finite at {}", compiled_->text, at)));
 }
 
 std::string const& Expression::text() const { return compiled_->text; }

@@ -3,20 +3,16 @@
 
 #include "scalar_series.hpp"
 
-#include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace cayspin::io {
-
-/// The hash XXH64 of xxHash.
-std::uint64_t xxh64(std::span<std::byte const> data, std::uint64_t seed = 0);
 
 /// The 32 bits that stand for step, time and scalars; never 0.
 std::uint32_t row_checksum(Sample const& sample);
 
-/// The 32 bits that stand for the spins of a frame, which belong to this sample; never 0.
-std::uint32_t spins_checksum(Sample const& sample, std::span<std::byte const> spins);
+/// The 32 bits that stand for the spins of a frame, of which `fletcher32` is given, and for the
+/// sample that they belong to; never 0.
+std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32);
 
 /// Of the texts of a header.
 std::uint64_t text_checksum(TrajectoryHeader const& header);

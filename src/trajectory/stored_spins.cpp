@@ -2,6 +2,7 @@
 #include "stored_spins.hpp"
 
 #include "checksum.hpp"
+#include "fletcher32.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/survives.hpp"
@@ -37,9 +38,11 @@ hsize_t whole_frames(RealDataset const& spins, std::optional<ScalarSeries> const
 
 // As they stand in the file: what was a float is one again.
 std::uint32_t checksum_of(Sample const& sample, std::vector<double> const& spins, bool single) {
-  if (!single) return spins_checksum(sample, std::as_bytes(std::span(spins)));
-  std::vector<float> const stored(spins.begin(), spins.end());
-  return spins_checksum(sample, std::as_bytes(std::span(stored)));
+  auto const sum = [&](auto const& stored) {
+    auto const bytes = std::as_bytes(std::span(stored));
+    return spins_checksum(sample, fletcher32(bytes.data(), bytes.size()));
+  };
+  return single ? sum(std::vector<float>(spins.begin(), spins.end())) : sum(spins);
 }
 
 }  // namespace

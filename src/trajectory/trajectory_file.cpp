@@ -114,32 +114,35 @@ class TrajectoryFile::Implementation {
   void write_frame(Sample const& sample, void const* spins, bool single) {
     if (single != single_)
       throw std::logic_error(path_.string() + ": spins given in another precision than the file's");
-    write_whole(sample, static_cast<std::byte const*>(spins), [&] {
+    write_whole(sample, [&] {
       append_block(spins_.get(), single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
                    {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_, spins, path_);
+      return fletcher32(static_cast<std::byte const*>(spins), frame_bytes_);
     });
   }
 
   // What the filter of HDF5 would do takes it two copies of the frame.
   void write_frame_with_room(Sample const& sample, std::byte* spins) {
     if (!raw_chunks_) return write_frame(sample, spins, single_);
-    write_whole(sample, spins, [&] {
+    write_whole(sample, [&] {
       auto const checksum = fletcher32(spins, frame_bytes_);
       std::memcpy(spins + frame_bytes_, &checksum, checksum_bytes);
       append_raw_chunk(spins_.get(), {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_,
                        spins, frame_bytes_ + checksum_bytes, path_);
+      return checksum;
     });
   }
 
   // Readers count a frame once its scalars are there, so those reach the disk after its spins.
+  // `write_spins` returns their sum.
   template <class WriteSpins>
-  void write_whole(Sample const& sample, std::byte const* spins, WriteSpins const& write_spins) {
+  void write_whole(Sample const& sample, WriteSpins const& write_spins) {
     require_open();
     space_.reserve(frame_bytes_ + overhead_bytes, path_);
     write_pending();
-    write_spins();
+    std::uint32_t const sum = write_spins();
     flush();
-    frame_series_.append({sample}, path_, spins_checksum(sample, {spins, frame_bytes_}));
+    frame_series_.append({sample}, path_, spins_checksum(sample, sum));
     flush();
     ++frames_;
   }

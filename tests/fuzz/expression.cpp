@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// One formula, compiled and evaluated.
+#include "fuzz.hpp"
+
+#include <cayspin/io/expression.hpp>
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
+  cayspin::fuzz::refuse_or_read([&] {
+    try {
+      cayspin::io::Expression const formula(std::string(reinterpret_cast<char const*>(data), bytes),
+                                            {"x", "y", "t"});
+      double const values[] = {0.25, -2, 3};
+      formula(values);
+    } catch (std::invalid_argument const& error) {
+      throw std::runtime_error(error.what());
+    }
+  });
+  return 0;
+}

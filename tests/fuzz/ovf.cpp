@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// An OVF file in any of its formats.
+#include "fuzz.hpp"
+
+#include <cayspin/io/ovf.hpp>
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
+  auto const path = cayspin::fuzz::file_with(data, bytes, ".ovf");
+  cayspin::fuzz::refuse_or_read([&] { cayspin::io::read_ovf(path); });
+  return 0;
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A trajectory file, with the child that every reading is tried in: HDF5's own faults stay there.
+#include "fuzz.hpp"
+
+#include <cayspin/io/trajectory.hpp>
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
+  auto const path = cayspin::fuzz::file_with(data, bytes, ".h5");
+  cayspin::fuzz::refuse_or_read([&] {
+    auto const info = cayspin::io::read_info(path);
+    if (info.frames > 0) cayspin::io::read_spins(path, info.header.shape);
+  });
+  return 0;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// write_seeds FOLDER: small HDF5 files for the fuzzers to begin with.
+#include <cayspin/io/sweep.hpp>
+#include <cayspin/io/trajectory.hpp>
+
+#include <vector>
+
+namespace io = cayspin::io;
+
+int main(int, char** arguments) {
+  std::filesystem::path const folder = arguments[1];
+  for (auto const* name : {"trajectory", "sweep"})
+    std::filesystem::create_directories(folder / name);
+  io::TrajectoryHeader header;
+  header.scene_text = "[system]\n";
+  header.precision = "double";
+  header.shape = {2, 1, 1};
+  std::vector<double> const spins{0, 0, 1, 0, 1, 0};
+  for (int compression : {0, 6}) {
+    auto const name = "level_" + std::to_string(compression) + ".h5";
+    io::TrajectoryFile file(folder / "trajectory" / name, header, true,
+                            {.compression = compression});
+    for (int frame = 0; frame < 2; ++frame) file.write_frame(frame, frame, {}, spins.data());
+    file.finish({});
+  }
+  io::SweepInfo sweep;
+  sweep.header.keys = {{"system.damping", {"0.1", "0.2"}, {0.1, 0.2}}};
+  sweep.runs.resize(2);
+  io::write_sweep(folder / "sweep" / "two_runs.h5", sweep);
+}
