@@ -110,21 +110,23 @@ TEST(WrongCallsOfSteppers, ASecondHandleOnTheSpins) {
         spins.set(site, site % 2 == 0 ? Vec3<double>{0.6, 0, 0.8} : Vec3<double>{0, -0.6, 0.8});
       return spins;
     };
-    auto right = start(), spins = start(), second = spins;
+    auto right = start(), spins = start();
     auto reference = make(right), stepper = make(spins);
     for (int step = 0; step < 6; ++step) {
-      reference.step(Exec(), generator, right, 0.1 * step, 0.1);
-      auto const before = copy_to_host(spins);
-      bool const exchanged = second.allocation().data() != spins.allocation().data();
-      if (exchanged) copy_from_host(before, second);
+      Spins second = spins;
+      double const t = 0.1 * step;
+      reference.step(Exec(), generator, right, t, 0.1);
+      stepper.step(Exec(), generator, spins, t, 0.1);
+      if (second.allocation().data() == spins.allocation().data()) continue;
+      copy_from_host(copy_to_host(spins), second);
       try {
-        stepper.step(Exec(), generator, second, 0.1 * step, 0.1);
-        spins = second;
-        EXPECT_EQ(copy_to_host(spins), copy_to_host(right)) << name << ", step " << step;
-      } catch (std::invalid_argument const& error) {
-        EXPECT_TRUE(exchanged) << name << ": " << error.what();
-        stepper.step(Exec(), generator, spins, 0.1 * step, 0.1);
+        stepper.step(Exec(), generator, second, t + 0.1, 0.1);
+      } catch (std::invalid_argument const&) {
+        continue;
       }
+      reference.step(Exec(), generator, right, t + 0.1, 0.1);
+      EXPECT_EQ(copy_to_host(second), copy_to_host(right)) << name << ", step " << step;
+      spins = second;
     }
   });
 }
