@@ -28,8 +28,8 @@ std::vector<std::string> tokens_of(std::string const& text) {
 }
 
 std::string mutated(std::vector<std::string> tokens, Chance& chance) {
-  static constexpr std::array words{"0",   "-1",  "1e308", "nan",  "inf", "9223372036854775807",
-                                    "\"\"", "[",   "]",     "{",    "\n",  "\"x/(x-x)\"",
+  static constexpr std::array words{"0",    "-1",  "1e308", "nan",   "inf", "9223372036854775807",
+                                    "\"\"", "[",   "]",     "{",     "\n",  "\"x/(x-x)\"",
                                     "true", "a.b", "=",     "1e-320"};
   for (auto left = 1 + chance.below(3); left > 0; --left) {
     auto const at = chance.below(tokens.size());

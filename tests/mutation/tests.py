@@ -53,17 +53,16 @@ OBSERVERS = {
     "normalize": ["observer/normalize", "wrong_calls/fields"],
     "": ["observer/scalars", "observer/energies", "observer/integrate"],
 }
-TRAJECTORY = [Test("test_trajectory", "-FullDisk*")]
+TRAJECTORY = [Test("test_trajectory", "-*FullDisk*")]
 PROGRAM = {
-    "sweep/": program("Sweeping*:Sweep*"),
-    "trade": program("Trade*"),
-    "export": program("Exporting*:Export*"),
-    "info": program("Info*"),
-    "check": program("Checking*:Check*"),
-    "describe": program("Checking*:Check*"),
-    "follow": program("Watching*:Follow*"),
-    "restart": program("Restarting*:Restart*"),
-    "": program("FailingRun*:EarlyEnd*:Running*:Run*:OutputFiles*:WrongUses*:Terminal*"),
+    "sweep/": program("Sweeping*"),
+    "trade": program("Trading*"),
+    "export": program("Exporting*"),
+    "info": program("Info*:*WrongCommand*"),
+    "check": program("Checking*:RefuseUnstable*"),
+    "describe": program("Checking*"),
+    "follow": program("Watching*"),
+    "": program("FailingRun*:EarlyEnd*:Running*:Restarting*:OutputFiles*:*WrongCommand*:Terminal*"),
 }
 
 
