@@ -38,6 +38,8 @@ class Demo(unittest.TestCase):
         self.assertEqual(steps, 6000)
         for name, expected in there.items():
             self.assertEqual((here[name].dtype, here[name].shape), (expected.dtype, expected.shape))
+            if name.endswith("checksum"):
+                continue  # of numbers that differ in their last bits
             size = max(1, abs(expected[:]).max())
             difference = abs(here[name][:] - expected[:]).max()
             self.assertLessEqual(difference, steps * np.finfo(float).eps * size, name)
