@@ -47,7 +47,7 @@ void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t most, rlim_t spare = 0) {
   ::setrlimit(resource, &limit);
 }
 
-// Memory that can still be had, and what is in use already: in bytes.
+// Memory that is still free, and what is in use already: in bytes.
 std::uint64_t room_in_memory() {
   std::ifstream file("/proc/meminfo");
   std::string word;
@@ -165,7 +165,7 @@ void try_in_child(std::filesystem::path const& path, std::function<void()> const
   ::close(ends[1]);
   auto const text = child > 0 ? receive(ends[0]) : std::string(1, survived);
   ::close(ends[0]);
-  if (child < 0) return;  // where no process can be had, the file is read all the same
+  if (child < 0) return;  // where no process is free, the file is read all the same
   auto const status = status_of(child);
   auto const* const action = "cannot read the file";
   if (text.empty()) throw_failure(path, action, "it is damaged (" + cause_of(status) + ")");
