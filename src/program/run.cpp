@@ -79,20 +79,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
 
   auto const path = output_file(scene, options);
   auto const checkpoint_path = io::checkpoint_beside(path);
-  std::optional<ControlledWatch<Real, Space>> controlled;
-  std::optional<Watch<Real, Space>> optional_watch;
-  auto const exchange = [&](Checkpoint& checkpoint, bool& continues) {
-    exchange_state(checkpoint, simulation, *method, continues, optional_watch->guard(),
-                   controlled ? &controlled->control() : nullptr);
-  };
-  auto const store_checkpoint = [&](Step const& step) {
-    io::CheckpointWriter checkpoint(checkpoint_path,
-                                    checkpoint_header(typed, scene, options.precision, step));
-    bool continues = true;
-    exchange(checkpoint, continues);
-    checkpoint.commit();
-  };
-  optional_watch.emplace(
+  Watch<Real, Space> watch(
       scene, simulation.generator, simulation.spins, times.first,
       [&] {
         io::require_free(checkpoint_path, options.overwrite);
@@ -105,10 +92,22 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         std::filesystem::remove(checkpoint_path);
         return file;
       },
-      store_checkpoint, options.listener);
-  auto& watch = *optional_watch;
+      options.listener);
+  std::optional<ControlledWatch<Real, Space>> controlled;
   if (scene.integrator.energy_control)
     controlled.emplace(watch, simulation.generator, simulation.spins);
+  auto const exchange = [&](Checkpoint& checkpoint, bool& continues) {
+    exchange_state(checkpoint, simulation, *method, continues, watch.guard(),
+                   controlled ? &controlled->control() : nullptr);
+  };
+  auto const store_checkpoint = [&](Step const& step) {
+    io::CheckpointWriter checkpoint(checkpoint_path,
+                                    checkpoint_header(typed, scene, options.precision, step));
+    bool continues = true;
+    exchange(checkpoint, continues);
+    checkpoint.commit();
+  };
+  watch.store_checkpoints_by(store_checkpoint);
   if (restart && restart->memory()) exchange(*restart->memory(), simulation.times.continues);
 
   auto const kept = [&] {

@@ -40,20 +40,22 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
   /// `first`: the step after which the run begins.
   Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
-        std::int64_t first, OpenFile open_file, StoreCheckpoint store_checkpoint, Listener listener)
+        std::int64_t first, OpenFile open_file, Listener listener)
       : first_(first),
         generator_(generator),
         output_(scene.output),
         units_(scene.units),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
-        store_checkpoint_(std::move(store_checkpoint)),
         checkpoints_(scene.output.checkpoint_every, first),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
         progress_(first, scene.integrator.steps, spins.sites(), listener),
         frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())) {
     if (until_torque_) torque_.emplace(generator.precession_alone());
   }
+
+  /// What stores a checkpoint, before the run begins.
+  void store_checkpoints_by(StoreCheckpoint store) { store_checkpoint_ = std::move(store); }
 
   bool due(Step const& step) const override {
     return guard_.due(step) || frame_due(step) || scalars_due(step) || progress_.due(step) ||

@@ -40,8 +40,10 @@ std::int64_t RunRecorder::next() const {
   std::int64_t const now = run_.steps();
   auto const after = [&](std::int64_t every) { return (now / every + 1) * every; };
   auto const& period = output.checkpoint_every;
-  return std::min({after(output.every), after(output.scalars_every),
-                   after(period.steps > 0 ? period.steps : most_steps), std::max(now, end_)});
+  auto const frame_or_end =
+      std::min({after(output.every), after(output.scalars_every), std::max(now, end_)});
+  if (period.is_never()) return frame_or_end;
+  return std::min(frame_or_end, after(period.steps > 0 ? period.steps : most_steps));
 }
 
 void RunRecorder::look(bool last) {
