@@ -44,6 +44,7 @@ program simulate
   call check(cayspin_set_spins(simulation, spins))
   call check(cayspin_magnetization(simulation, m))
   if (any(abs(m - [1.0_c_double, 0.0_c_double, 0.0_c_double]) > 0)) stop 1
+  deallocate (mine)  ! a main program keeps it otherwise
   call check(cayspin_close(simulation))
 
 contains

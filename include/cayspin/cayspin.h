@@ -17,7 +17,14 @@ extern "C" {
 /* A run of a scene: its spins, its method and the time. */
 typedef struct cayspin_simulation cayspin_simulation;
 
-typedef enum cayspin_status {
+/* Any number is a value of these types, in C++ as in C. */
+#ifdef __cplusplus
+#define CAYSPIN_AS_INT : int
+#else
+#define CAYSPIN_AS_INT
+#endif
+
+typedef enum cayspin_status CAYSPIN_AS_INT {
   CAYSPIN_OK = 0,
   CAYSPIN_WRONG_USAGE = 1,    /* a null pointer, or an argument that is not accepted */
   CAYSPIN_WRONG_SCENE = 2,    /* the scene, or a file that it names */
@@ -25,7 +32,10 @@ typedef enum cayspin_status {
   CAYSPIN_FAILED = 4          /* memory, a file that cannot be written, anything else */
 } cayspin_status;
 
-typedef enum cayspin_precision { CAYSPIN_SINGLE = 4, CAYSPIN_DOUBLE = 8 } cayspin_precision;
+typedef enum cayspin_precision CAYSPIN_AS_INT {
+  CAYSPIN_SINGLE = 4,
+  CAYSPIN_DOUBLE = 8
+} cayspin_precision;
 
 /* Vectors of all sites in host memory, float or double: component c of site (x, y, z) is number
    z strides[0] + y strides[1] + x strides[2] + c strides[3] after `data`. */

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/lattice.hpp>
+#include <cayspin/part.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/stage/data_flow.hpp>
@@ -72,7 +73,7 @@ struct LinearUpdate<update::Lie<Exponential>> {
   static Complex growth(NearAxis const& f) {
     double const n = f.parallel, half = 0.5 * n;
     Complex const mean =  // (exp(i n) - 1) / (i n)
-        std::polar(std::abs(n) < 1e-8 ? 1.0 : std::sin(half) / half, half);
+        (std::abs(n) < 1e-8 ? 1.0 : std::sin(half) / half) * std::polar(1.0, half);
     return Complex(0, -1) * f.transverse * mean;
   }
 };
@@ -199,7 +200,8 @@ double first_amplifying_step(Grows const& grows, double unit, double limit, doub
 }  // namespace detail
 
 /// The largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field bound.
-inline double exchange_bound(Lattice const& lattice, double constant) {
+inline double exchange_bound(Lattice const& of_spins, double constant) {
+  Lattice const& lattice = whole(of_spins);
   double bound = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     auto const n = static_cast<double>(lattice.shape[axis]);

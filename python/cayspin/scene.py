@@ -6,21 +6,9 @@ from __future__ import annotations
 import os
 from typing import Any
 
-import numpy as np
-
-from cayspin import _cayspin, toml_text
+from cayspin import _cayspin, arguments, toml_text
 
 _OWN = ("applied", "nonlocal")
-
-
-def _as_vectors(array):
-    """A numpy array of float32 or float64 with four axes; of these it is no copy."""
-    array = np.asarray(array)
-    if array.dtype not in (np.float32, np.float64):
-        array = array.astype(np.float64)
-    if array.ndim != 4 or array.shape[-1] != 3:
-        raise _cayspin.SceneError(f"an array of shape {array.shape}; accepted: (nz, ny, nx, 3)")
-    return array
 
 
 def _split(tables):
@@ -29,7 +17,10 @@ def _split(tables):
     spins, own = None, {}
     initial = tables.get("initial")
     if initial is not None and not isinstance(initial, dict):
-        spins = _as_vectors(initial)
+        spins = arguments.numbers(initial, "initial")
+        if spins.ndim != 4 or spins.shape[-1] != 3:
+            raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
+                                      "(nz, ny, nx, 3)")
         tables["initial"] = {"given": True}
     if isinstance(tables.get("field"), dict):
         own = {key: f for key, f in tables["field"].items() if key in _OWN and callable(f)}
@@ -56,12 +47,12 @@ class Scene:
 
     def __init__(self, *, system: dict, lattice: dict, integrator: dict, initial: Any,
                  field: dict | None = None, output: dict | None = None, **tables: Any):
-        if not {"end", "steps"} & set(integrator):
+        if isinstance(integrator, dict) and not {"end", "steps"} & set(integrator):
             integrator = {**integrator, "steps": 0}
         typed, spins, own = _split({**tables, "system": system, "lattice": lattice, "field": field,
                                     "initial": initial, "integrator": integrator, "output": output})
         scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], spins)
-        self._finish(scene, own, None)
+        self._finish(scene, own, None, spins)
 
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
@@ -71,13 +62,16 @@ class Scene:
         self = cls.__new__(cls)
         changed = toml_text.overrides(typed)
         try:
-            scene = _cayspin.Scene.read(os.fspath(path), changed, spins)
+            scene = _cayspin.Scene.read(arguments.file_name(path, "from_file"), changed, spins)
         except _cayspin.SceneError as error:
             raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
-        self._finish(scene, own, changed)
+        self._finish(scene, own, changed, spins)
         return self
 
-    def _finish(self, scene, own, overrides):
+    def _finish(self, scene, own, overrides, spins):
+        if spins is not None and spins.shape[:3] != scene.shape:
+            raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
+                                      f"{(*scene.shape, 3)}")
         if own:
             scene.set_own_field(own.get("applied"), own.get("nonlocal"))
         self._scene, self._overrides = scene, overrides

@@ -8,7 +8,7 @@ from typing import Any, Callable
 
 import numpy as np
 
-from cayspin import _cayspin
+from cayspin import _cayspin, arguments
 from cayspin.scene import Scene
 
 _GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
@@ -32,13 +32,19 @@ class Simulation:
 
     def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
                  threads: int | None = None, restart: str | os.PathLike | None = None):
-        self._run = _cayspin.Run(scene._scene, precision, space, threads,
-                                 None if restart is None else os.fspath(restart))
+        if not isinstance(scene, Scene):
+            raise _cayspin.CayspinError(f"Simulation: a {type(scene).__name__}; accepted: a Scene")
+        self._run = _cayspin.Run(
+            scene._scene, arguments.word(precision, "precision"),
+            None if space is None else arguments.word(space, "space"),
+            None if threads is None else arguments.whole(threads, "threads", 32),
+            None if restart is None else arguments.file_name(restart, "restart"))
         self._scene = scene
         self._observers: list[tuple[int, Callable[[Simulation], Any]]] = []
 
     def step(self, n: int = 1) -> None:
         """Takes n steps of dt, or fewer when an observer returns True."""
+        n = arguments.whole(n, "step")
         if not self._observers:
             self._run.advance(n, _GUARD_PERIOD, False)
             return
@@ -54,7 +60,8 @@ class Simulation:
         if until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
                                         "integrator.end in the scene")
-        end = self._scene.steps if until is None else self._run.step_at(until)
+        end = self._scene.steps if until is None else self._run.step_at(
+            arguments.real(until, "run: until"))
         if end < self.steps:
             raise _cayspin.CayspinError(f"run: until t = {end * self._scene.dt:g}, and the time is "
                                         f"{self.time:g}; accepted: a later time")
@@ -63,7 +70,8 @@ class Simulation:
         if output is None or output is False:
             self._advance(end, self._scene._scene.guard_period, True, None)
             return
-        recorder = _cayspin.Recorder(self._run, end, os.fspath(output), overwrite)
+        file = arguments.file_name(output, "run: output")
+        recorder = _cayspin.Recorder(self._run, end, file, bool(overwrite))
         try:
             recorder.look(False)
             self._advance(end, self._scene._scene.guard_period, True, recorder)
@@ -80,7 +88,7 @@ class Simulation:
     def save(self, checkpoint: str | os.PathLike) -> None:
         """Stores all that Simulation(scene, restart=checkpoint) needs to go on with the same bits.
         A file of that name is replaced as a whole."""
-        self._run.save(os.fspath(checkpoint))
+        self._run.save(arguments.file_name(checkpoint, "save"))
 
     def _advance(self, end, guard_period, until_torque, recorder):
         run = self._run
@@ -98,6 +106,9 @@ class Simulation:
     def observe(self, every: int, f: Callable[[Simulation], Any]) -> None:
         """Calls f(simulation) after each step whose number is a multiple of `every`. Where it
         returns True, the current step(n) or run() ends."""
+        every = arguments.whole(every, "observe: every")
+        if not callable(f):
+            raise _cayspin.CayspinError(f"observe: a {type(f).__name__}; accepted: a function")
         if every < 1:
             raise _cayspin.CayspinError(f"observe: every {every} steps; accepted: at least 1")
         self._observers.append((every, f))
@@ -114,9 +125,7 @@ class Simulation:
 
     @spins.setter
     def spins(self, values) -> None:
-        values = np.asarray(values)
-        if values.dtype not in (np.float32, np.float64):
-            values = values.astype(np.float64)
+        values = arguments.numbers(values, "spins")
         shape = (*self._scene.shape, 3)
         try:
             values = np.broadcast_to(values, shape)

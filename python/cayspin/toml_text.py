@@ -11,6 +11,8 @@ from cayspin._cayspin import SceneError
 
 
 def _key(name):
+    if not isinstance(name, str):
+        raise SceneError(f"{name!r}: is no key of a scene; accepted: a string")
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
 
 
@@ -25,6 +27,8 @@ def value(thing, key):
     if isinstance(thing, os.PathLike):
         thing = os.fspath(thing)
     if isinstance(thing, str):
+        if any("\ud800" <= letter <= "\udfff" for letter in thing):
+            raise SceneError(f"{key}: {thing!r} is no Unicode text; accepted: a string")
         return json.dumps(thing, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(thing, (list, tuple)):
         return "[" + ", ".join(value(entry, key) for entry in thing) + "]"

@@ -11,6 +11,7 @@ import subprocess
 import tempfile
 from typing import Any
 
+from cayspin import arguments
 from cayspin._cayspin import CayspinError, NumbersFailed
 from cayspin.scene import Scene
 
@@ -22,6 +23,8 @@ def program() -> str:
 
 
 def _ask(command: str, scene: Scene, *options: str) -> dict:
+    if not isinstance(scene, Scene):
+        raise CayspinError(f"{command}: a {type(scene).__name__}; accepted: a Scene")
     if scene._only_here:
         raise CayspinError(f"{command}: the scene has {scene._only_here[0]}, which the program "
                            "cannot run; accepted: a scene of text alone")
@@ -109,6 +112,6 @@ def advise(scene: Scene, error: float, precision: str | None = None, space: str 
            threads: int | None = None) -> Advice:
     """The cheapest method for a largest distance `error` of any spin, 1e-13 to 1. Raises
     NumbersFailed where no method gets there."""
-    answer = _ask("advise", scene, "--error", repr(float(error)),
+    answer = _ask("advise", scene, "--error", repr(arguments.real(error, "error")),
                   *_options(precision, space, threads))
     return Advice(scene=scene._with(answer.pop("overrides")), **answer)

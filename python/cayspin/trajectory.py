@@ -7,6 +7,7 @@ import builtins
 import os
 from typing import Any
 
+from cayspin import arguments
 from cayspin._cayspin import CayspinError
 
 
@@ -22,11 +23,12 @@ class Trajectory:
     def __init__(self, path: str | os.PathLike):
         import h5py
 
-        self.path = os.fspath(path)
+        self.path = arguments.file_name(path, "open")
         try:
             self.file = h5py.File(self.path, "r")
-        except OSError as error:
-            raise CayspinError(f"{self.path}: cannot be opened: {error}") from None
+        except (OSError, ValueError) as error:
+            reason = " ".join(str(error).split())
+            raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
         missing = [name for name in (*self._names, "scalars") if name not in self.file]
         if missing:
             self.file.close()

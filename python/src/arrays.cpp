@@ -89,7 +89,9 @@ io::OwnField own_field(nb::object uniform, nb::object nonlocal) {
         throw UsageError(
             "field.applied: the function returned another number of components; "
             "accepted: three numbers");
-      for (std::size_t c = 0; c < 3; ++c) field[c] = nb::cast<double>(nb::float_(result[c]));
+      for (std::size_t c = 0; c < 3; ++c)
+        if (nb::object const component = result[c]; !nb::try_cast(component, field[c]))
+          throw UsageError("field.applied: the function returned no numbers; accepted: three");
       return field;
     };
   if (!nonlocal.is_none())

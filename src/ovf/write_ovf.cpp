@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <ostream>
 #include <stdexcept>
@@ -34,7 +35,7 @@ void write_header(std::ostream& stream, OvfField const& field) {
   line("Title", one_line(field.title));
   for (auto const& text : field.description) line("Desc", one_line(text));
   line("meshtype", "rectangular");
-  line("meshunit", field.mesh.unit);
+  line("meshunit", one_line(field.mesh.unit));
   per_axis("min", least);
   per_axis("max", [&](std::size_t axis) {
     return least(axis) + static_cast<double>(nodes[axis]) * step[axis];
@@ -44,8 +45,26 @@ void write_header(std::ostream& stream, OvfField const& field) {
   per_axis("stepsize", [&](std::size_t axis) { return step[axis]; });
   line("valuedim", 3);
   line("valuelabels", "m_x m_y m_z");
-  line("valueunits", fmt::format("{0} {0} {0}", field.value_unit));
+  line("valueunits", fmt::format("{0} {0} {0}", one_line(field.value_unit)));
   stream << "# End: Header\n";
+}
+
+void require_valid(std::filesystem::path const& path, OvfField const& field) {
+  auto const& mesh = field.mesh;
+  auto rest = field.values.size() / 3;
+  bool whole = field.values.size() % 3 == 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto const nodes = static_cast<std::size_t>(std::max<std::int64_t>(mesh.nodes[axis], 0));
+    whole = whole && nodes > 0 && rest % nodes == 0;
+    if (whole) rest /= nodes;
+    if (!std::isfinite(mesh.step[axis]) || !std::isfinite(mesh.base[axis]))
+      throw std::invalid_argument(
+          fmt::format("{}: a step or base of the mesh is not finite", path.string()));
+  }
+  if (!whole || rest != 1)
+    throw std::invalid_argument(fmt::format("{}: {} values for {} x {} x {} nodes of three",
+                                            path.string(), field.values.size(), mesh.nodes[0],
+                                            mesh.nodes[1], mesh.nodes[2]));
 }
 
 template <class Real>
@@ -81,10 +100,7 @@ void write_text(std::ostream& stream, std::vector<double> const& values) {
 
 void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfFormat format,
                bool overwrite) {
-  auto const& [nx, ny, nz] = field.mesh.nodes;
-  if (field.values.size() != 3 * static_cast<std::size_t>(nx * ny * nz))
-    throw std::invalid_argument(fmt::format("{}: {} values for {} x {} x {} nodes of three",
-                                            path.string(), field.values.size(), nx, ny, nz));
+  require_valid(path, field);
   FileBeside file(path, overwrite);
   auto& stream = file.stream();
   write_header(stream, field);

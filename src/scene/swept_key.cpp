@@ -3,7 +3,10 @@
 
 #include <cayspin/io/sweep.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 namespace cayspin::io {
 namespace {
@@ -74,6 +77,9 @@ std::int64_t SweepHeader::runs() const {
 }
 
 std::vector<std::size_t> SweepHeader::indices(std::int64_t run) const {
+  if (run < 0 || run >= runs())
+    throw std::invalid_argument(
+        fmt::format("run {} of a sweep of {} runs; accepted: 0 to {}", run, runs(), runs() - 1));
   std::vector<std::size_t> indices(keys.size());
   auto rest = static_cast<std::size_t>(run);
   for (std::size_t key = keys.size(); key-- > 0;) {

@@ -133,6 +133,8 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
   Turn const turn;
   io::check_files(scene);
   auto const space = space_of(settings.space);
+  if (settings.threads && *settings.threads < 1)
+    throw UsageError(fmt::format("{} threads; accepted: a whole number >= 1", *settings.threads));
   start_kokkos(settings.threads);
   auto const own = with_reduced_own_field(scene);
   auto const plan = plan_of(own, settings.precision);
@@ -169,6 +171,7 @@ void SceneRun::save(std::filesystem::path const& checkpoint) {
 bool SceneRun::remembers() const { return simulation::remembers(scene_, plan_); }
 
 std::int64_t SceneRun::step_at(double t) const {
+  if (!std::isfinite(t)) throw UsageError(fmt::format("t = {}; accepted: a finite time >= 0", t));
   double const dt = plan_.times.dt * scene_.units.time;
   double const steps = t / dt, whole = std::round(steps);
   if (!(std::abs(steps - whole) <= 1e-9 * std::max(1.0, 1e-6 * whole)) || !(whole >= 0) ||
@@ -183,6 +186,10 @@ std::int64_t SceneRun::step_at(double t) const {
 Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
   if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
   Turn const turn;
+  constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
+  if (count > last - number_)
+    throw UsageError(
+        fmt::format("{} steps after step {}; accepted: up to step {}", count, number_, last));
   std::int64_t const target = number_ + count;
   if (std::isfinite(plan_.options.steps.end) && plan_.variant.method->adaptive &&
       target > scene_.integrator.steps)

@@ -7,6 +7,7 @@
 #include "hdf5/survives.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
+#include "require.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
 
@@ -24,7 +25,8 @@ namespace {
 
 constexpr char const* format_mark = "checkpoint_format";
 constexpr std::int64_t checkpoint_version = 1;
-constexpr std::uint64_t overhead_bytes = 64 * 1024;
+constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
+constexpr hsize_t most_components = 3;
 
 // Never 0, so that a block of zeros is no field with its checksum.
 std::int64_t checksum(std::span<double const> numbers) {
@@ -47,7 +49,8 @@ class CheckpointWriter::Implementation {
         space_(file_.get(), path_) {
     auto const [nx, ny, nz] = header.shape;
     for (auto const extent : {nz, ny, nx}) extents_.push_back(static_cast<hsize_t>(extent));
-    space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
+    space_.reserve(
+        checkpoint_overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
     RootAttributes const attributes(file_.get(), path_);
     attributes.create(format_mark, checkpoint_version);
     attributes.create("cayspin_version", header.cayspin_version);
@@ -63,13 +66,19 @@ class CheckpointWriter::Implementation {
   }
 
   void number(std::string const& name, double value) {
+    require_open();
     RootAttributes(numbers_.get(), path_).create(name.c_str(), value);
   }
 
   void field(std::string const& name, std::vector<double> const& numbers) {
-    space_.reserve(numbers.size() * sizeof(double) + overhead_bytes, path_);
+    require_open();
     auto const sites =
         std::accumulate(extents_.begin(), extents_.end(), hsize_t{1}, std::multiplies<>{});
+    if (numbers.empty() || numbers.size() % sites != 0 || numbers.size() / sites > most_components)
+      throw std::invalid_argument(path_.string() + ": field " + name + " has " +
+                                  std::to_string(numbers.size()) + " numbers for " +
+                                  std::to_string(sites) + " sites; accepted: 1 to 3 of each site");
+    space_.reserve(numbers.size() * sizeof(double) + checkpoint_overhead_bytes, path_);
     auto extents = extents_;
     extents.push_back(numbers.size() / sites);
     auto const action = "cannot write dataset " + name;
@@ -82,9 +91,13 @@ class CheckpointWriter::Implementation {
     check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
           path_, action);
     RootAttributes(dataset.get(), path_).create("checksum", checksum(numbers));
+    has_spins_ = has_spins_ || name == "spins";
   }
 
   void commit() {
+    require_open();
+    if (!has_spins_)
+      throw std::logic_error(path_.string() + ": a checkpoint without a field spins is of no use");
     std::string const action = "cannot write the file";
     numbers_.close();
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, action);
@@ -97,15 +110,23 @@ class CheckpointWriter::Implementation {
   }
 
  private:
+  void require_open() const {
+    if (numbers_.get() < 0)
+      throw std::logic_error(path_.string() + ": the checkpoint has its name already");
+  }
+
   std::filesystem::path path_;
   hid_t stored_;
   Extents extents_;
   NewFile file_;
   OpenFileSpace space_;
   GroupHandle numbers_;
+  bool has_spins_ = false;
 };
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, CheckpointHeader const& header) {
+  require_precision(header.precision);
+  require_shape(header.shape);
   QuietErrors const quiet;
   implementation_ = std::make_unique<Implementation>(std::move(path), header);
 }
@@ -191,8 +212,6 @@ class CheckpointReader::Implementation {
   std::filesystem::path const& path() const { return path_; }
 
  private:
-  static constexpr hsize_t most_components = 3;
-
   std::filesystem::path path_;
   FileHandle file_;
   GroupHandle numbers_;

@@ -61,13 +61,18 @@ void create_with_room(fs::path const& written, fs::path const& path) {
 // All that HDF5 writes for itself has checksums. Its version 3 of a file's head would have a mark
 // for files that are being written, which a kill leaves behind and others then refuse: so
 // version 2.
-FileHandle create_file(fs::path const& path) {
+FileHandle create_file(fs::path const& written, fs::path const& path) {
   PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_attr_phase_change(creation.get(), 64, 0);
   H5Pset_link_phase_change(creation.get(), 64, 0);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  FileHandle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
-  if (file.get() >= 0) H5Fset_libver_bounds(file.get(), H5F_LIBVER_V110, H5F_LIBVER_LATEST);
+  FileHandle file(H5Fcreate(written.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
+  if (file.get() < 0) {
+    auto const reason = failure_reason();  // HDF5 forgets it when the properties are closed
+    ::unlink(written.c_str());
+    throw_failure(path, action, reason);
+  }
+  H5Fset_libver_bounds(file.get(), H5F_LIBVER_V110, H5F_LIBVER_LATEST);
   return file;
 }
 
@@ -98,11 +103,7 @@ NewFile::NewFile(fs::path path, bool overwrite, bool shared)
   }
   written_ = target_.string() + ".partial";
   create_with_room(written_, path_);
-  file_ = create_file(written_);
-  if (file_.get() >= 0) return;
-  auto const reason = failure_reason();
-  ::unlink(written_.c_str());
-  throw_failure(path_, action, reason);
+  file_ = create_file(written_, path_);
 }
 
 NewFile::~NewFile() {

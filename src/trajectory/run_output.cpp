@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "files/file_beside.hpp"
 #include "format.hpp"
+#include "require.hpp"
 #include "scalar_series.hpp"
 #include "scalar_table.hpp"
 #include "xdmf_file.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -41,6 +43,12 @@ void require_free_beside(std::filesystem::path const& path, char const* extensio
   require_free(other, overwrite);
 }
 
+void require_spacing(std::array<double, 3> const& spacing) {
+  for (double const along_axis : spacing)
+    if (!std::isfinite(along_axis) || along_axis <= 0)
+      throw std::invalid_argument("a spacing of the lattice is not a number above 0");
+}
+
 }  // namespace
 
 class RunOutput::Implementation {
@@ -48,6 +56,7 @@ class RunOutput::Implementation {
   Implementation(std::filesystem::path path, TrajectoryHeader const& header,
                  RunOutputOptions const& options)
       : single_(header.precision == single_precision) {
+    if (options.xdmf) require_spacing(options.spacing);
     if (options.xdmf) require_free_beside(path, ".xdmf", options.overwrite);
     if (options.table) require_free_beside(path, ".txt", options.overwrite);
     file_.emplace(path, header, options.overwrite, options.storage);
@@ -79,14 +88,17 @@ class RunOutput::Implementation {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return !free_.empty() || error_; });
     rethrow();
+    lent_ = true;
     return free_.front();
   }
 
   void write_frame(Sample const& sample) {
     require_open();
+    if (!lent_) throw std::logic_error(path().string() + ": write_frame without a frame() before");
     Part part{std::exchange(samples_, {}), sample, nullptr};
     std::unique_lock lock(mutex_);
     rethrow();
+    lent_ = false;
     part.spins = free_.front();
     free_.pop_front();
     hand_over(std::move(part), lock);
@@ -185,6 +197,7 @@ class RunOutput::Implementation {
   }
 
   bool single_, ended_ = false;
+  bool lent_ = false;  // frame() was called for the next frame
   std::optional<TrajectoryFile> file_;
   std::optional<XdmfFile> xdmf_;
   std::optional<ScalarTable> table_;
@@ -211,22 +224,22 @@ RunOutput& RunOutput::operator=(RunOutput&&) noexcept = default;
 
 template <class Real>
 Real* RunOutput::frame() {
-  return reinterpret_cast<Real*>(implementation_->frame(std::is_same_v<Real, float>));
+  return reinterpret_cast<Real*>(not_moved(implementation_).frame(std::is_same_v<Real, float>));
 }
 template float* RunOutput::frame<float>();
 template double* RunOutput::frame<double>();
 
 void RunOutput::write_frame(std::int64_t step, double time, Scalars const& scalars) {
-  implementation_->write_frame({step, time, scalars});
+  not_moved(implementation_).write_frame({step, time, scalars});
 }
 
 void RunOutput::write_scalars(std::int64_t step, double time, Scalars const& scalars) {
-  implementation_->write_scalars({step, time, scalars});
+  not_moved(implementation_).write_scalars({step, time, scalars});
 }
 
-void RunOutput::finish(RunCost const& cost) { implementation_->end(cost, true); }
-void RunOutput::close(RunCost const& cost) { implementation_->end(cost, false); }
-std::int64_t RunOutput::frames() { return implementation_->frames(); }
-std::filesystem::path const& RunOutput::path() const { return implementation_->path(); }
+void RunOutput::finish(RunCost const& cost) { not_moved(implementation_).end(cost, true); }
+void RunOutput::close(RunCost const& cost) { not_moved(implementation_).end(cost, false); }
+std::int64_t RunOutput::frames() { return not_moved(implementation_).frames(); }
+std::filesystem::path const& RunOutput::path() const { return not_moved(implementation_).path(); }
 
 }  // namespace cayspin::io

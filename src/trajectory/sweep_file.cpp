@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
+#include "hdf5/survives.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
+#include "stored_spins.hpp"
 #include "sweep_format.hpp"
 
 #include <cayspin/io/sweep.hpp>
 
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -114,6 +117,19 @@ void write_results(Writer& writer, std::vector<SweptRun> const& runs) {
   writer.column("step_seconds", runs, [](auto const& run) { return run.cost.step_seconds; });
 }
 
+void require_whole(SweepInfo const& sweep) {
+  for (auto const& key : sweep.header.keys) {
+    if (key.values.empty()) throw std::invalid_argument("sweep key " + key.key + " has no values");
+    if (!key.numbers.empty() && key.numbers.size() != key.values.size())
+      throw std::invalid_argument("sweep key " + key.key +
+                                  " has another number of numbers than of "
+                                  "values");
+  }
+  if (static_cast<std::int64_t>(sweep.runs.size()) != sweep.header.runs())
+    throw std::invalid_argument("a sweep of " + std::to_string(sweep.header.runs()) + " runs has " +
+                                std::to_string(sweep.runs.size()) + " results");
+}
+
 std::uint64_t room_for(fs::path const& path, SweepInfo const& sweep) {
   std::uint64_t room = 1 << 20;
   for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
@@ -124,14 +140,40 @@ std::uint64_t room_for(fs::path const& path, SweepInfo const& sweep) {
   return room;
 }
 
+void copy_run(fs::path const& file, hid_t group, std::string const& name) {
+  auto const from = open_file(file);
+  check(H5Ocopy(from.get(), "/", group, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), file,
+        "cannot copy the run into the sweep");
+}
+
+// Every frame is read and the copy tried: the run's own file is removed afterwards, and HDF5 may
+// crash on a damaged one.
+void require_whole(fs::path const& file) {
+  auto const info = read_info(file);
+  auto const trial = file.string() + ".trial";
+  auto const read_and_copy = [&] {
+    StoredSpins const spins(file, info.header.shape);
+    for (std::int64_t frame = 0; frame < info.frames; ++frame) spins.frame(frame);
+    FileHandle const copy(check(H5Fcreate(trial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                                trial, "cannot create the file"));
+    copy_run(file, copy.get(), "run");
+  };
+  try {
+    try_in_child(file, read_and_copy);
+  } catch (...) {
+    fs::remove(trial);
+    throw;
+  }
+  fs::remove(trial);
+}
+
 // Links are relative: the folder and the file can be moved together.
 void take_in(hid_t runs, fs::path const& path, std::int64_t run, bool copy) {
   auto const file = swept_run_file(path, run);
   auto const name = swept_run_name(run);
   if (copy) {
-    auto const from = open_file(file);
-    check(H5Ocopy(from.get(), "/", runs, name.c_str(), H5P_DEFAULT, H5P_DEFAULT), path,
-          "cannot take in " + file.string());
+    require_whole(file);
+    copy_run(file, runs, name);
     return;
   }
   auto const relative = file.parent_path().filename() / file.filename();
@@ -153,6 +195,7 @@ fs::path swept_run_file(fs::path const& file, std::int64_t run) {
 }
 
 bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<bool()> const& go_on) {
+  require_whole(sweep);
   QuietErrors const quiet;
   NewFile file(path, true, true);
   OpenFileSpace space(file.get(), path);

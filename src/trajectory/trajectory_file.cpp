@@ -7,6 +7,7 @@
 #include "hdf5/error.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
+#include "require.hpp"
 #include "scalar_series.hpp"
 
 #include <cayspin/io/trajectory.hpp>
@@ -79,11 +80,8 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
 }
 
 void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& storage) {
-  if (header.precision != single_precision && header.precision != double_precision)
-    throw std::invalid_argument("precision is '" + header.precision +
-                                "'; accepted are single and double");
-  for (auto const extent : header.shape)
-    if (extent < 1) throw std::invalid_argument("an extent of the lattice is below 1");
+  require_precision(header.precision);
+  require_shape(header.shape);
   if (storage.compression < 0 || storage.compression > 9)
     throw std::invalid_argument("compression is not in 0 to 9");
   if (storage.chunk < 0) throw std::invalid_argument("chunk is negative");
@@ -114,6 +112,7 @@ class TrajectoryFile::Implementation {
   void write_frame(Sample const& sample, void const* spins, bool single) {
     if (single != single_)
       throw std::logic_error(path_.string() + ": spins given in another precision than the file's");
+    require_spins(spins);
     write_whole(sample, [&] {
       append_block(spins_.get(), single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
                    {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_, spins, path_);
@@ -124,6 +123,7 @@ class TrajectoryFile::Implementation {
   // What the filter of HDF5 would do takes it two copies of the frame.
   void write_frame_with_room(Sample const& sample, std::byte* spins) {
     if (!raw_chunks_) return write_frame(sample, spins, single_);
+    require_spins(spins);
     write_whole(sample, [&] {
       auto const checksum = fletcher32(spins, frame_bytes_);
       std::memcpy(spins + frame_bytes_, &checksum, checksum_bytes);
@@ -197,6 +197,10 @@ class TrajectoryFile::Implementation {
     if (file_.get() < 0) throw std::logic_error(path_.string() + ": the trajectory has ended");
   }
 
+  void require_spins(void const* spins) const {
+    if (!spins) throw std::invalid_argument(path_.string() + ": the spins are a null pointer");
+  }
+
   void write_pending() {
     sample_series_.append(pending_, path_);
     pending_.clear();
@@ -244,37 +248,39 @@ TrajectoryFile& TrajectoryFile::operator=(TrajectoryFile&&) noexcept = default;
 void TrajectoryFile::write_frame(std::int64_t step, double time, Scalars const& scalars,
                                  float const* spins) {
   QuietErrors const quiet;
-  implementation_->write_frame({step, time, scalars}, spins, true);
+  not_moved(implementation_).write_frame({step, time, scalars}, spins, true);
 }
 
 void TrajectoryFile::write_frame(std::int64_t step, double time, Scalars const& scalars,
                                  double const* spins) {
   QuietErrors const quiet;
-  implementation_->write_frame({step, time, scalars}, spins, false);
+  not_moved(implementation_).write_frame({step, time, scalars}, spins, false);
 }
 
 void TrajectoryFile::write_frame_with_room(std::int64_t step, double time, Scalars const& scalars,
                                            std::byte* spins) {
   QuietErrors const quiet;
-  implementation_->write_frame_with_room({step, time, scalars}, spins);
+  not_moved(implementation_).write_frame_with_room({step, time, scalars}, spins);
 }
 
 void TrajectoryFile::write_scalars(std::int64_t step, double time, Scalars const& scalars) {
   QuietErrors const quiet;
-  implementation_->write_scalars({step, time, scalars});
+  not_moved(implementation_).write_scalars({step, time, scalars});
 }
 
 void TrajectoryFile::finish(RunCost const& cost) {
   QuietErrors const quiet;
-  implementation_->end(cost, true);
+  not_moved(implementation_).end(cost, true);
 }
 
 void TrajectoryFile::close(RunCost const& cost) {
   QuietErrors const quiet;
-  implementation_->end(cost, false);
+  not_moved(implementation_).end(cost, false);
 }
 
-std::int64_t TrajectoryFile::frames() const { return implementation_->frames(); }
-std::filesystem::path const& TrajectoryFile::path() const { return implementation_->path(); }
+std::int64_t TrajectoryFile::frames() const { return not_moved(implementation_).frames(); }
+std::filesystem::path const& TrajectoryFile::path() const {
+  return not_moved(implementation_).path();
+}
 
 }  // namespace cayspin::io

@@ -37,6 +37,7 @@ inline void expect_failure(cayspin_status is, cayspin_status expected, std::stri
   EXPECT_EQ(is, expected);
   EXPECT_NE(std::string(cayspin_last_error()).find(words), std::string::npos)
       << "\"" << cayspin_last_error() << "\" has no \"" << words << "\"";
+  EXPECT_EQ(std::string(cayspin_last_error()).find('\n'), std::string::npos);
 }
 
 }  // namespace cayspin::test

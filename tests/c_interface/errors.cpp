@@ -3,6 +3,7 @@
 #include "c_interface_test.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -52,6 +53,39 @@ TEST(CInterfaceErrors, NullPointers) {
   EXPECT_EQ(cayspin_close(nullptr), CAYSPIN_OK);
 }
 
+/// What is given is kept where a call fails.
+TEST(CInterfaceErrors, LeaveWhatPointersPointTo) {
+  auto* const before = reinterpret_cast<cayspin_simulation*>(&expect_failure);
+  auto* simulation = before;
+  auto const text = scene_text();
+  std::string const folder = std::filesystem::temp_directory_path().string();
+  auto const file = [&](char const* path) {
+    return cayspin_open_file(path, CAYSPIN_DOUBLE, nullptr, &simulation);
+  };
+  auto const parse = [&](std::string const& scene, char const* name, char const* space) {
+    return cayspin_open_text(scene.c_str(), name, CAYSPIN_DOUBLE, space, &simulation);
+  };
+  expect_failure(file(""), CAYSPIN_WRONG_SCENE, "accepted: a readable TOML file");
+  expect_failure(file(folder.c_str()), CAYSPIN_WRONG_SCENE, "is a folder");
+  expect_failure(parse("", "", nullptr), CAYSPIN_WRONG_SCENE, "system: is missing");
+  expect_failure(parse(text, "a\nb", ""), CAYSPIN_WRONG_USAGE, "accepted: ");
+  expect_failure(parse(text, nullptr, "serial "), CAYSPIN_WRONG_USAGE, "accepted: ");
+  EXPECT_EQ(simulation, before);
+
+  double numbers[3] = {7, 8, 9};
+  int64_t steps = 7;
+  cayspin_array spins{numbers, CAYSPIN_SINGLE, {1, 2, 3, 4}, {5, 6, 7, 8}};
+  EXPECT_EQ(cayspin_time(nullptr, numbers), CAYSPIN_WRONG_USAGE);
+  EXPECT_EQ(cayspin_energy(nullptr, numbers), CAYSPIN_WRONG_USAGE);
+  EXPECT_EQ(cayspin_magnetization(nullptr, numbers), CAYSPIN_WRONG_USAGE);
+  EXPECT_EQ(cayspin_steps(nullptr, &steps), CAYSPIN_WRONG_USAGE);
+  EXPECT_EQ(cayspin_borrow_spins(nullptr, &spins), CAYSPIN_WRONG_USAGE);
+  EXPECT_EQ(numbers[0] + numbers[1] + numbers[2], 24);
+  EXPECT_EQ(steps, 7);
+  EXPECT_EQ(spins.data, numbers);
+  EXPECT_EQ(spins.shape[3] + spins.strides[3], 12);
+}
+
 TEST(CInterfaceErrors, WrongScenes) {
   expect_failure(open_with(scene_text("konstant = 1.0\n")), CAYSPIN_WRONG_SCENE,
                  "mine.toml:8: field.konstant");
@@ -71,9 +105,26 @@ TEST(CInterfaceErrors, WrongPrecisionAndSpace) {
 TEST(CInterfaceErrors, WrongSteps) {
   auto const simulation = open(scene_text());
   expect_failure(cayspin_step(simulation.get(), -1), CAYSPIN_WRONG_USAGE, "-1 steps");
+  expect_failure(cayspin_step(simulation.get(), INT64_MIN), CAYSPIN_WRONG_USAGE, "accepted: ");
   int64_t steps = -1;
   EXPECT_EQ(cayspin_steps(simulation.get(), &steps), CAYSPIN_OK);
   EXPECT_EQ(steps, 0);
+  EXPECT_EQ(cayspin_step(simulation.get(), 0), CAYSPIN_OK);
+  EXPECT_EQ(cayspin_step(simulation.get(), 2), CAYSPIN_OK);
+  for (auto const count : {INT64_MAX, INT64_MAX - 1, (int64_t{1} << 53) - 1})
+    expect_failure(cayspin_step(simulation.get(), count), CAYSPIN_WRONG_USAGE,
+                   std::to_string(count) + " steps after step 2; accepted: up to step 90071992547");
+  EXPECT_EQ(cayspin_steps(simulation.get(), &steps), CAYSPIN_OK);
+  EXPECT_EQ(steps, 2);
+}
+
+TEST(CInterfaceErrors, StepsBeyondTheEndOfAdaptiveMethods) {
+  auto text = scene_text();
+  text.replace(text.find("\"rkmk4\""), 7, "\"tsit5\"\ntolerance = 1e-6");
+  auto const simulation = open(text);
+  EXPECT_EQ(cayspin_step(simulation.get(), 9), CAYSPIN_OK);
+  expect_failure(cayspin_step(simulation.get(), 2), CAYSPIN_WRONG_USAGE, "lies beyond step 10");
+  EXPECT_EQ(cayspin_step(simulation.get(), 1), CAYSPIN_OK) << cayspin_last_error();
 }
 
 TEST(CInterfaceErrors, WrongSpins) {
@@ -84,6 +135,13 @@ TEST(CInterfaceErrors, WrongSpins) {
   };
   refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 3, 3}, {9, 9, 3, 1}}, "(1, 1, 3, 3)");
   refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 2}, {6, 6, 3, 1}}, "shape[3] = 3");
+  for (int axis = 0; axis < 3; ++axis)
+    for (int64_t const extent : {int64_t{0}, int64_t{-1}, int64_t{-2}, INT64_MAX, INT64_MIN}) {
+      cayspin_array spins{numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}};
+      spins.shape[axis] = extent;
+      refuses(spins, "accepted: (1, 1, 2, 3)");
+    }
+  refuses({numbers, CAYSPIN_DOUBLE, {2, 1, 1, 3}, {3, 3, 3, 1}}, "(2, 1, 1, 3)");
   refuses({numbers, static_cast<cayspin_precision>(0), {1, 1, 2, 3}, {6, 6, 3, 1}}, "precision 0");
   refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}}, "");  // a spin of length 0
   numbers[3] = std::nan("");
@@ -102,6 +160,8 @@ TEST(CInterfaceErrors, RunsAndFiles) {
   expect_failure(cayspin_run(simulation.get(), nullptr, 0), CAYSPIN_WRONG_USAGE, "output.file");
   std::ofstream(file) << "mine";
   expect_failure(cayspin_run(simulation.get(), file.c_str(), 0), CAYSPIN_FAILED, "run.h5");
+  for (auto const& wrong : {std::string(), folder.string(), (folder / "run.txt" / "").string()})
+    expect_failure(cayspin_run(simulation.get(), wrong.c_str(), 1), CAYSPIN_FAILED, "");
   EXPECT_EQ(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_OK) << cayspin_last_error();
   EXPECT_EQ(cayspin_step(simulation.get(), 1), CAYSPIN_OK);
   expect_failure(cayspin_run(simulation.get(), file.c_str(), 1), CAYSPIN_WRONG_USAGE,
@@ -119,6 +179,25 @@ TEST(CInterfaceErrors, NumbersThatFail) {
   text.replace(text.find("dt = 0.01"), 9, "dt = 1e300");
   auto const simulation = open(text);
   expect_failure(cayspin_step(simulation.get(), 200), CAYSPIN_NUMBERS_FAILED, "step");
+
+  // All other calls work on, and new spins begin a new run.
+  auto* const failed = simulation.get();
+  double time = -1, energy = -1, m[3] = {};
+  int64_t steps = -1;
+  cayspin_array spins{};
+  EXPECT_EQ(cayspin_time(failed, &time), CAYSPIN_OK);
+  EXPECT_EQ(cayspin_steps(failed, &steps), CAYSPIN_OK);
+  EXPECT_LT(steps, 200);
+  EXPECT_EQ(time, static_cast<double>(steps) * 1e300);
+  EXPECT_EQ(cayspin_energy(failed, &energy), CAYSPIN_OK);
+  EXPECT_EQ(cayspin_magnetization(failed, m), CAYSPIN_OK);
+  EXPECT_EQ(cayspin_borrow_spins(failed, &spins), CAYSPIN_OK);
+  double const up[6] = {0, 0, 1, 0, 0, 1};
+  cayspin_array const start{up, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}};
+  ASSERT_EQ(cayspin_set_spins(failed, &start), CAYSPIN_OK) << cayspin_last_error();
+  EXPECT_EQ(cayspin_step(failed, 3), CAYSPIN_OK) << cayspin_last_error();
+  EXPECT_EQ(cayspin_energy(failed, &energy), CAYSPIN_OK);
+  EXPECT_EQ(energy, -2);  // along the field, where nothing turns
 }
 
 // As strerror's texts are: each thread has a line of its own.
@@ -127,6 +206,8 @@ TEST(CInterfaceErrors, BelongToTheirThread) {
   std::string there = "unset";
   std::thread([&] { there = cayspin_last_error(); }).join();
   EXPECT_EQ(there, "");
+  auto const simulation = open(scene_text());  // a call that does not fail keeps the line
+
   EXPECT_EQ(std::string(cayspin_last_error()).find("simulation is NULL"), 0u);
 }
 

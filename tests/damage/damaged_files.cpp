@@ -2,13 +2,13 @@
 // Random damage of HDF5 files: each reading ends with one line or with what was written.
 // CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
+#include "inertia_file.hpp"
 #include "trajectory/trajectory_test.hpp"
 
 #include <cayspin/io/follow.hpp>
 #include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <map>
 
@@ -181,23 +181,10 @@ TEST_F(Damage, TrajectoriesAreRefusedOrReadAsTheyWere) {
   print_counts();
 }
 
-// As h5py writes it, in the oldest format and without checksums: what it reads may be wrong, but
-// nothing crashes.
+// Without checksums what it reads may be wrong, but nothing crashes.
 TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
   auto const path = folder_ / "inertia.h5";
-  hid_t const file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  hsize_t const extents[3] = {24, 3, 3};
-  hid_t const space = H5Screate_simple(3, extents, nullptr);
-  hid_t const dataset =
-      H5Dcreate2(file, "inertia", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  std::vector<double> values(24 * 9, 0.0);
-  for (std::size_t body = 0; body < 24; ++body)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      values[9 * body + 4 * axis] = 1 + 0.01 * static_cast<double>(body + axis);
-  ASSERT_GE(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
-  H5Dclose(dataset);
-  H5Sclose(space);
-  H5Fclose(file);
+  ASSERT_NO_FATAL_FAILURE(cayspin::test::write_inertia(path, 24));
   damage(path, of_inertia, false, files_);
   print_counts();
 }

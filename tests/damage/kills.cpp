@@ -115,11 +115,25 @@ class Kills : public ProgramTest {
     EXPECT_EQ(std::system(command.c_str()), 0);
   }
 
+  // How long a run takes to its first frame: a build with checks is many times slower.
+  std::chrono::microseconds time_to_first_frame() {
+    auto const name = "first.h5";
+    auto const begun = std::chrono::steady_clock::now();
+    auto const process = begin(run_to(name));
+    while (visible(in_folder(name)).empty() &&
+           std::chrono::steady_clock::now() - begun < std::chrono::minutes(1))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    end(process, SIGKILL);
+    return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() -
+                                                                 begun);
+  }
+
   void kill_with(int signal, long kills) {
+    auto const longest = static_cast<std::uint64_t>(3 * time_to_first_frame().count());
     for (long kill = 0; kill < kills; ++kill) {
       auto const name = fresh_name();
       auto const process = begin(run_to(name));
-      std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(300'000)));
+      std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(longest)));
       auto const seen = visible(in_folder(name));
       std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(2'000)));
       int const status = end(process, signal);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// write_seeds FOLDER: small HDF5 files for the fuzzers to begin with.
+// write_seeds FOLDER: small HDF5 files for the fuzzers to begin with, and empty folders for what
+// they find.
 #include <cayspin/io/sweep.hpp>
 #include <cayspin/io/trajectory.hpp>
 
@@ -9,8 +10,11 @@ namespace io = cayspin::io;
 
 int main(int, char** arguments) {
   std::filesystem::path const folder = arguments[1];
+  std::filesystem::remove_all(folder);
   for (auto const* name : {"trajectory", "sweep"})
     std::filesystem::create_directories(folder / name);
+  for (auto const* reader : {"scene", "expression", "ovf", "trajectory", "sweep"})
+    std::filesystem::create_directories(folder / "found" / reader);
   io::TrajectoryHeader header;
   header.scene_text = "[system]\n";
   header.precision = "double";

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "../support/wrong_call.hpp"
 #include "ovf_test.hpp"
 
 #include <sys/resource.h>
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <iostream>
+#include <limits>
 
 namespace cayspin::io::test {
 namespace {
@@ -112,10 +114,46 @@ TEST_F(OvfTest, FilesAreReplacedOnlyWhenAsked) {
 }
 
 TEST_F(OvfTest, ValuesHaveToBeThoseOfTheMesh) {
-  auto field = asymmetric_field();
-  field.values.pop_back();
-  EXPECT_THROW(write_ovf(folder_ / "m.ovf", field, OvfFormat::text, false), std::invalid_argument);
+  constexpr auto most = std::numeric_limits<std::int64_t>::max();
+  std::vector<cayspin::test::WrongCall> calls;
+  auto const add = [&](std::string const& what, auto const& change) {
+    auto wrong = asymmetric_field();
+    change(wrong);
+    calls.push_back(
+        {what, [this, wrong] { write_ovf(folder_ / "m.ovf", wrong, OvfFormat::text, false); }});
+  };
+  add("a value less", [](auto& wrong) { wrong.values.pop_back(); });
+  add("a value more", [](auto& wrong) { wrong.values.push_back(1); });
+  add("no values", [](auto& wrong) { wrong.values.clear(); });
+  for (auto const& nodes : {std::array<std::int64_t, 3>{4, 3, 1},
+                            {4, 3, 4},
+                            {4, 3, 0},
+                            {-4, -3, 2},
+                            {most, most, 24},
+                            {1L << 32, 1L << 32, 24}})
+    add("nodes", [&](auto& wrong) { wrong.mesh.nodes = nodes; });
+  add("no nodes and no values", [](auto& wrong) {
+    wrong.values.clear();
+    wrong.mesh.nodes = {0, 1, 1};
+  });
+  for (double const number : {std::nan(""), HUGE_VAL}) {
+    add("step", [&](auto& wrong) { wrong.mesh.step[1] = number; });
+    add("base", [&](auto& wrong) { wrong.mesh.base[2] = number; });
+  }
+  cayspin::test::expect_refused(calls);
   EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+// They would end the line, and what follows would be read as a record of its own.
+TEST_F(OvfTest, LineBreaksInUnitsAreBlanks) {
+  auto field = asymmetric_field();
+  field.mesh.unit = "nm\n# xnodes: 1";
+  field.value_unit = "A/m\n# ynodes: 1";
+  write_ovf(folder_ / "m.ovf", field, OvfFormat::binary8, false);
+  auto const back = read_ovf(folder_ / "m.ovf");
+  EXPECT_EQ(back.mesh.unit, "nm # xnodes: 1");
+  EXPECT_EQ(back.mesh.nodes, field.mesh.nodes);
+  EXPECT_EQ(back.values, field.values);
 }
 
 [[noreturn]] void write_on_full_disk(fs::path const& path) {

@@ -46,6 +46,7 @@ void limit(int resource, long value) {
   if (::chdir(folder.c_str()) != 0) ::_exit(121);
   limit(RLIMIT_FSIZE, treatment.file_limit);
   limit(RLIMIT_AS, treatment.memory_limit);
+  limit(RLIMIT_CPU, treatment.seconds_limit);
   std::vector<char*> words{const_cast<char*>("cayspin")};
   for (auto const& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);

@@ -44,6 +44,7 @@ struct Dataset {
 struct Treatment {
   long file_limit = -1;        // bytes a file may have
   long memory_limit = -1;      // bytes of address space
+  long seconds_limit = -1;     // of a processor
   double interrupt_after = 0;  // SIGINT, in seconds after its first frame is in the file
   std::filesystem::path interrupt_when = {};  // ... of this file
   std::filesystem::path program = CAYSPIN_PROGRAM;

@@ -7,6 +7,7 @@
 #include <hdf5.h>
 
 #include <csignal>
+#include <fstream>
 
 namespace cayspin::program::test {
 namespace {
@@ -119,6 +120,40 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
   for (std::int64_t run = 0; run < 4; ++run)
     EXPECT_EQ(spins("killed.h5", run), spins("whole.h5", run)) << run;
   EXPECT_FALSE(fs::exists(in_folder("killed.h5.runs")));
+}
+
+// Flips a bit of the last spin in a run's file.
+void damage_spins(fs::path const& file, std::vector<double> const& spins) {
+  std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+  std::string const bytes{std::istreambuf_iterator<char>(stream), {}};
+  std::string const last(reinterpret_cast<char const*>(&spins.back()), sizeof(double));
+  auto const place = bytes.rfind(last);
+  ASSERT_NE(place, bytes.npos);
+  stream.seekp(static_cast<std::streamoff>(place));
+  stream.put(static_cast<char>(bytes[place] ^ 1));
+}
+
+TEST_F(Sweeping, RefusesADamagedRunUntilItIsDeleted) {
+  Arguments const all{"sweep",     "chain.toml",
+                      "--output",  "torn.h5",
+                      "--jobs",    "1",
+                      "--over",    "integrator.steps=20,30,200000",
+                      "--set",     "output.every=500000",
+                      "--threads", "1"};
+  auto const file = in_folder("torn.h5");
+  auto const process = begin(all);
+  EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(file, 2)); }));
+  EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
+  auto const right = read_dataset("torn.h5.runs/0000.h5", "/spins").values;
+  damage_spins(io::swept_run_file(file, 0), right);
+  auto const outcome = expect_status(2, all);
+  EXPECT_TRUE(contains(outcome.errors, "torn.h5.runs/0000.h5: "));
+  EXPECT_TRUE(fs::exists(io::swept_run_file(file, 2)));
+  fs::remove(io::swept_run_file(file, 0));
+  fs::resize_file(io::swept_run_file(file, 1), 1000);  // noticed when the sweep goes on
+  auto const again = expect_status(0, all);
+  EXPECT_TRUE(contains(again.output, "2 of 2  run 0001"));
+  EXPECT_EQ(spins("torn.h5", 0), right);
 }
 
 TEST_F(Sweeping, RunsNothingTwice) {

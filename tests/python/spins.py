@@ -110,8 +110,8 @@ class Setting(PackageTest):
         self.assertTrue((sim.spins == [0, 0, 1]).all())
         self.assert_refused(cayspin.SceneError, "accepted: (nz, ny, nx, 3)",
                             scene, initial=np.ones((7, 3)))
-        self.assert_refused(cayspin.SceneError, "3 numbers were given",
-                            cayspin.Simulation, scene(initial=np.ones((1, 1, 1, 3))))
+        self.assert_refused(cayspin.SceneError, "accepted: (2, 3, 7, 3)",
+                            scene, initial=np.ones((1, 1, 1, 3)))
 
 
 def by_hand(m):

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 namespace cayspin::io::test {
@@ -127,6 +128,25 @@ TEST(Start, RandomIsUniformOnTheSphere) {
     }
     EXPECT_LT(std::abs(neighbor), 5 * std::sqrt(1.0 / (3 * n)));
   }
+}
+
+TEST(Start, GivenNumbersAreThreeForEachSite) {
+  Folder const folder;
+  auto scene = read_text(folder, llg_scene, {"lattice={shape=[4, 3, 2]}"});
+  for (std::size_t const size : {0, 3, 71, 73, 144}) {
+    scene.initial = GivenStart{std::make_shared<std::vector<double> const>(size, 1.0)};
+    try {
+      initial_spins(scene);
+      ADD_FAILURE() << size << " numbers were accepted";
+    } catch (SceneError const& error) {
+      EXPECT_TRUE(std::string(error.what())
+                      .ends_with(": initial.given: " + std::to_string(size) +
+                                 " numbers were given; accepted: 72, three for each site"))
+          << error.what();
+    }
+  }
+  scene.initial = GivenStart{std::make_shared<std::vector<double> const>(72, 2.0)};
+  EXPECT_NEAR(initial_spins(scene).at(71), std::sqrt(1.0 / 3), 2 * eps);
 }
 
 TEST(Start, FileComesBackNormalised) {

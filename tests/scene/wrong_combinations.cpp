@@ -201,6 +201,47 @@ TEST(Combinations, OfRigidBodiesWithEnergyAreAccepted) {
                          {"integrator.method='" + method + "'", "integrator.isotropy='energy'"}));
 }
 
+std::string refusal_of(Scene const& scene) {
+  try {
+    check_combination(scene);
+    return "the scene was accepted";
+  } catch (SceneError const& error) {
+    return error.what();
+  }
+}
+
+// Fields that a program sets in a scene that was read: they replace keys, they do not add to them.
+TEST(Combinations, OfAProgramsOwnFieldWithThoseOfTheScene) {
+  Folder const folder;
+  OwnField uniform, nonlocal;
+  uniform.uniform = [](double) { return Triple{0, 0, 1}; };
+  nonlocal.nonlocal = [](HostVectors const&, HostVectors const&, double) {};
+  auto const with = [&](OwnField const& own, std::vector<std::string> const& overrides) {
+    auto scene = read_text(folder, llg_scene, overrides);
+    scene.field.own = own;
+    return refusal_of(scene);
+  };
+  auto const accepted = "the scene was accepted";
+  EXPECT_TRUE(with(uniform, {})
+                  .ends_with(":14: field.applied: the program has a uniform field of "
+                             "its own; accepted: no such key"))
+      << with(uniform, {});
+  EXPECT_EQ(with(uniform, {"field={exchange=1}"}), accepted);
+  std::string const on_host = "field.slab_demag={normal=[1,0,0],average='layer',where='host'}";
+  auto const message = with(nonlocal, {on_host});
+  EXPECT_TRUE(
+      message.ends_with("field.slab_demag: where = \"host\" does not go with a program's "
+                        "own field; accepted: no such key"))
+      << message;
+  EXPECT_EQ(with(nonlocal, {}), accepted);
+  auto const coloured =
+      with(nonlocal, {"integrator.method='red_black2'", "lattice.boundary='open'"});
+  EXPECT_TRUE(
+      coloured.ends_with(": field: method \"red_black2\" needs a field of the neighbours "
+                         "alone; accepted: no nonlocal field, or another method"))
+      << coloured;
+}
+
 TEST(Combinations, CapIsRead) {
   Folder const folder;
   std::vector<std::string> const difference{"integrator.method='euler'",

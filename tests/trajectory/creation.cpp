@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "trajectory/new_file.hpp"
 #include "trajectory_test.hpp"
 
 #include <fcntl.h>
@@ -108,19 +109,59 @@ TEST_F(TrajectoryTest, NameTooLong) {
   EXPECT_TRUE(contains(error_line(path, [&] { create(path); }), "too long"));
 }
 
-// Root may write anywhere: it drops to an ordinary user, in a child.
-int create_without_permission(fs::path const& folder) {
+// Root may write anywhere: it drops to an ordinary user, in a child. `withheld`: what nobody may do
+// with new files.
+int create_without_permission(fs::path const& path, mode_t withheld, bool overwrite) {
   if (::geteuid() == 0 && ::seteuid(65534) != 0) return 2;
-  auto const path = folder / "a.h5";
-  auto const message = error_line(path, [&] { create(path); });
-  return contains(message, "Permission denied") ? 0 : 1;
+  ::umask(withheld);
+  auto const message = error_line(path, [&] { create(path, overwrite); });
+  return contains(message, "cannot create the file: Permission denied") ? 0 : 1;
 }
 
 TEST_F(TrajectoryTest, NoPermission) {
   ASSERT_EQ(::chmod(folder_.c_str(), 0555), 0);
-  EXPECT_EXIT(std::_Exit(create_without_permission(folder_)), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(std::_Exit(create_without_permission(folder_ / "a.h5", 0, false)),
+              testing::ExitedWithCode(0), "");
   EXPECT_TRUE(names_in(folder_).empty());
   ::chmod(folder_.c_str(), 0755);
+}
+
+TEST_F(TrajectoryTest, ProtectedFileIsKept) {
+  auto const path = folder_ / "a.h5";
+  write_text(path, "precious");
+  ASSERT_EQ(::chmod(path.c_str(), 0444), 0);
+  ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
+  EXPECT_EXIT(std::_Exit(create_without_permission(path, 0, true)), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
+}
+
+// It can be created and written to, but not read, which HDF5 does.
+TEST_F(TrajectoryTest, FileThatHdf5CannotOpenIsRemoved) {
+  ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
+  EXPECT_EXIT(std::_Exit(create_without_permission(folder_ / "a.h5", 0444, false)),
+              testing::ExitedWithCode(0), "");
+  EXPECT_TRUE(names_in(folder_).empty());
+}
+
+TEST_F(TrajectoryTest, FileInTheMakingHasOneWriter) {
+  auto const path = folder_ / "a.h5";
+  NewFile first(path, false);
+  EXPECT_TRUE(contains(error_line(path, [&] { NewFile(path, false); }),
+                       "another program is writing " + path.string() + ".partial"));
+  first.commit();
+  EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
+}
+
+TEST_F(TrajectoryTest, FileThatCameMeanwhileIsKept) {
+  auto const path = folder_ / "a.h5";
+  {
+    NewFile file(path, false);
+    write_text(path, "precious");
+    EXPECT_TRUE(contains(error_line(path, [&] { file.commit(); }), "File exists"));
+  }
+  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
 
 TEST_F(TrajectoryTest, ImpossibleHeader) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The files of a run, written by a thread of their own.
+#include "trajectory/scalar_table.hpp"
 #include "trajectory_test.hpp"
 
 #include <cayspin/io/run_output.hpp>
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <bit>
@@ -208,6 +210,56 @@ TEST_F(TrajectoryTest, TableGivesTheDoublesBack) {
   EXPECT_EQ(std::ranges::count(line, '\t'), 5);
   EXPECT_EQ((std::vector<double>(numbers, numbers + 6)),
             (std::vector<double>{1 / 7., 0.1, 1 - 1e-16, -1e300, -1 / 3., 5e-324}));
+}
+
+// What does not fit as a whole is taken back: a table has no torn line.
+TEST_F(TrajectoryTest, TableOnAFullDiskKeepsWholeLines) {
+  auto const path = folder_ / "a.txt";
+  ScalarTable table(path, false, false);
+  Sample const sample{1, 0.5, numbered_scalars(1)};
+  table.append({sample});
+  auto const before = text_of(path);
+  EXPECT_EQ(std::ranges::count(before, '\n'), 2);
+
+  auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit unlimited{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  rlimit const limit{before.size() + 30, unlimited.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  auto const message = error_line(path, [&] { table.append({sample, sample}); });
+  ::setrlimit(RLIMIT_FSIZE, &unlimited);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_TRUE(contains(message, "cannot write the file: File too large"));
+  EXPECT_EQ(text_of(path), before);
+  table.append({sample});
+  EXPECT_EQ(text_of(path), before + before.substr(before.find('\n') + 1));
+}
+
+int table_without_permission(fs::path const& path) {
+  if (::geteuid() == 0 && ::seteuid(65534) != 0) return 2;
+  ::umask(0222);
+  auto const message = error_line(path, [&] { ScalarTable(path, false, false); });
+  return contains(message, "cannot write the file: Permission denied") ? 0 : 1;
+}
+
+TEST_F(TrajectoryTest, TableThatCannotBeOpenedAgain) {
+  ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
+  EXPECT_EXIT(std::_Exit(table_without_permission(folder_ / "a.txt")), testing::ExitedWithCode(0),
+              "");
+}
+
+// Beyond 1000 frames the file is written once a second, and at the end.
+TEST_F(TrajectoryTest, XdmfDescribesTheLastOfManyFrames) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "it writes a file a thousand times: minutes with the sanitizer";
+#endif
+  RunOutput output(folder_ / "a.h5", small_header(), {.xdmf = true});
+  for (int frame = 0; frame < 1003; ++frame) hand_over<double>(output, frame);
+  output.finish({});
+  auto const text = text_of(folder_ / "a.xdmf");
+  EXPECT_TRUE(contains(text, "<Grid Name=\"frame 1002\""));
+  EXPECT_FALSE(contains(text, "<Grid Name=\"frame 1003\""));
+  EXPECT_TRUE(text.ends_with("</Xdmf>\n"));
 }
 
 TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {

@@ -42,9 +42,15 @@ std::vector<WrongCall> calls_of(std::string const& what, Make const& make, Latti
   Spins const like("like", own);
   std::vector<WrongCall> calls{
       {what + ", step", [=]() mutable { make(like).step(Exec(), generator, spins, 0, 0.1); }},
-      {what + ", integrate", [=]() mutable {
+      {what + ", integrate",
+       [=]() mutable {
          auto stepper = make(like);
          integrate(Exec(), stepper, generator, spins, Times{0, 0.1, 3});
+       }},
+      {what + ", integrate over no steps", [=]() mutable {
+         auto stepper = make(like);
+         integrate(Exec(), stepper, generator, spins, Times{0, 0.1, 0},
+                   [](Exec const&, Step const&, Spins const&) { FAIL() << "an observer sees it"; });
        }}};
   using Stepper = decltype(make(like));
   if constexpr (requires(Stepper stepper) { stepper.batch(Exec(), generator, spins, 0, 0.1, 2); })

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/wrong_call.hpp"
+
 #include <cayspin/cayspin.hpp>
 
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,25 +14,6 @@ namespace cayspin::test {
 using Exec = Kokkos::DefaultHostExecutionSpace;
 using Spins = SpinField<double, Kokkos::HostSpace>;
 using Scalars = ScalarField<double, Kokkos::HostSpace>;
-
-/// A call that has to be refused by std::invalid_argument.
-struct WrongCall {
-  std::string name;
-  std::function<void()> call;
-};
-
-inline void expect_refused(std::vector<WrongCall> const& calls) {
-  for (auto const& [name, call] : calls) {
-    try {
-      call();
-      ADD_FAILURE() << name << ": taken";
-    } catch (std::invalid_argument const& error) {
-      EXPECT_NE(std::string(error.what()), "") << name;
-    } catch (std::exception const& error) {
-      ADD_FAILURE() << name << ": refused as another kind of error: " << error.what();
-    }
-  }
-}
 
 template <class Field>
 Field moved_from(Lattice const& lattice) {

@@ -48,7 +48,8 @@ OvfMesh read_ovf_mesh(std::filesystem::path const& path);
 OvfField read_ovf(std::filesystem::path const& path);
 
 /// Writes a file of one segment, as PATH.partial until it is whole. A file that exists is an error
-/// unless `overwrite`. Throws std::invalid_argument unless there are three values a node.
+/// unless `overwrite`. Throws std::invalid_argument unless there are three values a node and the
+/// mesh is finite.
 void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfFormat format,
                bool overwrite);
 

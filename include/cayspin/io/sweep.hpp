@@ -70,8 +70,9 @@ std::string swept_run_name(std::int64_t run);
 std::filesystem::path swept_run_file(std::filesystem::path const& file, std::int64_t run);
 
 /// Writes PATH.partial and renames it: at every moment there is a whole file. With `one_file` the
-/// runs' own files are copied into it, otherwise it links to them. `go_on` is asked before each
-/// copy; returns false with the old file in place when it says no.
+/// runs' own files are copied into it, otherwise it links to them. A file that is damaged is
+/// refused with its name. `go_on` is asked before each copy; returns false with the old file in
+/// place when it says no.
 bool write_sweep(std::filesystem::path const& path, SweepInfo const& sweep,
                  std::function<bool()> const& go_on = {});
 

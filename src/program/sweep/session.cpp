@@ -69,9 +69,13 @@ Session::Session(fs::path file, Grid const& grid, bool overwrite)
   for (std::int64_t number = 0; number < info_.header.runs(); ++number) {
     auto& run = info_.runs[index(number)];
     io::SweptRun found;
-    if (run.status == Status::numbers_failed || !read_run(number, found)) continue;
-    found.message = run.message;
-    run = found;
+    bool const is_whole = read_run(number, found);
+    if (run.has_file && !found.has_file) {
+      run = {};  // its file is gone or damaged: it runs again
+    } else if (is_whole && run.status != Status::numbers_failed) {
+      found.message = run.message;
+      run = found;
+    }
   }
   write();
 }

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "format.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace cayspin::io {
+
+/// Of what a file is to hold: throws std::invalid_argument for what cannot be.
+inline void require_precision(std::string const& precision) {
+  if (precision != single_precision && precision != double_precision)
+    throw std::invalid_argument("precision is '" + precision + "'; accepted are single and double");
+}
+
+/// The bytes of a frame and what goes with it fit into 63 bits.
+inline void require_shape(std::array<std::int64_t, 3> const& shape) {
+  std::int64_t room = std::numeric_limits<std::int64_t>::max() / 64;
+  for (auto const extent : shape) {
+    if (extent < 1) throw std::invalid_argument("an extent of the lattice is below 1");
+    room /= extent;
+  }
+  if (room == 0) throw std::invalid_argument("the lattice has more sites than a file can hold");
+}
+
+/// What a writer consists of. Throws std::logic_error where it was moved to another one.
+template <class Implementation>
+Implementation& not_moved(std::unique_ptr<Implementation> const& writer) {
+  if (!writer) throw std::logic_error("the writer of a file was moved away; use the other one");
+  return *writer;
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A sweep takes in a damaged file of a run: it is refused with one line, or all of it arrives.
+// CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: how many, and which.
+#include "damaged_bytes.hpp"
+#include "trajectory/trajectory_test.hpp"
+
+#include <cayspin/io/sweep.hpp>
+
+#include <hdf5.h>
+
+#include <iostream>
+
+namespace cayspin::io {
+namespace {
+
+using cayspin::test::Chance;
+using cayspin::test::damaged;
+using cayspin::test::number_from;
+using cayspin::test::read_bytes;
+using cayspin::test::write_bytes;
+namespace fs = std::filesystem;
+
+class DamagedSweeps : public TrajectoryTest {
+ protected:
+  DamagedSweeps() {
+    fs::create_directory(sweep_folder(path_));
+    sweep_.header.keys = {{"system.damping", {"0.1"}, {0.1}}};
+    sweep_.header.precision = "double";
+    sweep_.runs.resize(1);
+    sweep_.runs[0].has_file = true;
+    sweep_.complete = sweep_.one_file = true;
+    auto const header = small_header("double");
+    TrajectoryFile file(run_, header, false, {});
+    for (int frame = 0; frame < 8; ++frame) {
+      auto const spins = numbered_spins<double>(header, frame);
+      file.write_frame(frame, 0.1 * frame, numbered_scalars(frame), spins.data());
+      spins_.insert(spins_.end(), spins.begin(), spins.end());
+    }
+    file.finish({});
+  }
+
+  std::vector<double> spins_in_sweep() const {
+    hid_t const file = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    hid_t const dataset = H5Dopen2(file, "/runs/0000/spins", H5P_DEFAULT);
+    std::vector<double> values(spins_.size());
+    EXPECT_GE(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    H5Dclose(dataset);
+    H5Fclose(file);
+    return values;
+  }
+
+  fs::path path_ = folder_ / "sweep.h5";
+  fs::path run_ = swept_run_file(path_, 0);
+  SweepInfo sweep_;
+  std::vector<double> spins_;
+};
+
+TEST_F(DamagedSweeps, TakeInAWholeRunOrRefuseIt) {
+  auto const bytes = read_bytes(run_);
+  ASSERT_TRUE(write_sweep(path_, sweep_));
+  EXPECT_EQ(spins_in_sweep(), spins_);
+  Chance chance(static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1)));
+  int taken = 0, refused = 0;
+  for (long count = number_from("CAYSPIN_DAMAGED_SWEEPS", 40); count > 0; --count) {
+    auto const changed = damaged(bytes, chance);
+    write_bytes(run_, changed);
+    try {
+      write_sweep(path_, sweep_);
+      ++taken;
+      EXPECT_EQ(spins_in_sweep(), spins_) << count;
+    } catch (std::runtime_error const& error) {
+      ++refused;
+      std::string const message = error.what();
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+      EXPECT_NE(message.find("0000.h5"), std::string::npos) << message;
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(sweep_folder(path_)), {}), 1) << "it left files";
+  }
+  std::cout << taken << " taken in as they were, " << refused << " refused\n";
+  EXPECT_GT(taken, 0);
+  EXPECT_GT(refused, 0);
+}
+
+}  // namespace
+}  // namespace cayspin::io
