@@ -43,7 +43,7 @@ logged() {
 # as they are in an old one.
 choose_parts() {
   local part
-  for part in APP PROGRAM PYTHON TESTS EXAMPLES BENCH; do
+  for part in APP PROGRAM PYTHON TESTS EXAMPLES BENCH MPI; do
     case " ${parts[*]} " in
       *" $part "*) options+=("-DCAYSPIN_BUILD_$part=ON") ;;
       *) [ -f "$build_dir/CMakeCache.txt" ] || options+=("-DCAYSPIN_BUILD_$part=OFF") ;;
@@ -129,8 +129,8 @@ case $verb in
   python) packages=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}") parts=() ;;
   kokkos-source) provide_kokkos_source; exit 0 ;; # for CMake, under pip
   build) packages=("${core[@]}" "${io[@]}" "${program[@]}") parts=(APP PROGRAM) ;;
-  test) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES) ;;
-  compile) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH) ;;
+  test) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES MPI) ;;
+  compile) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH MPI) ;;
   bench) packages=("${core[@]}" "${bench[@]}") parts=(BENCH) ;;
   -h | --help) usage; exit 0 ;;
   *) usage >&2; exit 2 ;;

@@ -131,6 +131,7 @@ concept Generator =
 /// | `int64 evaluations_done()` | of the generator so far | evaluations is required |
 /// | `static int order` | of the error | not known |
 /// | `reset()` | forgets the steps so far | there is nothing to forget |
+/// | `check_spins(spins)` | throws for spins of another lattice | step does |
 /// | `bool takes_batches(exec, generator, spins)` | may batch be called? | false |
 /// | `batch(exec, generator, spins, t, dt, count)` | count steps, same bits | one by one |
 /// | `static int work_fields` | fields of three numbers per site | not known |

@@ -83,6 +83,17 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
   }
 }
 
+/// Throws when a term or generator, or a part of it, was made for spins of another lattice.
+template <class Term, class Spins>
+void check_spins_of_parts(Term const& term, Spins const& spins) {
+  check_spins(term, spins);
+  auto const check = [&](auto const& part) {
+    check_spins_of_parts(part, spins);
+    return true;
+  };
+  if constexpr (requires { term.all_parts(check); }) term.all_parts(check);
+}
+
 /// An integration without its types: the loop is compiled once for all of them.
 class Integration {
  public:
@@ -181,7 +192,8 @@ class IntegrationOf final : public Integration {
 /// Returns what was done; `spins` holds the state at the end, and the work has finished.
 /// Lengths of spins are not checked: require_unit_spins does that for spins of one's own.
 /// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
-/// stepper or a term of the field was made for another lattice than that of the spins.
+/// stepper or a term of the field was made for another lattice than that of the spins: before an
+/// observer is called, and for 0 steps, too.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
 Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
                   Times const& times, Observers&&... observers) {
@@ -200,6 +212,9 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
+  // Before an observer sees them, and also where there are no steps to take.
+  if constexpr (requires { stepper.check_spins(spins); }) stepper.check_spins(spins);
+  detail::check_spins_of_parts(generator, spins);
 
   if constexpr (requires { stepper.reset(); }) {
     if (!times.continues) stepper.reset();

@@ -14,12 +14,23 @@ namespace cayspin {
 /// open: a missing neighbour adds nothing (Neumann). periodic: the axis closes on itself.
 enum class Boundary { open, periodic };
 
+class Part;  // part.hpp
+
+/// Rows or planes at the ends of an axis that belong to other parts of a larger lattice.
+struct Ghosts {
+  std::int64_t before = 0, after = 0;
+  friend bool operator==(Ghosts const&, Ghosts const&) = default;
+};
+
 /// A simple lattice of sites in one, two or three dimensions, x fastest. An axis of extent 1 has no
 /// neighbours; a periodic axis of extent 2 has its other site twice.
 struct Lattice {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   std::array<double, 3> spacing{1, 1, 1};
   std::array<Boundary, 3> boundary{Boundary::open, Boundary::open, Boundary::open};
+  /// Of a part of a larger lattice (mpi::Domain): its ghosts along y and z, which `shape` includes.
+  std::array<Ghosts, 3> ghosts{};
+  Part const* part = nullptr;
 
   static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
     return {{nx, 1, 1}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
@@ -33,8 +44,14 @@ struct Lattice {
     return {{nx, ny, nz}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};
   }
 
-  std::int64_t sites() const { return shape[0] * shape[1] * shape[2]; }
+  /// Ghosts not counted.
+  std::int64_t sites() const { return own(0) * own(1) * own(2); }
   bool has_neighbors(int axis) const { return shape[static_cast<std::size_t>(axis)] > 1; }
+
+  /// The extent along an axis without ghosts.
+  std::int64_t own(std::size_t axis) const {
+    return shape[axis] - ghosts[axis].before - ghosts[axis].after;
+  }
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
@@ -48,6 +65,10 @@ struct Lattice {
       if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]))
         throw std::invalid_argument("cayspin::Lattice: the spacing along " + which +
                                     " must be positive and finite");
+      auto const& [before, after] = ghosts[axis];
+      if (before < 0 || after < 0 || before + after >= shape[axis] || (axis == 0 && before + after))
+        throw std::invalid_argument("cayspin::Lattice: the ghosts along " + which +
+                                    " leave no sites of the part's own");
     }
     if (static_cast<double>(shape[0]) * static_cast<double>(shape[1]) *
             static_cast<double>(shape[2]) >

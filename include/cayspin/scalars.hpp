@@ -182,7 +182,7 @@ Vec3<double> magnetization(Exec const& exec, SpinField<Real, MemorySpace> const&
   detail::check_access<Exec, MemorySpace>();
   auto const total = detail::reduce_sites<detail::Sum, 3>(
       exec, "cayspin::magnetization", spins.layout(), detail::SpinOfSites<Real>{spins.array()});
-  auto const sites = static_cast<double>(spins.sites());
+  auto const sites = static_cast<double>(whole(spins.lattice()).sites());
   return {total[0] / sites, total[1] / sites, total[2] / sites};
 }
 

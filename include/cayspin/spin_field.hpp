@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/vec3.hpp>
 
@@ -119,7 +120,7 @@ class SiteField {
 
   Lattice const& lattice() const { return lattice_; }
   detail::RowLayout const& layout() const { return layout_; }
-  std::int64_t sites() const { return layout_.sites(); }
+  std::int64_t sites() const { return layout_.own.count() * layout_.nx; }  // ghosts not counted
   std::size_t bytes() const { return data_.size() * sizeof(Real); }
   std::string label() const { return data_.label(); }
 
@@ -204,7 +205,8 @@ class SpinField : public SiteField<Real, 3, MemorySpace> {
       : SiteField<Real, 3, MemorySpace>(label, lattice, Real(1)) {}
 };
 
-/// Copies a View of extents (sites, Components), x fastest, into a field.
+/// Copies a View of extents (sites, Components), x fastest, into a field. Does not wait, unless the
+/// field is on a part of a lattice: then ghosts are brought up to date, and all parts call it.
 /// Throws std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, View const& from, SiteField<Real, Components, MemorySpace> const& to) {
@@ -216,6 +218,7 @@ void copy(Exec const& exec, View const& from, SiteField<Real, Components, Memory
       "cayspin::copy",
       Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, to.sites()),
       detail::CopySites<View, Real, Components, true>{from, to.array(), to.layout()});
+  detail::update_ghosts(exec, to.lattice(), to);
 }
 
 /// Copies a field into a View of extents (sites, Components), x fastest.

@@ -87,6 +87,7 @@ template <class Real>
 class Spins {
  public:
   using value_type = Real;
+  static constexpr int components = 3;
   using memory_space = Memory;
 
   Spins() = default;

@@ -93,7 +93,9 @@ def table(name, executed, texts, offset):
     inside, outside = collections.Counter(), collections.Counter()
     references = 0
     unknown = sum(count for address, count in executed.items() if address - offset not in texts)
-    if unknown > 0.02 * sum(executed.values()):
+    # A sample's five exact sums are zeroed by memset, which counts as an instruction for each byte.
+    most = 0.06 if name.endswith("sample") else 0.02
+    if unknown > most * sum(executed.values()):
         sys.exit(f"{name}: {unknown} of {sum(executed.values())} instructions are not the program's")
     for address, count in executed.items():
         text = texts.get(address - offset, "")

@@ -52,28 +52,30 @@ struct RowBlock {
 class RowBlocks {
  public:
   explicit RowBlocks(RowLayout const& layout, std::int32_t packs)
-      : layout_(layout), packs_(packs), parts_of_row_(tasks_per_row(layout)) {
+      : RowBlocks(layout, packs, layout.all()) {}
+  RowBlocks(RowLayout const& layout, std::int32_t packs, RowRange const& rows)
+      : rows_(rows), packs_(packs), parts_of_row_(tasks_per_row(layout)) {
     auto const sites = std::clamp<std::int64_t>(layout.sites() / 1024, 512, 16384);
-    auto const blocks = std::int64_t(layout.nx) * layout.ny / sites;
+    auto const blocks = std::int64_t(layout.nx) * rows.ny() / sites;
     parts_of_plane_ = static_cast<std::int32_t>(
-        std::clamp<std::int64_t>(parts_of_row_ > 1 ? layout.ny : blocks, 1, layout.ny));
+        std::clamp<std::int64_t>(parts_of_row_ > 1 ? rows.ny() : blocks, 1, rows.ny()));
   }
 
-  std::int64_t count() const { return std::int64_t(layout_.nz) * parts_of_plane_ * parts_of_row_; }
+  std::int64_t count() const { return std::int64_t(rows_.nz()) * parts_of_plane_ * parts_of_row_; }
 
   RowBlock operator()(std::int64_t task) const {
     auto const cut = [](std::int32_t extent, std::int64_t part, std::int32_t parts) {
       return static_cast<std::int32_t>(extent * part / parts);
     };
     auto const in_row = task % parts_of_row_, in_plane = task / parts_of_row_ % parts_of_plane_;
-    return {static_cast<std::int32_t>(task / parts_of_row_ / parts_of_plane_),
-            cut(layout_.ny, in_plane, parts_of_plane_),
-            cut(layout_.ny, in_plane + 1, parts_of_plane_), cut(packs_, in_row, parts_of_row_),
-            cut(packs_, in_row + 1, parts_of_row_)};
+    return {static_cast<std::int32_t>(rows_.z_begin + task / parts_of_row_ / parts_of_plane_),
+            rows_.y_begin + cut(rows_.ny(), in_plane, parts_of_plane_),
+            rows_.y_begin + cut(rows_.ny(), in_plane + 1, parts_of_plane_),
+            cut(packs_, in_row, parts_of_row_), cut(packs_, in_row + 1, parts_of_row_)};
   }
 
  private:
-  RowLayout layout_;
+  RowRange rows_;
   std::int32_t packs_, parts_of_row_, parts_of_plane_;
 };
 
@@ -93,32 +95,46 @@ struct RowLoop {
   }
 };
 
+/// Row number `row` of those in a range.
+KOKKOS_FORCEINLINE_FUNCTION Row row_of(RowLayout const& layout, RowRange const& rows,
+                                       std::int64_t row) {
+  return {layout, static_cast<std::int32_t>(rows.y_begin + row % rows.ny()),
+          static_cast<std::int32_t>(rows.z_begin + row / rows.ny())};
+}
+
 /// The device loop.
 template <class Real, class Functor>
 struct SiteLoop {
   Functor functor;
   RowLayout layout;
+  RowRange rows;
 
   KOKKOS_FUNCTION void operator()(std::int64_t site) const {
-    Row const row(layout, site / layout.nx);
+    Row const row = row_of(layout, rows, site / layout.nx);
     functor(Site<Real>(row, static_cast<std::int32_t>(site % layout.nx)));
   }
 };
 
-/// Calls functor(site) for all sites of a lattice; functor is a plain struct whose call operator is
-/// templated on the Site. The one parallel loop of the steppers.
+/// Calls functor(site) for all sites of these rows; functor is a plain struct whose call operator
+/// is templated on the Site. The one parallel loop of the steppers.
 template <class Real, class Exec, class Functor>
 void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
-                   Functor const& functor) {
+                   Functor const& functor, RowRange const& rows) {
   if constexpr (is_host_execution<Exec>) {
-    RowBlocks const blocks(layout, pack_count<Real>(layout));
+    RowBlocks const blocks(layout, pack_count<Real>(layout), rows);
     for_each_task(exec, label, blocks.count(), layout.sites(),
                   RowLoop<Real, Functor>{functor, layout, blocks});
   } else {
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
-    Kokkos::parallel_for(label, Policy(exec, 0, layout.sites()),
-                         SiteLoop<Real, Functor>{functor, layout});
+    Kokkos::parallel_for(label, Policy(exec, 0, rows.count() * layout.nx),
+                         SiteLoop<Real, Functor>{functor, layout, rows});
   }
+}
+/// The same for all sites, ghosts included.
+template <class Real, class Exec, class Functor>
+void for_each_site(Exec const& exec, std::string const& label, RowLayout const& layout,
+                   Functor const& functor) {
+  for_each_site<Real>(exec, label, layout, functor, layout.all());
 }
 
 }  // namespace cayspin::detail

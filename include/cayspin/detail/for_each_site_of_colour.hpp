@@ -43,7 +43,7 @@ struct ColourRowLoop {
     for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
       if (rows != RowsOf::both && ((y + block.z) & 1) != static_cast<std::int32_t>(rows)) continue;
       Row const row(layout, y, block.z);
-      std::int32_t const x = (y + block.z + functor.colour) & 1;
+      std::int32_t const x = (y + block.z + layout.parity + functor.colour) & 1;
       std::int32_t pack = Kokkos::max<std::int32_t>(block.pack_begin, 1);
       for (; pack + at_once <= inner_end; pack += at_once) {
         Inner const site(row, x + pack * pack_sites);
@@ -93,7 +93,7 @@ struct ColourRowLoop {
 
 template <class Real, class Functor>
 ColourRowLoop<Real, Functor> colour_row_loop(Functor const& functor, RowLayout const& layout) {
-  return {functor, layout, RowBlocks(layout, (pack_count<Real>(layout) + 1) / 2)};
+  return {functor, layout, RowBlocks(layout, (pack_count<Real>(layout) + 1) / 2, layout.own)};
 }
 
 /// The device loop: a thread for each site of the colour.
@@ -104,14 +104,15 @@ struct ColourSiteLoop {
 
   KOKKOS_FUNCTION void operator()(std::int64_t index) const {
     std::int64_t const half = (layout.nx + 1) / 2;
-    Row const row(layout, index / half);
-    auto const x =
-        static_cast<std::int32_t>(2 * (index % half)) + ((row.y + row.z + functor.colour) & 1);
+    Row const row = row_of(layout, layout.own, index / half);
+    auto const x = static_cast<std::int32_t>(2 * (index % half)) +
+                   ((row.y + row.z + layout.parity + functor.colour) & 1);
     if (x < layout.nx) functor(Site<Real>(row, x));
   }
 };
 
-/// Calls functor(site) for the sites with x + y + z of the parity functor.colour.
+/// Calls functor(site) for the part's own sites with x + y + z, in the whole lattice, of the parity
+/// functor.colour.
 template <class Real, class Exec, class Functor>
 void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayout const& layout,
                              Functor const& functor) {
@@ -126,7 +127,7 @@ void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayo
   } else {
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
     std::int64_t const half = (layout.nx + 1) / 2;
-    Kokkos::parallel_for(label, Policy(exec, 0, layout.rows() * half),
+    Kokkos::parallel_for(label, Policy(exec, 0, layout.own.count() * half),
                          ColourSiteLoop<Real, Functor>{functor, layout});
   }
 }

@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/exact_sum.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/detail/widening_load.hpp>
+#include <cayspin/part.hpp>
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
-// Sums and maxima over sites in double. On host spaces their order depends on the lattice alone:
-// rows of a block of tasks in order, each by its ends and then the packs between them, the lanes of
-// a pack in a fixed tree, blocks in order. The result has the same bits on every host space and for
-// any number of threads.
+// Sums and maxima over sites in double. On host spaces a row is summed in a fixed order, its ends
+// first and then the packs between them, the lanes of a pack in a fixed tree; rows are summed
+// without round-off. So the result has the same bits on every host space, for any number of threads
+// and for any division of a lattice into parts.
 namespace cayspin::detail {
 
 struct Sum {
   template <int>
   using combine_at = Sum;
+  template <int Count>
+  static constexpr int sums = Count;
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value combine(Value const& a, Value const& b) {
     return a + b;
@@ -30,6 +37,8 @@ struct Sum {
 struct Maximum {
   template <int>
   using combine_at = Maximum;
+  template <int Count>
+  static constexpr int sums = 0;
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Value combine(Value const& a, Value const& b) {
     return select<Value>(b == b, select<Value>(a < b, b, a), b);
@@ -41,6 +50,8 @@ template <int Sums>
 struct SumsThenMaxima {
   template <int Index>
   using combine_at = std::conditional_t<(Index < Sums), Sum, Maximum>;
+  template <int Count>
+  static constexpr int sums = Sums;
 };
 
 /// total <- total and value, combined one by one.
@@ -83,13 +94,13 @@ struct Collect {
   }
 };
 
-/// Calls functor(site) for the packs of part task % per_row of row task / per_row: those at the
-/// ends of the row first, then the others in order.
+/// Calls functor(site) for the packs of part task % per_row of row task / per_row, counted without
+/// ghosts: those at the ends of the row first, then the others in order.
 template <class Value, class Functor>
 void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::int32_t per_row,
                               Functor& functor) {
   constexpr std::int32_t lanes = lanes_of<Value>;
-  Row const row(layout, task / per_row);
+  Row const row = row_of(layout, layout.own, task / per_row);
   std::int32_t const packs = (layout.nx + lanes - 1) / lanes;
   auto const cut = [&](std::int64_t part) {
     return static_cast<std::int32_t>(packs * part / per_row);
@@ -106,29 +117,79 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
     functor(Site<Value>(row, pack * lanes));
 }
 
-/// A host reduction has at most this many partial results, so that they fit on the stack.
-inline constexpr std::int64_t largest_blocks = 1024;
+/// What several threads, and then several parts of a lattice, add to.
+template <int Sums, int Maxima>
+struct Totals {
+  std::array<ExactSum, std::size_t{Sums}> sums;
+  std::array<std::int64_t, std::size_t{Maxima}> maxima{};  // the bits of numbers >= 0, or of NaN
+
+  void add(double const* values) {
+    for (ExactSum& sum : sums) sum.add(*values++);
+  }
+  void include(double const* values) {
+    for (std::int64_t& maximum : maxima)
+      maximum = std::max(maximum, std::bit_cast<std::int64_t>(std::abs(*values++)));
+  }
+  void include_atomically(Totals const& other) {
+    auto const* sum_there = other.sums.data();
+    for (ExactSum& sum : sums) sum.add_atomically(*sum_there++);
+    auto const* maximum_there = other.maxima.data();
+    for (std::int64_t& maximum : maxima) Kokkos::atomic_max(&maximum, *maximum_there++);
+  }
+  void include_parts(Part const& part) {
+    std::array<std::int64_t, std::size_t{Sums * ExactSum::words}> words;
+    auto* at = words.data();
+    for (ExactSum& sum : sums) {
+      sum.carry();
+      at = std::copy_n(sum.data(), ExactSum::words, at);
+    }
+    if constexpr (Sums > 0) part.sum(words);
+    if constexpr (Maxima > 0) part.maximum(maxima);
+    auto const* from = words.data();
+    for (ExactSum& sum : sums) {
+      std::copy_n(from, ExactSum::words, sum.data());
+      from += ExactSum::words;
+    }
+  }
+  std::array<double, std::size_t{Sums + Maxima}> values() {
+    std::array<double, std::size_t{Sums + Maxima}> values;
+    auto* at = values.data();
+    for (ExactSum& sum : sums) *at++ = sum.rounded();
+    for (std::int64_t const maximum : maxima) *at++ = std::bit_cast<double>(maximum);
+    return values;
+  }
+};
+
+template <class Combine, int Count>
+using TotalsOf = Totals<Combine::template sums<Count>, Count - Combine::template sums<Count>>;
 
 template <class Combine, int Count, class Functor>
 struct ReduceBlock {
+  static constexpr int sums = Combine::template sums<Count>;
   Functor functor;
   RowLayout layout;
   std::int32_t per_row;
   std::int64_t tasks, blocks;
-  double* partial;  // [block][Count]
+  TotalsOf<Combine, Count>* total;
 
   CAYSPIN_DETAIL_NOINLINE void operator()(std::int64_t block) const {
     using Value = Pack<double>;
     Functor const local = functor;
+    std::optional<TotalsOf<Combine, Count>> of_block;
+    auto& totals = blocks == 1 ? *total : of_block.emplace();
     Collect<Combine, Count, Functor, Value> collect{local, {}};
-    for (int i = 0; i < Count; ++i) collect.total[i] = Value(0.0);
+    for (int i = sums; i < Count; ++i) collect.total[i] = Value(0.0);
+    double values[std::size_t{Count}];
     std::int64_t const end = tasks * (block + 1) / blocks;
-    for (std::int64_t task = tasks * block / blocks; task < end; ++task)
+    for (std::int64_t task = tasks * block / blocks; task < end; ++task) {
+      for (int i = 0; i < sums; ++i) collect.total[i] = Value(0.0);
       for_each_pack_ends_first<Value>(layout, task, per_row, collect);
-    unrolled<Count>([&](auto i) {
-      using One = typename Combine::template combine_at<i()>;
-      partial[block * Count + i()] = combine_lanes<One>(collect.total[i()]);
-    });
+      for (int i = 0; i < sums; ++i) values[i] = combine_lanes<Sum>(collect.total[i]);
+      totals.add(values);
+    }
+    for (int i = sums; i < Count; ++i) values[i] = combine_lanes<Maximum>(collect.total[i]);
+    totals.include(values + sums);
+    if (of_block) total->include_atomically(totals);
   }
 };
 
@@ -142,7 +203,7 @@ struct ReduceOnDevice {
   RowLayout layout;
 
   KOKKOS_FUNCTION void operator()(std::int64_t index, value_type& total) const {
-    Row const row(layout, index / layout.nx);
+    Row const row = row_of(layout, layout.own, index / layout.nx);
     double value[std::size_t{Count}];
     functor(Site<double>(row, static_cast<std::int32_t>(index % layout.nx)), value);
     combine_values<Combine, Count>(total.values, value);
@@ -155,35 +216,39 @@ struct ReduceOnDevice {
   }
 };
 
-/// Combines what functor(site, values) puts into values[0 .. Count) over all sites; waits. Takes no
-/// memory from the heap on host spaces, and may run in several instances at once. Throws
-/// std::invalid_argument when there are no sites.
+/// More blocks than any host has threads.
+inline constexpr std::int64_t most_blocks = 1024;
+
+/// Combines what functor(site, values) puts into values[0 .. Count) over all sites, of
+/// all parts of the lattice; waits. Takes no memory from the heap on host spaces, and may run in
+/// several instances at once. Throws std::invalid_argument when there are no sites.
 template <class Combine, int Count, class Exec, class Functor>
 std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::string const& label,
                                                     RowLayout const& layout,
                                                     Functor const& functor) {
   require_sites(label, layout.nx);
-  std::array<double, std::size_t{Count}> total{};
+  std::int64_t const rows = layout.own.count();
+  TotalsOf<Combine, Count> total;
   if constexpr (is_host_execution<Exec>) {
     std::int32_t const per_row = tasks_per_row(layout);
-    std::int64_t const tasks = layout.rows() * per_row;
+    std::int64_t const tasks = rows * per_row;
     std::int64_t const blocks =
-        std::min({tasks, largest_blocks, layout.sites() / calling_thread_sites + 1});
-    double partial[std::size_t{largest_blocks * Count}];
+        std::min({tasks, most_blocks, layout.sites() / calling_thread_sites + 1});
     using Body = ReduceBlock<Combine, Count, Functor>;
     for_each_task(exec, label, blocks, layout.sites(),
-                  Body{functor, layout, per_row, tasks, blocks, partial});
+                  Body{functor, layout, per_row, tasks, blocks, &total});
     exec.fence(label);
-    for (std::int64_t block = 0; block < blocks; ++block)
-      combine_values<Combine, Count>(total.data(), partial + block * Count);
   } else {
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
     using Body = ReduceOnDevice<Combine, Count, Functor>;
     typename Body::value_type result;
-    Kokkos::parallel_reduce(label, Policy(exec, 0, layout.sites()), Body{functor, layout}, result);
-    std::copy(result.values, result.values + Count, total.begin());
+    Kokkos::parallel_reduce(label, Policy(exec, 0, rows * layout.nx), Body{functor, layout},
+                            result);
+    total.add(result.values);
+    total.include(result.values + Combine::template sums<Count>);
   }
-  return total;
+  if (layout.part != nullptr) total.include_parts(*layout.part);
+  return total.values();
 }
 
 /// The largest of the numbers at sites.

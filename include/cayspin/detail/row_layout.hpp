@@ -3,6 +3,7 @@
 
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/part.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -11,15 +12,27 @@ namespace cayspin::detail {
 
 inline constexpr std::int64_t cache_line_bytes = 64;
 
-/// Where sites lie in memory: one array per component, rows along x padded to whole packs, no ghost
-/// sites. Row pitch and component stride are odd numbers of cache lines once there is more than one
-/// row, so that neighbouring rows and components do not compete for the same cache sets.
+/// Rows y_begin .. y_end - 1 of planes z_begin .. z_end - 1.
+struct RowRange {
+  std::int32_t y_begin = 0, y_end = 0, z_begin = 0, z_end = 0;
+
+  KOKKOS_FUNCTION std::int32_t ny() const { return y_end - y_begin; }
+  KOKKOS_FUNCTION std::int32_t nz() const { return z_end - z_begin; }
+  KOKKOS_FUNCTION std::int64_t count() const { return std::int64_t(ny()) * nz(); }
+};
+
+/// Where sites lie in memory: one array per component, rows along x padded to whole packs. Row
+/// pitch and component stride are odd numbers of cache lines once there is more than one row, so
+/// that neighbouring rows and components do not compete for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
   bool periodic[3] = {false, false, false};
   std::ptrdiff_t pitch = 0;             // from row to row
   std::ptrdiff_t component_stride = 0;  // from component to component
   std::ptrdiff_t origin = 0;            // of site 0 in the allocation; a pack may read before it
+  RowRange own;                         // all but the ghosts
+  Part const* part = nullptr;
+  std::int32_t parity = 0;  // of y + z in the whole lattice, where it is even here
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
@@ -34,6 +47,17 @@ struct RowLayout {
     layout.nz = static_cast<std::int32_t>(lattice.shape[2]);
     for (std::size_t axis = 0; axis < 3; ++axis)
       layout.periodic[axis] = lattice.boundary[axis] == Boundary::periodic;
+    layout.own = {
+        static_cast<std::int32_t>(lattice.ghosts[1].before),
+        static_cast<std::int32_t>(layout.ny - lattice.ghosts[1].after),
+        static_cast<std::int32_t>(lattice.ghosts[2].before),
+        static_cast<std::int32_t>(layout.nz - lattice.ghosts[2].after),
+    };
+    layout.part = lattice.part;
+    if (lattice.part != nullptr) {
+      auto const begin = lattice.part->begin();
+      layout.parity = static_cast<std::int32_t>((begin[1] + begin[2]) & 1);
+    }
     std::ptrdiff_t const rows = std::ptrdiff_t(layout.ny) * layout.nz;
     layout.pitch =
         rows > 1 && layout.nx > line ? odd_lines(layout.nx) : (layout.nx + line - 1) / line * line;
@@ -42,13 +66,28 @@ struct RowLayout {
     return layout;
   }
 
+  RowRange all() const { return {0, ny, 0, nz}; }
+  /// The part's own rows, and `more` of each of its ghosts.
+  RowRange own_and(std::int32_t more) const {
+    auto const low = [&](std::int32_t own_begin) {
+      return own_begin > more ? own_begin - more : 0;
+    };
+    auto const high = [&](std::int32_t own_end, std::int32_t extent) {
+      return extent - own_end > more ? own_end + more : extent;
+    };
+    return {low(own.y_begin), high(own.y_end, ny), low(own.z_begin), high(own.z_end, nz)};
+  }
+
   KOKKOS_FUNCTION std::int64_t rows() const { return std::int64_t(ny) * nz; }
   KOKKOS_FUNCTION std::int64_t sites() const { return rows() * nx; }
   std::size_t allocation(int components) const {
     return static_cast<std::size_t>(2 * origin + components * component_stride);
   }
+  /// Of a site by its number, ix + nx (iy + ny iz) without ghosts.
   KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
-    return site / nx * pitch + site % nx;
+    std::int64_t row = site / nx;
+    if (part != nullptr) row = (own.z_begin + row / own.ny()) * ny + own.y_begin + row % own.ny();
+    return row * pitch + site % nx;
   }
 };
 

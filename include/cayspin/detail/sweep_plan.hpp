@@ -13,8 +13,8 @@
 // of rows whose buffers fit the cache. Seams hold the rows that two blocks share.
 namespace cayspin::detail {
 
-/// The planes or rows of one part. At an end inside the lattice, or at a periodic end, each earlier
-/// stage goes one plane or row further. The next part computes these sites, too.
+/// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
+/// each earlier stage goes one plane or row further. The next part computes these sites, too.
 struct SweepRange {
   std::int32_t begin, end, stages;
   Axis axis;
@@ -50,10 +50,12 @@ struct SweepPlan {
   std::size_t size() const { return static_cast<std::size_t>(parts() * part_size); }
 
   SweepRange range_y(std::int64_t part) const {
-    return range(static_cast<std::int32_t>(part % parts_y), parts_y, Axis(layout, 1));
+    return range(static_cast<std::int32_t>(part % parts_y), parts_y, layout.own.y_begin,
+                 layout.own.ny(), Axis(layout, 1));
   }
   SweepRange range_z(std::int64_t part) const {
-    return range(static_cast<std::int32_t>(part / parts_y), parts_z, Axis(layout, 2));
+    return range(static_cast<std::int32_t>(part / parts_y), parts_z, layout.own.z_begin,
+                 layout.own.nz(), Axis(layout, 2));
   }
 
   /// A plan for so many threads, with blocks of rows whose buffers take up `cache` bytes.
@@ -99,9 +101,10 @@ struct SweepPlan {
   std::int32_t blocks(std::int32_t rows) const { return std::max(1, rows / block); }
 
  private:
-  SweepRange range(std::int32_t part, std::int32_t parts, Axis const& axis) const {
+  SweepRange range(std::int32_t part, std::int32_t parts, std::int32_t begin, std::int32_t extent,
+                   Axis const& axis) const {
     auto const bound = [&](std::int32_t i) {
-      return static_cast<std::int32_t>(std::int64_t(axis.extent) * i / parts);
+      return begin + static_cast<std::int32_t>(std::int64_t(extent) * i / parts);
     };
     return {bound(part), bound(part + 1), stages, axis};
   }
@@ -113,10 +116,10 @@ struct SweepPlan {
     for (std::int32_t z = threads; z >= 1; --z) {
       if (threads % z != 0) continue;
       std::int32_t const y = threads / z;
-      std::int32_t const nz = std::min(z, std::max(1, layout.nz / (2 * stages)));
-      std::int32_t const ny = std::min(y, std::max(1, layout.ny / (2 * stages)));
-      double const repeated =
-          double(stages - 1) * (nz - 1) / layout.nz + double(stages - 1) * (ny - 1) / layout.ny;
+      std::int32_t const nz = std::min(z, std::max(1, layout.own.nz() / (2 * stages)));
+      std::int32_t const ny = std::min(y, std::max(1, layout.own.ny() / (2 * stages)));
+      double const repeated = double(stages - 1) * (nz - 1) / layout.own.nz() +
+                              double(stages - 1) * (ny - 1) / layout.own.ny();
       double const time = (1 + repeated) / (double(ny) * nz);
       if (least < 0 || time < least) least = time, parts_y = ny, parts_z = nz;
     }

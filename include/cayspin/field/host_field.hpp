@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -41,7 +42,8 @@ struct StoredField {
 /// A field that host code computes from all spins at once, through a mirror copy: the way to bring
 /// any non-local field (an FFT demag, a boundary-element solve). Before each stage the spins are
 /// copied to host memory, `solver(spins, field, t)` fills `field`, and that is copied back. Where
-/// spins live in host memory already, nothing is copied.
+/// spins live in host memory already, nothing is copied. On a part of a lattice (mpi::Domain) the
+/// solver gets that part, and fills all but its ghosts.
 ///
 /// Solver: a callable void(SpinField<Real, HostSpace> const& spins, SpinField<Real, HostSpace>
 /// const& field, double t) with a member `degree`: 1 when H does not depend on m (E = -m.H), 2 when
@@ -84,11 +86,13 @@ class HostField {
     } else if constexpr (on_host) {
       exec.fence("cayspin::HostField: spins ready");
       solver_(spins, field_, t);
+      detail::update_ghosts(exec, field_.lattice(), field_);
     } else {
       Kokkos::deep_copy(exec, host_spins_.allocation(), spins.allocation());
       exec.fence("cayspin::HostField: spins copied");
       solver_(host_spins_, host_field_, t);
       Kokkos::deep_copy(exec, field_.allocation(), host_field_.allocation());
+      detail::update_ghosts(exec, field_.lattice(), field_);
     }
     return {field_.array(), Solver::degree == 1 ? -1.0 : -0.5};
   }

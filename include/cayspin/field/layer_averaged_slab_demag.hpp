@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
@@ -91,7 +92,9 @@ class LayerAveragedSlabDemag {
         strength_(strength),
         lattice_(detail::validated(lattice)),
         averages_("cayspin::LayerAveragedSlabDemag::averages",
-                  static_cast<std::size_t>(layers() + detail::cache_line_bytes)) {}
+                  static_cast<std::size_t>(layers() + detail::cache_line_bytes)) {
+    detail::require_whole("cayspin::LayerAveragedSlabDemag", lattice);
+  }
 
   template <class Spins>
   void check_spins(Spins const& spins) const {

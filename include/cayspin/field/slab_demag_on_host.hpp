@@ -34,6 +34,8 @@ class SlabDemagOnHost {
     using Real = typename HostSpins::value_type;
     auto const n = as_value<Real>(normal_);
     Real const strength = static_cast<Real>(-strength_);
+    if (layer_axis_ >= 0)
+      detail::require_whole("cayspin::SlabDemagOnHost with averages over layers", spins.lattice());
     auto const averages = layer_axis_ < 0 ? std::vector<double>{} : layer_averages(spins);
     for (std::int64_t site = 0; site < spins.sites(); ++site) {
       Real const along = layer_axis_ < 0 ? dot(spins.get(site), n)

@@ -3,6 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/narrowing_store.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/rotation/cayley.hpp>
@@ -150,7 +151,9 @@ class EnergyControl {
     detail::for_each_site<Real>(
         exec, "cayspin::EnergyControl::turn", spins.layout(),
         detail::TurnAboutAxes<Real>{spins.array(), axes_.array(), spins.output(false),
-                                    static_cast<Real>(kappa)});
+                                    static_cast<Real>(kappa)},
+        spins.layout().own);
+    detail::update_ghosts(exec, spins.lattice(), spins);
   }
 
  private:

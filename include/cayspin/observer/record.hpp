@@ -65,7 +65,7 @@ Sample sample(Exec const& exec, Source const& source, Step const& step,
   auto const found = detail::reduce_sites<detail::SumsThenMaxima<Look::sums>, Look::count>(
       exec, "cayspin::sample", spins.layout(),
       Look{std::move(energies), std::move(rates), spins.array()});
-  auto const sites = static_cast<double>(spins.sites());
+  auto const sites = static_cast<double>(whole(spins.lattice()).sites());
   Sample sample{step.number, step.time, {found[0], found[1]}};
   sample.magnetization = {found[2] / sites, found[3] / sites, found[4] / sites};
   sample.norm_defect = detail::norm_defect_of(found[5], found[6]);

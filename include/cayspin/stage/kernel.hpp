@@ -83,7 +83,7 @@ struct RungeKuttaStage {
   using Flow = StageDataFlow<Tableau, Update, StageIndex>;
   using value_type = Real;
   using RowArrays = StageArrays<Rows<Real>, Tableau::stages>;
-  static constexpr int stages = Tableau::stages;
+  static constexpr int stages = Tableau::stages, stages_after = stages - 1 - StageIndex;
   static constexpr bool last = Flow::last;
   /// The stage after this one is at the step's end.
   static constexpr bool arrives = is_first_same_as_last<Tableau> && StageIndex == stages - 2;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <tuple>
 
 namespace cayspin::detail {
 
@@ -74,6 +75,12 @@ class StageMemory {
   template <class Visit>
   void visit_carried(Visit const& visit) const {
     for (std::size_t i = 0; i < carried_.size(); ++i) visit(Update::carried[i], carried_[i]);
+  }
+
+  /// Calls action(field..) with those fields.
+  template <class Action>
+  void with_carried(Action const& action) const {
+    std::apply(action, carried_);
   }
 
   /// The spins at the end of a step that does not end in place.

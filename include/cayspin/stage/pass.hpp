@@ -81,7 +81,10 @@ struct StageRowLoop {
   RowBlocks blocks;
 
   StageRowLoop(Kernel const& stage, FieldsOf<Kernel> const& arrays, RowLayout const& rows)
-      : kernel(stage), fields(arrays), layout(rows), blocks(rows, pack_count<Real>(rows)) {}
+      : kernel(stage),
+        fields(arrays),
+        layout(rows),
+        blocks(rows, pack_count<Real>(rows), rows.own_and(Kernel::stages_after)) {}
   std::int64_t tasks() const { return blocks.count(); }
 
   /// A task with all its pointers found, to be run again and again.
@@ -125,7 +128,8 @@ void run_pass(Exec const& exec, std::string const& label, RowLayout const& layou
     for_each_task(exec, label, loop.tasks(), layout.sites(), loop);
   } else {
     for_each_site<typename Kernel::value_type>(exec, label, layout,
-                                               StageOnSite<Kernel>{kernel, fields});
+                                               StageOnSite<Kernel>{kernel, fields},
+                                               layout.own_and(Kernel::stages_after));
   }
 }
 

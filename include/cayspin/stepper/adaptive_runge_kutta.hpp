@@ -47,7 +47,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   /// the precision.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
-      : Base(name, like.lattice()),
+      : Base(name, like.lattice(), stages),
         isotropy_(isotropy),
         options_(options),
         controller_(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
@@ -148,6 +148,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
       double const error = try_step(exec, generator, t, dt);
       double const on = controller_.next_dt(dt, error);
       if (controller_.accepts(error)) {
+        detail::update_ghosts(exec, this->lattice_, end_, last_);
         next_dt_ = std::max(on, options_.min_dt);
         begin_time_ = t;
         end_time_ = t + dt;
@@ -175,9 +176,10 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     }
     if (!at_once) {
       stages_from<0>(exec, generator, t, dt);
+      auto const& layout = begin_.layout();
       detail::for_each_site<Real>(
-          exec, end_label_, begin_.layout(),
-          end_stage(detail::prepare_term(generator, exec, end_, t + dt), dt));
+          exec, end_label_, layout,
+          end_stage(detail::prepare_term(generator, exec, end_, t + dt), dt), layout.own);
     }
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
@@ -273,6 +275,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
                                                     increments(), spins.output(false), dt_,
                                                     fraction);
     detail::for_each_site<Real>(exec, dense_label_, begin_.layout(), look);
+    detail::update_ghosts(exec, this->lattice_, spins);
   }
 
   template <class Exec>

@@ -42,7 +42,7 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
   static constexpr int work_fields = 2;  // 4 numbers per site: rates, and one number
 
   explicit LieEuler(Spins const& like, Isotropy isotropy = {}, Rotation = {})
-      : LieEuler::StepperBase("LieEuler", like.lattice()),
+      : LieEuler::StepperBase("LieEuler", like.lattice(), 2),
         isotropy_(isotropy),
         rates_("LieEuler", like.lattice()) {}
 
@@ -59,7 +59,8 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
     using Kernel = detail::CorrectedEulerStage<Isotropy, Rotation, decltype(prepared), Real>;
     Kernel const kernel{std::move(prepared), isotropy_,           rates_.array(),
                         rates_.along(),      spins.output(false), static_cast<Real>(dt)};
-    detail::for_each_site<Real>(exec, rotate_label_, spins.layout(), kernel);
+    detail::for_each_site<Real>(exec, rotate_label_, spins.layout(), kernel, spins.layout().own);
+    detail::update_ghosts(exec, this->lattice_, spins);
   }
 
  private:

@@ -79,7 +79,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   static constexpr int work_fields = Stepper::work_fields + 2;
 
   EnergyProjection(Spins const& like, Stepper stepper, int corrections = 3)
-      : Base("EnergyProjection", like.lattice()),
+      : Base("EnergyProjection", like.lattice(), 1),
         stepper_(std::move(stepper)),
         corrections_(corrections),
         begin_("EnergyProjection::begin", like.lattice()),

@@ -50,7 +50,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
 
   explicit FieldExtrapolation(std::string const& name, Spins const& like,
                               FieldExtrapolationOptions const& options = {})
-      : Base(name, like.lattice()),
+      : Base(name, like.lattice(), Start::evaluations),
         options_(options),
         start_(like),
         next_(name + "::next", like.lattice()),
@@ -122,6 +122,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
       extrapolate(exec, generator, spins, t, dt);
       if (!has_failed(exec)) {
         swap(spins, next_);
+        detail::update_ghosts(exec, this->lattice_, spins);
         return past_.remember(dt);
       }
       reset();
@@ -145,7 +146,8 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     detail::for_each_site<Real>(
         exec, store_label_, spins.layout(),
         detail::NeighborFieldStage<decltype(prepared), Real>{std::move(prepared), spins.array(),
-                                                             past_.following().output(false)});
+                                                             past_.following().output(false)},
+        spins.layout().own);
     ++evaluations_done_;
   }
 
@@ -189,7 +191,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
       kernel.error = error_of_step_before(dt);
       has_error_ = past_.is_full();
     }
-    detail::for_each_site<Real>(exec, step_label_, spins.layout(), kernel);
+    detail::for_each_site<Real>(exec, step_label_, spins.layout(), kernel, spins.layout().own);
     ++evaluations_done_;
   }
 

@@ -37,7 +37,7 @@ class Implicit : public StepperBase<Spins> {
   static constexpr int work_fields = is_corrected ? 4 : 2;
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
-      : StepperBase<Spins>(name, like.lattice()),
+      : StepperBase<Spins>(name, like.lattice(), is_corrected ? 2 : 1),
         isotropy_(isotropy),
         options_(options),
         level_(name + "::level", like.lattice()),
@@ -118,7 +118,8 @@ class Implicit : public StepperBase<Spins> {
                   static_cast<Real>(dt), to_middle};
     if constexpr (!is_corrected) kernel.isotropy = isotropy_;
     if (corrected) kernel.sigma = rates_.along();
-    for_each_site<Real>(exec, iterate_label_, start.layout(), kernel);
+    for_each_site<Real>(exec, iterate_label_, start.layout(), kernel, start.layout().own);
+    update_ghosts(exec, this->lattice_, to);
     ++evaluations_done_;
   }
 
@@ -132,7 +133,8 @@ class Implicit : public StepperBase<Spins> {
     for_each_site<Real>(
         exec, sigma_label_, spins.layout(),
         ImplicitSigmaStage<decltype(prepared), Real>{
-            std::move(prepared), rates_.array(), spins.array(), rates_.along_output(), orthogonal});
+            std::move(prepared), rates_.array(), spins.array(), rates_.along_output(), orthogonal},
+        spins.layout().own);
     evaluations_done_ += 2;
   }
 

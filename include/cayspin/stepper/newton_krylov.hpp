@@ -77,7 +77,7 @@ class NewtonKrylov {
     std::array<std::array<double, m + 1>, m> h{};  // columns
     std::array<double, m> cosine{}, sine{};
     std::array<double, m + 1> rest{norm};
-    double const small = std::sqrt(epsilon * static_cast<double>(v.sites()));
+    double const small = std::sqrt(epsilon * static_cast<double>(whole(v.lattice()).sites()));
     combine(exec, 1 / norm, basis_[0], 0, basis_[0], basis_[0]);
     std::size_t size = 0;
     while (size < m && std::abs(rest[size]) > 1e-3 * norm) {

@@ -96,7 +96,8 @@ class Rates {
     for_each_site<Real>(
         exec, label, spins.layout(),
         RateStage<decltype(prepared), Real>{std::move(prepared), spins.array(),
-                                            rates_.output(streaming_), along_.output(false)});
+                                            rates_.output(streaming_), along_.output(false)},
+        spins.layout().own_and(1));
   }
 
  private:

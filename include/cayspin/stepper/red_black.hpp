@@ -38,15 +38,16 @@ class RedBlack : public detail::StepperBase<Spins> {
 
   /// Throws std::invalid_argument when a periodic axis has an odd number of sites above one.
   explicit RedBlack(Spins const& like)
-      : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice()),
+      : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice(), 1),
         pass_label_(this->label("::colour_pass")),
         batch_label_(this->label("::batch")) {
+    Lattice const& lattice = whole(this->lattice_);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (this->lattice_.boundary[axis] == Boundary::periodic && this->lattice_.shape[axis] > 1 &&
-          this->lattice_.shape[axis] % 2 != 0)
+      if (lattice.boundary[axis] == Boundary::periodic && lattice.shape[axis] > 1 &&
+          lattice.shape[axis] % 2 != 0)
         throw std::invalid_argument(
             std::string("cayspin::RedBlack: the periodic ") + "xyz"[axis] + " axis has " +
-            std::to_string(this->lattice_.shape[axis]) +
+            std::to_string(lattice.shape[axis]) +
             " sites, and no checkerboard closes on itself over an odd number");
   }
 
@@ -120,7 +121,7 @@ class RedBlack : public detail::StepperBase<Spins> {
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
     auto stage = stage_of(prepared, prepared, spins, false);
     if constexpr (detail::is_host_execution<Exec>) {
-      if (detail::runs_on_calling_thread<Exec>(spins.sites())) {
+      if (this->lattice_.part == nullptr && detail::runs_on_calling_thread<Exec>(spins.sites())) {
         detail::RedBlackSteps<Order, decltype(stage), Real> const steps{
             detail::colour_row_loop<Real>(stage, spins.layout()), dt, count};
         detail::for_each_task(exec, batch_label_, 1, spins.sites(), steps);
@@ -137,6 +138,7 @@ class RedBlack : public detail::StepperBase<Spins> {
               double dt) {
     stage.set(pass, dt);
     detail::for_each_site_of_colour<Real>(exec, pass_label_, spins.layout(), stage);
+    detail::update_ghosts(exec, this->lattice_, spins);
     ++passes_done_;
   }
 

@@ -47,7 +47,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
-      : Base(name, like.lattice()),
+      : Base(name, like.lattice(), stages),
         name_(name),
         isotropy_(isotropy),
         plan_(sweep_plan(like.layout(), DefaultExec().concurrency())) {
@@ -91,13 +91,16 @@ class RungeKutta : public detail::StepperBase<Spins> {
     if (exchanges()) this->require_other_memory(spins, memory_.end());
     if constexpr (has_sweep && detail::is_host_execution<Exec>) {
       if (path_ == Path::sweep) {
-        if (detail::needs_time_alone(generator, exec, spins))
-          return sweep(exec, generator, spins, t, dt);
+        if (detail::needs_time_alone(generator, exec, spins)) {
+          sweep(exec, generator, spins, t, dt);
+          return update_ghosts(exec, spins);
+        }
         use(Path::pass);
       }
     }
     stages_from<0>(exec, generator, spins, t, dt);
     if constexpr (stages == 1) swap(spins, memory_.end());
+    update_ghosts(exec, spins);
   }
 
   /// Forgets the residual that rounding left at the last step.
@@ -119,7 +122,8 @@ class RungeKutta : public detail::StepperBase<Spins> {
   /// every step.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
-    return path_ == Path::pass && detail::runs_on_calling_thread<Exec>(spins.sites()) &&
+    return path_ == Path::pass && this->lattice_.part == nullptr &&
+           detail::runs_on_calling_thread<Exec>(spins.sites()) &&
            detail::is_stationary(generator, exec, spins);
   }
 
@@ -148,6 +152,13 @@ class RungeKutta : public detail::StepperBase<Spins> {
   static constexpr bool has_sweep =
       stages > 1 &&
       (stages <= detail::SweepPlan::most_stages) && detail::is_host_execution<DefaultExec>;
+
+  template <class Exec>
+  void update_ghosts(Exec const& exec, Spins const& spins) const {
+    memory_.with_carried([&](auto const&... carried) {
+      detail::update_ghosts(exec, this->lattice_, spins, carried...);
+    });
+  }
 
   /// Does a step exchange the memory of the spins?
   bool exchanges() const { return stages == 1 || path_ == Path::sweep; }

@@ -31,7 +31,8 @@ class Series4 : public detail::StepperBase<Spins> {
   static constexpr int work_fields = 7;  // 1 for rigid bodies: the others are made when first used
 
   explicit Series4(Spins const& like, Isotropy = {})
-      : Series4::StepperBase("Series4", like.lattice()), next_("Series4::next", like.lattice()) {}
+      : Series4::StepperBase("Series4", like.lattice(), 4),
+        next_("Series4::next", like.lattice()) {}
 
   std::size_t work_bytes() const {
     return next_.bytes() * (derivatives_[0].sites() == 0 ? 1 : work_fields);
@@ -60,6 +61,7 @@ class Series4 : public detail::StepperBase<Spins> {
       stage<0>(exec, generator, spins, t, dt);
     }
     swap(spins, next_);
+    detail::update_ghosts(exec, this->lattice_, spins);
   }
 
  private:
@@ -90,7 +92,8 @@ class Series4 : public detail::StepperBase<Spins> {
       if constexpr (k() < 3) kernel.sources[k()] = sources_[k()].output(false);
     });
     if constexpr (K < 3) kernel.next = derivatives_[K].output(false);
-    detail::for_each_site<Real>(exec, labels_[K], spins.layout(), kernel);
+    detail::for_each_site<Real>(exec, labels_[K], spins.layout(), kernel,
+                                spins.layout().own_and(3 - K));
     if constexpr (K < 3) stage<K + 1>(exec, generator, spins, t, dt);
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/lattice.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
@@ -22,10 +23,19 @@ class StepperBase {
   using spins_type = Spins;
   using Real = typename Spins::value_type;
 
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  void check_spins(Spins const& spins, char const* call = "") const {
+    if (!(spins.lattice() == lattice_))
+      throw std::invalid_argument(region_ + call + ": the spins are not of the stepper's lattice");
+  }
+
  protected:
-  StepperBase(std::string const& name, Lattice const& lattice)
+  /// `reach`: so many ghosts a step needs at the ends of a part of a lattice; 0 for a stepper that
+  /// does not run on parts.
+  StepperBase(std::string const& name, Lattice const& lattice, int reach = 0)
       : lattice_(lattice), region_("cayspin::" + name) {
     lattice.validate();
+    require_ghosts(region_, lattice, reach);
   }
 
   CAYSPIN_DETAIL_NOINLINE std::string label(char const* stage) const { return region_ + stage; }
@@ -42,8 +52,7 @@ class StepperBase {
   [[nodiscard]] Kokkos::Profiling::ScopedRegion begin_step(Exec const&, Spins const& spins,
                                                            char const* call = "::step") const {
     check_access<Exec, typename Spins::memory_space>();
-    if (!(spins.lattice() == lattice_))
-      throw std::invalid_argument(region_ + call + ": the spins are not of the stepper's lattice");
+    check_spins(spins, call);
     return Kokkos::Profiling::ScopedRegion(region_);
   }
 

@@ -26,7 +26,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
 
   explicit TwoPoint(std::string const& name, Spins const& like, Method method,
                     Isotropy isotropy = {})
-      : Base(name, like.lattice()),
+      : Base(name, like.lattice(), 2),
         method_(method),
         isotropy_(isotropy),
         next_(name + "::next", like.lattice()),
@@ -49,12 +49,13 @@ class TwoPoint : public detail::StepperBase<Spins> {
               dt);
         swap(spins, next_);
         last_dt_ = dt;
-        return;
+        return detail::update_ghosts(exec, this->lattice_, spins);
       }
       last_dt_ = dt;
     }
     stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
     stage(exec, generator, correct_label_, method_.correct(), spins, next_, spins, t + dt, dt);
+    detail::update_ghosts(exec, this->lattice_, spins);
   }
 
   /// Forgets the step before; the next one is a first step. cayspin::integrate does it for each
@@ -103,7 +104,9 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_.output(streaming_ && !Rule::reads),
         next.output(streaming_ && next.allocation().data() != start.allocation().data()),
         static_cast<Real>(dt)};
-    detail::for_each_site<Real>(exec, label, start.layout(), kernel);
+    auto const& layout = start.layout();
+    bool const predicts = !Rule::reads;
+    detail::for_each_site<Real>(exec, label, layout, kernel, layout.own_and(predicts ? 1 : 0));
   }
 
   std::string predict_label_ = this->label("::predict"), correct_label_ = this->label("::correct"),

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace cayspin::detail {
+
+/// A sum of doubles without round-off, rounded once when it is read: its bits do not depend on the
+/// order of the summands. A fixed-point number of 32-bit digits that overlap, as in R. Neal, "Fast
+/// exact summation using small and large superaccumulators" (2015). Sums of sums are sums of words.
+class ExactSum {
+ public:
+  /// The digits, and then how many summands were not a number, infinity and minus infinity.
+  static constexpr int digits = 68, words = digits + 3;
+
+  CAYSPIN_DETAIL_NOINLINE void add(double number) {
+    auto const bits = std::bit_cast<std::uint64_t>(number);
+    auto const exponent = static_cast<int>(bits >> 52 & 0x7ff);
+    if (exponent == 0x7ff) [[unlikely]]
+      return add_not_finite(number);
+    std::uint64_t const fraction = bits & ((std::uint64_t{1} << 52) - 1);
+    std::uint64_t const mantissa = exponent > 0 ? fraction | std::uint64_t{1} << 52 : fraction;
+    int const place = exponent > 0 ? exponent - 1 : 0, shift = place % digit_bits;
+    std::uint64_t const low = (mantissa & digit_mask) << shift;
+    std::uint64_t const high = (mantissa >> digit_bits << shift) + (low >> digit_bits);
+    std::int64_t* const at = word_ + place / digit_bits;
+    std::int64_t const sign = bits >> 63 ? -1 : 1;
+    at[0] += sign * static_cast<std::int64_t>(low & digit_mask);
+    at[1] += sign * static_cast<std::int64_t>(high & digit_mask);
+    at[2] += sign * static_cast<std::int64_t>(high >> digit_bits);
+    if (--until_carry_ == 0) carry();
+  }
+
+  /// Brings all digits but the last into 0 .. 2^32 - 1. So sums of 2^30 words fit a word.
+  void carry() {
+    for (int i = 0; i + 1 < digits; ++i) {
+      word_[i + 1] += word_[i] >> digit_bits;
+      word_[i] &= static_cast<std::int64_t>(digit_mask);
+    }
+    until_carry_ = most_between_carries;
+  }
+
+  /// Adds a sum to which several threads add.
+  CAYSPIN_DETAIL_NOINLINE void add_atomically(ExactSum const& other) {
+    for (int i = 0; i < words; ++i)
+      if (other.word_[i] != 0) Kokkos::atomic_add(word_ + i, other.word_[i]);
+  }
+
+  std::int64_t* data() { return word_; }
+  std::int64_t const* data() const { return word_; }
+
+  /// The sum, rounded to nearest.
+  CAYSPIN_DETAIL_NOINLINE double rounded() {
+    if (std::int64_t const* const special = word_ + digits;
+        special[0] > 0 || (special[1] > 0 && special[2] > 0))
+      return std::numeric_limits<double>::quiet_NaN();
+    else if (special[1] > 0 || special[2] > 0)
+      return special[1] > 0 ? infinity : -infinity;
+    carry();
+    if (word_[digits - 1] >= 0) return rounded_magnitude();
+    ExactSum positive;
+    for (int i = 0; i < digits; ++i) positive.word_[i] = -word_[i];
+    positive.carry();
+    return -positive.rounded_magnitude();
+  }
+
+ private:
+  static constexpr int digit_bits = 32;
+  static constexpr std::uint64_t digit_mask = 0xffffffff;
+  static constexpr std::int32_t most_between_carries = 1 << 29;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  void add_not_finite(double number) {
+    ++word_[digits + (std::isnan(number) ? 0 : number > 0 ? 1 : 2)];
+  }
+
+  std::uint64_t digit(int i) const { return i < 0 ? 0 : static_cast<std::uint64_t>(word_[i]); }
+
+  // Of a sum >= 0 after carry(): the first 64 bits, the last of which says whether more follow.
+  double rounded_magnitude() const {
+    int top = digits - 1;
+    while (top > 0 && word_[top] == 0) --top;
+    std::uint64_t const pair = digit(top) << digit_bits | digit(top - 1);
+    if (pair == 0) return 0;
+    int const shift = std::countl_zero(pair);
+    std::uint64_t const third = digit(top - 2) << shift;
+    std::uint64_t bits = pair << shift | third >> digit_bits;
+    bool more = (third & digit_mask) != 0;
+    for (int i = top - 3; i >= 0 && !more; --i) more = word_[i] != 0;
+    if (more) bits |= 1;
+    constexpr int smallest = -1074;  // the exponent of the first digit's first bit
+    return std::ldexp(static_cast<double>(bits), smallest + (top - 1) * digit_bits - shift);
+  }
+
+  std::int64_t word_[words] = {};
+  std::int32_t until_carry_ = most_between_carries;
+};
+
+}  // namespace cayspin::detail

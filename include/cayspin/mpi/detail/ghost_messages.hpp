@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/mpi/detail/wait_for.hpp>
+#include <cayspin/part.hpp>
+
+#include <mpi.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <stdexcept>
+
+namespace cayspin::mpi::detail {
+
+/// Sites from `begin` to before `end`.
+struct Box {
+  std::array<std::int64_t, 3> begin, end;
+
+  KOKKOS_FUNCTION std::int64_t extent(std::size_t axis) const { return end[axis] - begin[axis]; }
+  std::int64_t rows() const { return extent(1) * extent(2); }
+};
+
+/// What goes to the neighbour before and to the one after, and where what comes from them goes.
+struct Faces {
+  std::array<Box, 2> sent, received;
+};
+
+/// Copies a box of a field to consecutive numbers, or back. A task is a row of one component.
+template <class Word, bool Packs>
+struct CopyRows {
+  static constexpr bool packs = Packs;
+  Word* field;
+  Word* buffer;
+  std::ptrdiff_t row, component;
+  std::int64_t ny;
+  Box box;
+
+  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
+    std::int64_t const rows = box.extent(1) * box.extent(2), in_component = task % rows;
+    std::int64_t const y = box.begin[1] + in_component % box.extent(1);
+    std::int64_t const z = box.begin[2] + in_component / box.extent(1);
+    std::int64_t const nx = box.extent(0);
+    Word* const here = field + task / rows * component + (z * ny + y) * row + box.begin[0];
+    Word* const there = buffer + task * nx;
+    for (std::int64_t x = 0; x < nx; ++x) {
+      if constexpr (Packs)
+        there[x] = here[x];
+      else
+        here[x] = there[x];
+    }
+  }
+};
+
+/// The messages to and from the two neighbours along an axis, with their buffers.
+class GhostMessages {
+ public:
+  /// Sends boxes of all fields in one message to each neighbour. Two ranks on a periodic axis are
+  /// each other's neighbour twice: the tag is the direction.
+  void exchange(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
+                std::array<int, 2> const& neighbor) {
+    std::array<MPI_Request, 4> requests;
+    requests.fill(MPI_REQUEST_NULL);
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (neighbor[side] == MPI_PROC_NULL) continue;
+      reserve(received_[side], bytes(fields, faces.received[side]));
+      MPI_Irecv(received_[side].data(), words_of(received_[side]), MPI_INT32_T, neighbor[side],
+                static_cast<int>(1 - side), comm, &requests[side]);
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (neighbor[side] == MPI_PROC_NULL) continue;
+      reserve(sent_[side], bytes(fields, faces.sent[side]));
+      copy<true>(fields, faces.sent[side], sent_[side]);
+      MPI_Isend(sent_[side].data(), words_of(sent_[side]), MPI_INT32_T, neighbor[side],
+                static_cast<int>(side), comm, &requests[2 + side]);
+    }
+    wait_for(requests);
+    for (std::size_t side = 0; side < 2; ++side)
+      if (neighbor[side] != MPI_PROC_NULL)
+        copy<false>(fields, faces.received[side], received_[side]);
+  }
+
+ private:
+  using Buffer = Kokkos::View<std::byte*, Kokkos::SharedHostPinnedSpace>;
+
+  static std::size_t bytes(std::span<FieldNumbers const> fields, Box const& box) {
+    std::size_t sum = 0;
+    for (auto const& field : fields)
+      sum += field.number_bytes * static_cast<std::size_t>(field.components);
+    return sum * static_cast<std::size_t>(box.rows() * box.extent(0));
+  }
+
+  /// Of 4 bytes. Throws std::length_error for a message of 8 GiB or more, which MPI cannot count.
+  static int words_of(Buffer const& buffer) {
+    auto const words = buffer.size() / sizeof(std::int32_t);
+    if (words > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      throw std::length_error("cayspin::mpi: a face of the part is 8 GiB or more; use more ranks");
+    return static_cast<int>(words);
+  }
+
+  static void reserve(Buffer& buffer, std::size_t size) {
+    if (buffer.size() != size)
+      buffer = Buffer(
+          Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::mpi::ghost_message"), size);
+  }
+
+  template <bool Packs>
+  static void copy(std::span<FieldNumbers const> fields, Box const& box, Buffer const& buffer) {
+    std::byte* at = buffer.data();
+    for (auto const& field : fields) {
+      if (field.number_bytes == sizeof(double))
+        copy_field<double, Packs>(field, box, at);
+      else
+        copy_field<float, Packs>(field, box, at);
+      at += field.number_bytes *
+            static_cast<std::size_t>(field.components * box.rows() * box.extent(0));
+    }
+  }
+
+  template <class Number, bool Packs>
+  static void copy_field(FieldNumbers const& field, Box const& box, std::byte* buffer) {
+    CopyRows<Number, Packs> const rows{static_cast<Number*>(field.data),
+                                       reinterpret_cast<Number*>(buffer),
+                                       field.row,
+                                       field.component,
+                                       field.ny,
+                                       box};
+    if (field.on_device)
+      run(Kokkos::DefaultExecutionSpace(), field.components * box.rows(), rows);
+    else
+      run(Kokkos::DefaultHostExecutionSpace(), field.components * box.rows(), rows);
+  }
+
+  template <class Exec, class Rows>
+  static void run(Exec const& exec, std::int64_t tasks, Rows const& rows) {
+    Kokkos::parallel_for(Rows::packs ? "cayspin::mpi::pack" : "cayspin::mpi::unpack",
+                         Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, tasks),
+                         rows);
+    exec.fence("cayspin::mpi::ghost_message");
+  }
+
+  std::array<Buffer, 2> sent_, received_;
+};
+
+}  // namespace cayspin::mpi::detail

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <mpi.h>
+
+#include <span>
+#include <thread>
+
+namespace cayspin::mpi::detail {
+
+/// Waits for requests, and soon lets other threads run: MPI's own waiting takes a core to itself,
+/// which is slow where ranks share cores.
+inline void wait_for(std::span<MPI_Request> requests) {
+  constexpr int patience = 1000;
+  for (int tries = 0;; ++tries) {
+    int done = 0;
+    MPI_Testall(static_cast<int>(requests.size()), requests.data(), &done, MPI_STATUSES_IGNORE);
+    if (done) return;
+    if (tries >= patience) std::this_thread::yield();
+  }
+}
+
+}  // namespace cayspin::mpi::detail

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/mpi/detail/ghost_messages.hpp>
+#include <cayspin/mpi/division.hpp>
+#include <cayspin/part.hpp>
+
+#include <mpi.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+
+namespace cayspin::mpi {
+
+/// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
+/// with `depth` ghosts at each end that is inside the lattice. Fields on local() are like any
+/// others: steppers, terms and sums take them, and give the bits of one rank.
+/// One step needs as many ghosts as it has stages. Outlives its fields and steppers.
+class Domain final : public Part {
+ public:
+  /// All ranks of `comm` call it. Throws std::invalid_argument on every rank when the lattices or
+  /// depths of ranks differ, or the lattice cannot be divided.
+  Domain(MPI_Comm comm, Lattice const& lattice, int depth)
+      : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
+
+  /// With this division: the product of its numbers is the number of ranks.
+  Domain(MPI_Comm comm, Lattice const& lattice, int depth, Division const& division)
+      : whole_(agreed(comm, lattice, depth, division)), division_(division), depth_(depth) {
+    lattice.validate();
+    require_division(lattice, depth, division, size_of(comm));
+    MPI_Comm_dup(comm, &comm_);
+    MPI_Comm_rank(comm_, &rank_);
+    local_ = lattice;
+    local_.part = this;
+    divide_axis(1, division.y, rank_ % division.y);
+    divide_axis(2, division.z, rank_ / division.y);
+  }
+  Domain(Domain const&) = delete;
+  Domain& operator=(Domain const&) = delete;
+  ~Domain() override {
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (!finalized) MPI_Comm_free(&comm_);
+  }
+
+  /// This rank's part, ghosts included: what fields, terms and steppers are made for.
+  Lattice const& local() const { return local_; }
+  Lattice const& whole() const override { return whole_; }
+  std::array<std::int64_t, 3> begin() const override { return begin_; }
+  Division const& division() const { return division_; }
+  int depth() const { return depth_; }
+  int rank() const { return rank_; }
+  MPI_Comm comm() const { return comm_; }
+
+  void sum(std::span<std::int64_t> words) const override { combine(words, MPI_SUM); }
+  void maximum(std::span<std::int64_t> words) const override { combine(words, MPI_MAX); }
+
+  /// One message per face and direction: planes along z first, and then rows along y with the
+  /// ghosts along z, which are theirs to pass on.
+  void update_ghosts(std::span<FieldNumbers const> fields) const override {
+    for (std::size_t const axis : {2UL, 1UL})
+      if (neighbor_[axis][0] != MPI_PROC_NULL || neighbor_[axis][1] != MPI_PROC_NULL)
+        messages_[axis].exchange(comm_, fields, faces(axis), neighbor_[axis]);
+  }
+
+ private:
+  /// `lattice`, if all ranks were given the same.
+  static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, int depth,
+                               Division const& division = {}) {
+    constexpr std::size_t count = 12;
+    std::array<std::int64_t, 2 * count> given{depth, division.y,
+                                              division.z};  // and then their complements
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      given[3 + axis] = lattice.shape[axis];
+      given[6 + axis] = std::bit_cast<std::int64_t>(lattice.spacing[axis]);
+      given[9 + axis] = static_cast<std::int64_t>(lattice.boundary[axis]);
+    }
+    for (std::size_t i = 0; i < count; ++i) given[count + i] = ~given[i];
+    auto largest = given;
+    MPI_Allreduce(given.data(), largest.data(), static_cast<int>(largest.size()), MPI_INT64_T,
+                  MPI_MAX, comm);
+    for (std::size_t i = 0; i < count; ++i)
+      if (largest[i] != ~largest[count + i])
+        throw std::invalid_argument(
+            "cayspin::mpi::Domain: the ranks were given different lattices, depths or divisions");
+    return lattice;
+  }
+
+  static int size_of(MPI_Comm comm) {
+    int size = 0;
+    MPI_Comm_size(comm, &size);
+    return size;
+  }
+
+  void combine(std::span<std::int64_t> words, MPI_Op operation) const {
+    std::array<MPI_Request, 1> request;
+    MPI_Iallreduce(MPI_IN_PLACE, words.data(), static_cast<int>(words.size()), MPI_INT64_T,
+                   operation, comm_, request.data());
+    detail::wait_for(request);
+  }
+
+  /// Part number `index` of `parts` along an axis.
+  void divide_axis(std::size_t axis, int parts, int index) {
+    neighbor_[axis] = {MPI_PROC_NULL, MPI_PROC_NULL};
+    if (parts == 1) return;
+    std::int64_t const extent = whole_.shape[axis];
+    std::int64_t const first = extent * index / parts, last = extent * (index + 1) / parts;
+    bool const closed = whole_.boundary[axis] == Boundary::periodic;
+    bool const before = closed || index > 0, after = closed || index + 1 < parts;
+    local_.ghosts[axis] = {before ? depth_ : 0, after ? depth_ : 0};
+    local_.shape[axis] = last - first + local_.ghosts[axis].before + local_.ghosts[axis].after;
+    local_.boundary[axis] = Boundary::open;
+    begin_[axis] = first - local_.ghosts[axis].before;
+    int const stride = axis == 1 ? 1 : division_.y;
+    auto const rank_at = [&](int other) {
+      return rank_ + ((other + parts) % parts - index) * stride;
+    };
+    if (before) neighbor_[axis][0] = rank_at(index - 1);
+    if (after) neighbor_[axis][1] = rank_at(index + 1);
+  }
+
+  /// What goes to the neighbours along an axis, and where what comes from them goes.
+  detail::Faces faces(std::size_t axis) const {
+    auto const& ghosts = local_.ghosts[axis];
+    std::int64_t const end = local_.shape[axis] - ghosts.after;
+    auto const rows = [&](std::int64_t begin, std::int64_t count) {
+      detail::Box box{{0, 0, 0}, local_.shape};
+      if (axis == 2) {
+        box.begin[1] = local_.ghosts[1].before;
+        box.end[1] = local_.shape[1] - local_.ghosts[1].after;
+      }
+      box.begin[axis] = begin;
+      box.end[axis] = begin + count;
+      return box;
+    };
+    return {{rows(ghosts.before, depth_), rows(end - depth_, depth_)},
+            {rows(0, ghosts.before), rows(end, ghosts.after)}};
+  }
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  Lattice whole_, local_;
+  Division division_;
+  int depth_ = 0, rank_ = 0;
+  std::array<std::int64_t, 3> begin_{0, 0, 0};
+  std::array<std::array<int, 2>, 3> neighbor_{};
+  mutable std::array<detail::GhostMessages, 3> messages_;
+};
+
+}  // namespace cayspin::mpi

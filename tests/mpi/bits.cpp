@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A lattice divided among ranks gives the bits of the lattice on one rank: spins, sums and maxima,
+// and the decisions of adaptive steps.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/mpi/domain.hpp>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+namespace cayspin::test {
+namespace {
+
+int ranks() {
+  int size = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  return size;
+}
+
+/// All divisions of a lattice among the ranks that there are.
+std::vector<mpi::Division> divisions(Lattice const& lattice, int depth) {
+  std::vector<mpi::Division> found;
+  for (int y = 1; y <= ranks(); ++y)
+    if (mpi::Division const one{y, ranks() / y};
+        ranks() % y == 0 && mpi::can_divide(lattice, depth, one))
+      found.push_back(one);
+  return found;
+}
+
+/// Odd extents, thin ones, each boundary open and periodic.
+std::vector<Lattice> lattices() {
+  std::vector<Lattice> all;
+  std::array<std::int64_t, 3> const shapes[] = {
+      {13, 17, 19}, {1, 1, 41}, {5, 33, 1}, {35, 10, 12}, {3, 2, 16}};
+  for (auto const& shape : shapes)
+    for (int const bits : {0, 3, 6}) {
+      auto const boundary = [&](int axis) {
+        return bits >> axis & 1 ? Boundary::periodic : Boundary::open;
+      };
+      all.push_back({shape, {1, 0.9, 1.1}, {boundary(0), boundary(1), boundary(2)}});
+    }
+  return all;
+}
+
+std::string name_of(Lattice const& lattice, mpi::Division const& division) {
+  std::string name;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    name += std::to_string(lattice.shape[axis]) +
+            (lattice.boundary[axis] == Boundary::periodic ? "p " : " ");
+  return name + "in " + std::to_string(division.y) + " x " + std::to_string(division.z) + " parts";
+}
+
+/// Of the numbers of a whole lattice, (sites, 3), those of a part.
+std::vector<double> numbers_of_part(Lattice const& local, std::vector<double> const& all) {
+  auto const& shape = whole(local).shape;
+  auto const begin = local.part->begin();
+  std::vector<double> numbers;
+  for (std::int64_t z = 0; z < local.own(2); ++z)
+    for (std::int64_t y = 0; y < local.own(1); ++y) {
+      auto const row = (begin[2] + local.ghosts[2].before + z) * shape[1] + begin[1] +
+                       local.ghosts[1].before + y;
+      auto const first = all.begin() + 3 * row * shape[0];
+      numbers.insert(numbers.end(), first, first + 3 * shape[0]);
+    }
+  return numbers;
+}
+
+/// A field that turns.
+struct Turning {
+  static auto generator_on(Lattice const& lattice) {
+    return LandauLifshitz(
+        EffectiveField(Exchange(lattice, 0.4), UniaxialAnisotropy(0.3, {0.6, 0, 0.8}),
+                       TimeDependentZeeman([](double t) {
+                         return Vec3<double>{std::cos(t), std::sin(t), 0.3};
+                       })),
+        0.1);
+  }
+};
+/// One that does not depend on t.
+struct Still {
+  static auto generator_on(Lattice const& lattice, double damping = 0.1) {
+    return LandauLifshitz(
+        EffectiveField(Exchange(lattice, 0.4), UniaxialAnisotropy(0.3, {0.6, 0, 0.8}),
+                       Zeeman{{0.3, -0.2, 1}}),
+        damping);
+  }
+};
+struct Undamped {
+  static auto generator_on(Lattice const& lattice) { return Still::generator_on(lattice, 0); }
+};
+
+template <class Backend>
+class EqualBits : public ::testing::Test {
+ protected:
+  using Spins = typename Backend::Spins;
+  using Real = typename Backend::Real;
+
+  /// `make`: a stepper for spins. Lattices that it refuses are left out. `one_in`: steppers that
+  /// ask the other ranks often take one lattice in so many.
+  template <class Motion = Turning, class Make>
+  void expect_equal_bits(int depth, Make const& make, int steps = 3, std::size_t one_in = 1) {
+    int compared = 0;
+    auto const all = lattices();
+    for (std::size_t number = 0; number < all.size(); number += one_in) {
+      Lattice const& lattice = all[number];
+      for (mpi::Division const& division : divisions(lattice, depth)) {
+        auto const name = name_of(lattice, division);
+        auto const numbers = random_directions(lattice.sites(), 7);
+        auto whole = spins_of<Spins>(lattice, numbers);
+        try {
+          make(whole);
+        } catch (std::invalid_argument const&) {
+          continue;
+        }
+        auto const expected = run<Motion>(whole, make, steps);
+
+        mpi::Domain const domain(MPI_COMM_WORLD, lattice, depth, division);
+        auto part = spins_of<Spins>(domain.local(), numbers_of_part(domain.local(), numbers));
+        auto const found = run<Motion>(part, make, steps);
+        ASSERT_EQ(found.size(), expected.size()) << name;
+        for (std::size_t i = 0; i < found.size(); ++i)
+          ASSERT_EQ(std::bit_cast<std::uint64_t>(found[i]),
+                    std::bit_cast<std::uint64_t>(expected[i]))
+              << name << ", number " << i << ": " << found[i] << " and " << expected[i];
+        ASSERT_NE(numbers_of(whole), numbers) << "nothing moved";
+        ASSERT_EQ(numbers_of(part), numbers_of_part(domain.local(), numbers_of(whole))) << name;
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 1);
+  }
+
+ private:
+  // All numbers of samples at the begin and after each step, and what the stepper counted.
+  template <class Motion, class Make>
+  std::vector<double> run(Spins& spins, Make const& make, int steps) {
+    auto const generator = Motion::generator_on(spins.lattice());
+    auto stepper = make(spins);
+    std::vector<double> numbers;
+    auto const look = [&](auto const& exec, Step const& step, Spins const& now) {
+      Sample const s = sample(exec, generator, step, now, generator);
+      numbers.insert(numbers.end(),
+                     {s.energy.value, s.energy.magnitude, s.magnetization.x, s.magnetization.y,
+                      s.magnetization.z, s.norm_defect, s.largest_rate});
+    };
+    auto const summary = integrate(exec_, stepper, generator, spins, Times{0, 0.05, steps}, look);
+    numbers.push_back(static_cast<double>(summary.evaluations));
+    numbers.push_back(static_cast<double>(summary.own_steps));
+    numbers.push_back(static_cast<double>(summary.rejected));
+    return numbers;
+  }
+
+  typename Backend::Exec exec_;
+};
+/// Each precision once: sums and stages are those of the tests of one rank.
+using HostAndDefault = ::testing::Types<Backend<float, Kokkos::DefaultHostExecutionSpace>,
+                                        Backend<double, Kokkos::DefaultExecutionSpace>>;
+TYPED_TEST_SUITE(EqualBits, HostAndDefault, BackendName);
+
+TYPED_TEST(EqualBits, LieEuler) {
+  this->expect_equal_bits(1, [](auto const& spins) { return LieEuler(spins); });
+}
+
+TYPED_TEST(EqualBits, Rkmk4InPassesAndSweeps) {
+  using Spins = typename TypeParam::Spins;
+  for (Path const path : {Path::pass, Path::sweep})
+    this->expect_equal_bits(4, [&](Spins const& spins) {
+      Rkmk4<Spins> stepper(spins);
+      auto const& lattice = spins.lattice();
+      bool const sweeps =
+          lattice.boundary[1] == Boundary::open || lattice.shape[1] == 1 || lattice.shape[1] >= 4;
+      stepper.use(sweeps ? path : Path::pass);
+      return stepper;
+    });
+}
+
+TYPED_TEST(EqualBits, CompensatedHeunWithGhostsToSpare) {
+  using Spins = typename TypeParam::Spins;
+  this->expect_equal_bits(3, [](Spins const& spins) { return Compensated<LieHeun<Spins>>(spins); });
+}
+
+TYPED_TEST(EqualBits, Adaptive) {
+  using Spins = typename TypeParam::Spins;
+  StepOptions options;
+  options.tolerance = 1e-3;
+  options.end = 0.15;
+  this->expect_equal_bits(7,
+                          [&](Spins const& spins) { return AdaptiveRkmk<Spins>(spins, options); });
+}
+
+TYPED_TEST(EqualBits, StepsThatRemember) {
+  using Spins = typename TypeParam::Spins;
+  this->expect_equal_bits(2, [](Spins const& spins) { return LieAdamsBashforth2(spins); });
+  this->expect_equal_bits(
+      4, [](Spins const& spins) { return FieldExtrapolation4<Spins, true>(spins); }, 6, 2);
+}
+
+TYPED_TEST(EqualBits, CorrectedEuler) {
+  using Spins = typename TypeParam::Spins;
+  this->expect_equal_bits(
+      2, [](Spins const& spins) { return LieEuler<Spins, isotropy::FiniteDifference>(spins); });
+}
+
+TYPED_TEST(EqualBits, Implicit) {
+  using Spins = typename TypeParam::Spins;
+  this->expect_equal_bits(
+      1, [](Spins const& spins) { return ImplicitMidpoint<Spins>(spins); }, 2, 2);
+  // Newton's method alone.
+  ImplicitOptions options;
+  options.fixed_point = 0;
+  this->expect_equal_bits(
+      1, [&](Spins const& spins) { return ImplicitMidpoint<Spins>(spins, options); }, 1, 4);
+}
+
+TYPED_TEST(EqualBits, RedBlackAndSeries) {
+  using Spins = typename TypeParam::Spins;
+  this->template expect_equal_bits<Still>(
+      1, [](Spins const& spins) { return RedBlack2<Spins>(spins); });
+  this->template expect_equal_bits<Still>(4,
+                                          [](Spins const& spins) { return Series4<Spins>(spins); });
+}
+
+TYPED_TEST(EqualBits, EnergyProjection) {
+  using Spins = typename TypeParam::Spins;
+  this->template expect_equal_bits<Undamped>(
+      2, [](Spins const& spins) { return EnergyProjection(spins, LieHeun<Spins>(spins)); });
+}
+
+}  // namespace
+}  // namespace cayspin::test

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Divisions of lattices, and wrong ones refused in one sentence.
+#include <cayspin/cayspin.hpp>
+#include <cayspin/mpi/domain.hpp>
+
+#include <gtest/gtest.h>
+
+namespace cayspin::test {
+namespace {
+
+using mpi::divide;
+using mpi::Division;
+
+TEST(Division, RepeatsLeast) {
+  EXPECT_EQ(divide(Lattice::cubic(8, 64, 64), 4, 2), (Division{1, 2}));
+  EXPECT_EQ(divide(Lattice::cubic(8, 64, 64), 4, 4), (Division{2, 2}));
+  EXPECT_EQ(divide(Lattice::cubic(8, 16, 64), 4, 4), (Division{1, 4}));
+  EXPECT_EQ(divide(Lattice::cubic(8, 128, 16), 4, 4), (Division{4, 1}));
+  EXPECT_EQ(divide(Lattice::cubic(64, 64, 64), 4, 64), (Division{8, 8}));
+  EXPECT_EQ(divide(Lattice::square(64, 64), 4, 3), (Division{3, 1}));
+  EXPECT_EQ(divide(Lattice::chain(64), 4, 1), (Division{1, 1}));
+}
+
+TEST(Division, WhatDoesNotFitIsRefused) {
+  EXPECT_THROW(divide(Lattice::chain(64), 4, 2), std::invalid_argument);
+  EXPECT_THROW(divide(Lattice::cubic(8, 7, 7), 4, 2), std::invalid_argument);
+  EXPECT_EQ(divide(Lattice::cubic(8, 7, 8), 4, 2), (Division{1, 2}));
+}
+
+TEST(Division, DomainsAreHeldAgainstTheRanks) {
+  EXPECT_THROW(mpi::Domain(MPI_COMM_SELF, Lattice::cubic(8, 8, 8), 2, {2, 1}),
+               std::invalid_argument);
+  EXPECT_THROW(mpi::Domain(MPI_COMM_SELF, Lattice::cubic(8, 8, 8), 0), std::invalid_argument);
+  mpi::Domain const alone(MPI_COMM_SELF, Lattice::cubic(8, 8, 8), 2);
+  EXPECT_EQ(alone.local().shape, (std::array<std::int64_t, 3>{8, 8, 8}));
+}
+
+// Every rank is told, whichever differs.
+TEST(Division, RanksThatDisagreeAreRefused) {
+  int rank = 0, ranks = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  if (ranks == 1) return;
+  auto const last = rank + 1 == ranks;
+  auto const open = Lattice::cubic(4, 4, 32), longer = Lattice::cubic(4, 4, 36),
+             closed = Lattice::cubic(4, 4, 32, 1, Boundary::periodic);
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? longer : open, 2), std::invalid_argument);
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? closed : open, 2), std::invalid_argument);
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, open, last ? 3 : 2), std::invalid_argument);
+}
+
+TEST(Division, SteppersNeedTheirGhosts) {
+  int ranks = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  mpi::Domain const domain(MPI_COMM_WORLD, Lattice::cubic(4, 4, 16), 3);
+  SpinField<double> const spins("spins", domain.local());
+  if (ranks > 1)
+    EXPECT_THROW(Rkmk4 const stepper(spins), std::invalid_argument);
+  else
+    Rkmk4 const stepper(spins);
+  LieHeun const fits(spins);
+}
+
+}  // namespace
+}  // namespace cayspin::test

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// A sum that is rounded once: against integers, in any order and in parts, and at the ends of the
+// range.
+#include <cayspin/detail/exact_sum.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace cayspin::detail {
+namespace {
+
+double rounded_sum_of(std::vector<double> const& numbers) {
+  ExactSum sum;
+  for (double const number : numbers) sum.add(number);
+  return sum.rounded();
+}
+
+// Whole numbers up to 2^60, whose sums fit 63 bits: the conversion of that rounds to nearest.
+TEST(ExactSum, RoundsTheSumOfIntegers) {
+  std::mt19937_64 engine(3);
+  for (int trial = 0; trial < 5000; ++trial) {
+    std::vector<double> numbers;
+    std::int64_t sum = 0;
+    for (auto left = engine() % 7; left > 0; --left) {
+      auto const few_bits = static_cast<std::int64_t>(engine() >> 12) - (std::int64_t{1} << 51);
+      auto const number = few_bits * (std::int64_t{1} << engine() % 9);
+      numbers.push_back(static_cast<double>(number));
+      sum += number;
+    }
+    ASSERT_EQ(rounded_sum_of(numbers), static_cast<double>(sum));
+  }
+}
+
+TEST(ExactSum, DoesNotDependOnOrderOrParts) {
+  std::mt19937_64 engine(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::vector<double> numbers(1 + engine() % 40);
+    for (double& number : numbers)
+      number = std::ldexp(static_cast<double>(engine() >> 11) - 0x1p52,
+                          static_cast<int>(engine() % 1900) - 1000);
+    double const expected = rounded_sum_of(numbers);
+    std::shuffle(numbers.begin(), numbers.end(), engine);
+    ExactSum parts[2];
+    for (std::size_t i = 0; i < numbers.size(); ++i) parts[i % 2].add(numbers[i]);
+    for (ExactSum& part : parts) part.carry();
+    parts[0].add_atomically(parts[1]);
+    ASSERT_EQ(parts[0].rounded(), expected);
+  }
+}
+
+TEST(ExactSum, LosesNothingBetweenLargeAndSmall) {
+  EXPECT_EQ(rounded_sum_of({1e300, 1, -1e300}), 1);
+  double const least = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(rounded_sum_of({least, -3 * least, 1, -1}), -2 * least);
+  double const largest = std::numeric_limits<double>::max();
+  EXPECT_EQ(rounded_sum_of({largest, largest, -largest}), largest);
+  EXPECT_EQ(rounded_sum_of({}), 0);
+  // Halfway to the next number: to the even one, but up where a little more follows.
+  EXPECT_EQ(rounded_sum_of({1, 0x1p-53}), 1);
+  EXPECT_EQ(rounded_sum_of({1, 0x1p-53, least}), 1 + 0x1p-52);
+}
+
+TEST(ExactSum, FindsNumbersThatAreNone) {
+  double const infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(rounded_sum_of({1, infinity}), infinity);
+  EXPECT_EQ(rounded_sum_of({1, -infinity}), -infinity);
+  double const largest = std::numeric_limits<double>::max();
+  EXPECT_EQ(rounded_sum_of({largest, largest}), infinity);
+  EXPECT_TRUE(std::isnan(rounded_sum_of({infinity, -infinity})));
+  EXPECT_TRUE(std::isnan(rounded_sum_of({1, std::nan("")})));
+}
+
+}  // namespace
+}  // namespace cayspin::detail
