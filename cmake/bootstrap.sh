@@ -136,6 +136,11 @@ case $verb in
   *) usage >&2; exit 2 ;;
 esac
 
+if [ "$preset" = mpi ]; then
+  packages+=("${mpi[@]}")
+  parts+=(MPI)
+fi
+
 install_packages install "${packages[@]}"
 [ "$verb" = build ] || start_installing_drawing
 provide_kokkos

@@ -8,8 +8,8 @@ io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # 
 program=(libcli11-dev nlohmann-json3-dev)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib)
-tests=(libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev doxygen libfftw3-dev pkg-config
-  mpich libmpich-dev
+mpi=(mpich libmpich-dev)
+tests=("${mpi[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev doxygen libfftw3-dev pkg-config
   python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing

@@ -26,8 +26,8 @@ void run(MPI_Comm comm) {
   Kokkos::DefaultExecutionSpace const exec;
   auto const lattice = cayspin::Lattice::cubic(24, 16, 32);
 
-  // Four stages a step: four ghosts.
-  cayspin::mpi::Domain const domain(comm, lattice, 4);
+  using Stepper = cayspin::Rkmk4<cayspin::SpinField<double>>;
+  cayspin::mpi::Domain const domain(comm, lattice, Stepper::ghosts);
   auto const& local = domain.local();
   Kokkos::View<double* [3]> const mine("mine", local.sites());  // no ghosts in it
   std::int64_t const first = domain.begin()[2] + local.ghosts[2].before;
@@ -39,7 +39,7 @@ void run(MPI_Comm comm) {
   cayspin::EffectiveField const field(cayspin::Exchange(local, 1),
                                       cayspin::UniaxialAnisotropy(0.2, {0, 0, 1}));
   cayspin::LandauLifshitz const generator(field, 0.1);
-  cayspin::Rkmk4 stepper(spins);
+  Stepper stepper(spins);
   cayspin::integrate(exec, stepper, generator, spins, cayspin::Times{0, 0.1, 200});
   cayspin::copy(exec, spins, mine);
 

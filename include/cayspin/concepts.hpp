@@ -130,6 +130,7 @@ concept Generator =
 /// | `static int evaluations` | of the generator in each step | evaluations_done() is required |
 /// | `int64 evaluations_done()` | of the generator so far | evaluations is required |
 /// | `static int order` | of the error | not known |
+/// | `static int ghosts` | a step needs at each inner end of a part of a lattice | no parts |
 /// | `reset()` | forgets the steps so far | there is nothing to forget |
 /// | `check_spins(spins)` | throws for spins of another lattice | step does |
 /// | `bool takes_batches(exec, generator, spins)` | may batch be called? | false |

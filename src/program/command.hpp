@@ -3,6 +3,7 @@
 
 #include "progress.hpp"
 #include "simulation/plan.hpp"
+#include "simulation/ranks.hpp"
 
 #include <cayspin/io/ovf.hpp>
 
@@ -24,7 +25,7 @@ struct SceneOptions {
 struct RunOptions : SceneOptions {
   Precision precision = Precision::double_precision;
   std::optional<std::filesystem::path> output, restart;
-  std::optional<std::string> space;
+  std::optional<std::string> space, ranks;  // ranks: "y,z"
   std::optional<int> threads, device;
   bool overwrite = false;
   Listener listener = Listener::user;
@@ -85,7 +86,7 @@ std::string describe_units(io::Units const& units);
 std::string describe_method(io::Scene const& scene);
 
 /// The commands of the program. Each returns its exit status, or throws.
-int run(RunOptions const& options);
+int run(RunOptions const& options, Ranks& ranks);
 int sweep_over(SweepOptions const& options);
 int watch(WatchOptions const& options);
 int check(CheckOptions const& options);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "launch/launched_ranks.hpp"
 #include "simulation/command_line.hpp"
 
 #include <cayspin/version.hpp>
@@ -64,6 +65,10 @@ int perform(int argc, char** argv) {
   add_space_options(*run_command, run_options);
   run_command->add_option("--device", run_options.device, "Number of the device")
       ->check(CLI::Range(0, 65536));
+  run_command
+      ->add_option("--ranks", run_options.ranks,
+                   "Parts of the lattice along y and z, on ranks of MPI")
+      ->type_name("Y,Z");
   run_command->add_option("--restart", run_options.restart,
                           "Go on from the last frame of a trajectory file");
   run_command->add_flag_callback(
@@ -157,11 +162,18 @@ int perform(int argc, char** argv) {
                      "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's");
   app.add_subcommand("extremes", "Behaviour of every method at extreme inputs");
 
-  require_command(app, argc, argv);
+  auto const ranks = launched_ranks();
+  ranks->together([&] {
+    require_command(app, argc, argv);
+    bool const is_run = argc > 1 && std::string_view(argv[1]) == "run";
+    if (ranks->many() && !is_run && ranks->is_first())
+      throw UsageError(fmt::format("{} runs on one rank; accepted: run", argc > 1 ? argv[1] : ""));
+  });
+  start_others_alone();
   for (std::string const command : {"reproduce", "extremes"})
     if (argc > 1 && argv[1] == command) become_sibling("cayspin-" + command, argv);
-  if (auto const status = parse(app, argc, argv)) return *status;
-  if (*run_command) return run(run_options);
+  if (auto const status = ranks->together([&] { return parse(app, argc, argv); })) return *status;
+  if (*run_command) return run(run_options, *ranks);
   if (*sweep_command) return sweep_over(sweep_options);
   if (*watch_command) return watch(watch_options);
   if (*check_command) return check(check_options);

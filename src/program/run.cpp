@@ -2,6 +2,8 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "files/file_beside.hpp"
+#include "simulation/checkpoint_of_ranks.hpp"
+#include "simulation/command_line.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/restart.hpp"
@@ -17,7 +19,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace cayspin::program {
 namespace {
@@ -29,12 +35,21 @@ std::filesystem::path output_file(io::Scene const& scene, RunOptions const& opti
                         "no file to write to; accepted: this key, or --output FILE.h5");
 }
 
-void warn_above_stable_dt(io::Scene const& scene, Plan const& plan) {
+void warn_above_stable_dt(io::Scene const& scene, Plan const& plan, Ranks const& ranks) {
   auto const reason = dt_warning(plan, scene.units);
   if (!reason) return;
   auto const error = io::scene_error(scene, "integrator.dt", *reason);
   if (scene.integrator.refuse_unstable) throw error;
-  fmt::print(stderr, "warning: {}\n", error.what());
+  if (ranks.is_first()) fmt::print(stderr, "warning: {}\n", error.what());
+}
+
+void require_one_rank(io::Scene const& scene, Plan const& plan, Ranks const& ranks) {
+  if (!ranks.many()) return;
+  std::string const accepted = "runs on one rank alone; accepted: one rank, or another ";
+  if (plan.variant.ghosts == 0)
+    throw io::scene_error(scene, "integrator.method", accepted + "method");
+  if (scene.field.slab_demag && scene.field.slab_demag->average_layer)
+    throw io::scene_error(scene, "field.slab_demag.average", accepted + "field");
 }
 
 io::CheckpointHeader checkpoint_header(io::Scene const& typed, io::Scene const& scene,
@@ -67,14 +82,21 @@ Restart restart_of(LeftBehind left, io::Scene const& scene, Plan const& plan,
   }
 }
 
+std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
+                             Restart const* restart) {
+  return restart ? part_of(lattice, 3, restart->spins())
+                 : io::initial_spins(scene, own_sites(lattice));
+}
+
 template <class Real, class Space>
 int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
-           RunOptions const& options, Restart const* restart) {
+           RunOptions const& options, Restart const* restart, Ranks& ranks) {
   Kokkos::Timer const clock;
   auto times = plan.times;
   if (restart) times.first = restart->step();
-  Simulation<Real, Space> simulation(scene, plan.lattice, times,
-                                     restart ? restart->spins() : io::initial_spins(scene));
+  Simulation<Real, Space> simulation(scene, plan.lattice, times, ranks.together([&] {
+    return start_of(scene, plan.lattice, restart);
+  }));
   auto const method = plan.variant.open(&simulation, plan.options);
 
   auto const path = output_file(scene, options);
@@ -92,7 +114,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         std::filesystem::remove(checkpoint_path);
         return file;
       },
-      options.listener);
+      ranks.is_first() ? options.listener : Listener::nobody, ranks);
   std::optional<ControlledWatch<Real, Space>> controlled;
   if (scene.integrator.energy_control)
     controlled.emplace(watch, simulation.generator, simulation.spins);
@@ -101,14 +123,21 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
                    controlled ? &controlled->control() : nullptr);
   };
   auto const store_checkpoint = [&](Step const& step) {
-    io::CheckpointWriter checkpoint(checkpoint_path,
-                                    checkpoint_header(typed, scene, options.precision, step));
+    std::optional<io::CheckpointWriter> file;
+    ranks.together([&] {
+      if (ranks.is_first())
+        file.emplace(checkpoint_path, checkpoint_header(typed, scene, options.precision, step));
+    });
+    CheckpointFromRanks checkpoint(ranks, plan.lattice, file ? &*file : nullptr);
     bool continues = true;
     exchange(checkpoint, continues);
     checkpoint.commit();
   };
   watch.store_checkpoints_by(store_checkpoint);
-  if (restart && restart->memory()) exchange(*restart->memory(), simulation.times.continues);
+  if (restart && restart->memory()) {
+    CheckpointForRank part(plan.lattice, *restart->memory());
+    exchange(part, simulation.times.continues);
+  }
 
   auto const kept = [&] {
     if (!watch.file()) return std::string("no frame was written");
@@ -117,68 +146,128 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
                        watch.file()->frames() - 1, path.string(), frame.step,
                        time_text(scene.units, frame.time));
   };
-  auto const failed = [&](std::string const& why) {
-    return NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), why, kept()));
+  auto const fail = [&](std::string const& why) {
+    ranks.together([&] {
+      if (ranks.is_first())
+        throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), why, kept()));
+    });
   };
   auto [summary, failure] =
       controlled ? simulation.advance(*method, *controlled) : simulation.advance(*method, watch);
   // The library's own messages, which know nothing of the scene's units.
   if (failure && scene.units.si)
     *failure += fmt::format(" (times in units of {:.6g} s)", scene.units.time);
-  if (failure) throw failed(*failure);
+  if (failure) fail(*failure);
   if (controlled) summary.evaluations += controlled->evaluations();
   auto const frames = watch.file() ? watch.file()->frames() : 0;
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
   bool const whole = !watch.failure() && !watch.interrupted();
-  if (watch.file()) whole ? watch.file()->finish(cost) : watch.file()->close(cost);
-  if (watch.file() && !watch.failure() && !scene.output.checkpoint_every.is_never()) {
+  ranks.together([&] {
+    if (watch.file()) whole ? watch.file()->finish(cost) : watch.file()->close(cost);
+  });
+  bool const has_file = ranks.any({watch.file().has_value(), false})[0];
+  if (has_file && !watch.failure() && !scene.output.checkpoint_every.is_never()) {
     // Of a run without memory the last frame says it all.
     auto const& end = watch.last_frame();
     if (remembers(scene, plan))
       store_checkpoint({end.step, end.time, plan.times.dt, true});
-    else
+    else if (ranks.is_first())
       std::filesystem::remove(checkpoint_path);
   }
-  watch.progress().close(summary, frames, path.string());
-  if (watch.failure()) throw failed(*watch.failure());
+  if (ranks.is_first()) watch.progress().close(summary, frames, path.string());
+  if (watch.failure()) fail(*watch.failure());
   if (!watch.interrupted()) return Status::done;
-  fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
-             summary.steps, plan.times.steps, kept());
+  if (ranks.is_first())
+    fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
+               summary.steps, plan.times.steps, kept());
   return Status::interrupted;
 }
 
-}  // namespace
+// The scene as it was typed, which the ranks must agree on, and all that can be refused by it
+// alone.
+io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
+  auto typed = ranks.together([&] {
+    auto scene = io::read_scene(options.scene, options.overrides);
+    output_file(scene, options);
+    io::check_files(scene);
+    return scene;
+  });
+  bool const alike = ranks.same(typed.text + std::string(to_string(options.precision)) +
+                                options.restart.value_or("").string());
+  ranks.together([&] {
+    if (!alike && ranks.is_first())
+      throw UsageError("the ranks were given different scenes or options; accepted: the same");
+  });
+  return typed;
+}
 
-int run(RunOptions const& options) {
-  auto const typed = io::read_scene(options.scene, options.overrides);
-  output_file(typed, options);
-  io::check_files(typed);
-  auto const space = chosen_space(options.space);
-  KokkosSession const kokkos(space, options.threads, options.device);
-  bool const silent = options.listener != Listener::user;
-  std::optional<LeftBehind> left;
-  if (options.restart) left.emplace(*options.restart);
+// The method "auto" is chosen by the first rank, for all.
+io::Scene with_method(io::Scene const& typed, LeftBehind const* left, RunOptions const& options,
+                      std::string const& space, Ranks& ranks) {
   auto const as_before =
       left ? trade::with_method_of(typed, left->scene_text(), left->resolved_scene())
            : std::nullopt;
-  auto const scene = as_before ? *as_before
-                               : trade::with_method(typed, space, options.precision,
-                                                    trade::TrialProgress(silent, true).on_try());
-  if (typed.integrator.method->automatic && options.listener == Listener::user)
+  if (as_before) return *as_before;
+  if (!typed.integrator.method->automatic) return typed;
+  bool const silent = options.listener != Listener::user;
+  std::optional<io::Scene> scene;
+  ranks.together([&] {
+    if (ranks.is_first())
+      scene = trade::with_method(typed, space, options.precision,
+                                 trade::TrialProgress(silent, true).on_try());
+  });
+  std::string text = scene ? scene->text : std::string();
+  ranks.tell(text);
+  return scene ? *scene : io::parse_scene(text, typed.path);
+}
+
+std::optional<int> threads_of_rank(RunOptions const& options, Ranks const& ranks) {
+  if (options.threads || !ranks.many() || std::getenv("OMP_NUM_THREADS")) return options.threads;
+  return std::max(1, expected_threads() / ranks.on_this_machine());
+}
+
+int run_on_ranks(RunOptions const& options, Ranks& ranks) {
+  auto const typed = typed_scene(options, ranks);
+  auto const space = ranks.together([&] { return chosen_space(options.space); });
+  KokkosSession const kokkos(space, threads_of_rank(options, ranks), options.device);
+  auto left = ranks.together(
+      [&] { return options.restart ? std::make_unique<LeftBehind>(*options.restart) : nullptr; });
+  auto const scene = with_method(typed, left.get(), options, space, ranks);
+  if (typed.integrator.method->automatic && options.listener == Listener::user && ranks.is_first())
     fmt::print("method auto: {}, {}\n", describe_method(scene),
                scene.integrator.tolerance
                    ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)
                    : "dt " + time_text(scene.units, scene.integrator.dt));
-  auto const plan = make_plan(scene, options.precision);
-  require_memory(scene, plan);
-  std::optional<Restart> restart;
-  if (left) restart.emplace(restart_of(std::move(*left), scene, plan, options));
-  Restart const* const from = restart ? &*restart : nullptr;
-  warn_above_stable_dt(scene, plan);
+  auto plan = ranks.together([&] { return make_plan(scene, options.precision); });
+  auto const parts = ranks.together([&] {
+    require_one_rank(scene, plan, ranks);
+    return ranks.division(plan.lattice, plan.variant.ghosts, options.ranks);
+  });
+  auto const part = ranks.divide(plan.lattice, plan.variant.ghosts, parts);
+  if (part.none) return Status::done;
+  keep_part(plan, scene, options.precision, part.local);
+  auto const restart = ranks.together([&]() -> std::unique_ptr<Restart> {
+    require_memory(scene, plan, ranks.on_this_machine());
+    warn_above_stable_dt(scene, plan, ranks);
+    if (!left) return nullptr;
+    return std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
+  });
   catch_signals();
   return in_space(space, options.precision, [&]<class Real, class Space>() {
-    return run_on<Real, Space>(typed, scene, plan, options, from);
+    return run_on<Real, Space>(typed, scene, plan, options, restart.get(), ranks);
   });
+}
+
+}  // namespace
+
+int run(RunOptions const& options, Ranks& ranks) {
+  try {
+    return run_on_ranks(options, ranks);
+  } catch (...) {
+    // The others would wait for this one.
+    if (ranks.many() && !ranks.agreed()) ranks.leave_by(report(std::current_exception()));
+    throw;
+  }
 }
 
 }  // namespace cayspin::program

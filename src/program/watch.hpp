@@ -4,6 +4,7 @@
 #include "progress.hpp"
 #include "simulation/checkpoint_schedule.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/ranks.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/simulate.hpp"
 
@@ -23,7 +24,8 @@ namespace cayspin::program {
 using namespace simulation;
 
 /// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
-/// ends before the end, the progress.
+/// ends before the end, the progress. Of several ranks all look at the same steps, and the first
+/// has the file.
 template <class Real, class Space>
 class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -40,8 +42,9 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
   /// `first`: the step after which the run begins.
   Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
-        std::int64_t first, OpenFile open_file, Listener listener)
-      : first_(first),
+        std::int64_t first, OpenFile open_file, Listener listener, Ranks& ranks)
+      : ranks_(ranks),
+        first_(first),
         generator_(generator),
         output_(scene.output),
         units_(scene.units),
@@ -49,8 +52,10 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
         open_file_(std::move(open_file)),
         checkpoints_(scene.output.checkpoint_every, first),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
-        progress_(first, scene.integrator.steps, spins.sites(), listener),
-        frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())) {
+        progress_(first, scene.integrator.steps, io::sites(scene), listener),
+        frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())),
+        part_("cayspin::part_of_frame",
+              ranks.many() ? static_cast<std::size_t>(spins.sites()) : 0) {
     if (until_torque_) torque_.emplace(generator.precession_alone());
   }
 
@@ -58,15 +63,14 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   void store_checkpoints_by(StoreCheckpoint store) { store_checkpoint_ = std::move(store); }
 
   bool due(Step const& step) const override {
-    return guard_.due(step) || frame_due(step) || scalars_due(step) || progress_.due(step) ||
-           checkpoints_.due(step) || interrupt_requested();
+    return due_on_all(step) || (!ranks_.many() && (progress_.due(step) || checkpoints_.due(step) ||
+                                                   interrupt_requested()));
   }
 
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
     if (progress_.due(step)) progress_.show(step);
-    bool const interrupt = interrupt_requested();
+    auto const [interrupt, stored] = ranks_.any({interrupt_requested(), checkpoints_.due(step)});
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
-    bool const stored = checkpoints_.due(step);
     if (!recorded && !stored && !guard_.due(step)) return Next::proceed;
 
     Sample const now = torque_ ? sample(exec, generator_, step, spins, *torque_)
@@ -81,7 +85,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
       write(exec, now, spins, frame_due(step) || ends, scalars_due(step) || ends);
     if (ends) return Next::stop;
     if (stored) {
-      file_->frames();  // HDF5 is the writer's until it has written
+      // HDF5 is the writer's until it has written.
+      ranks_.together([&] { file_ ? file_->frames() : 0; });
       store_checkpoint_(step);
       checkpoints_.wait();
     }
@@ -102,14 +107,23 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   }
   bool frame_due(Step const& step) const { return at(step, output_.every); }
   bool scalars_due(Step const& step) const { return at(step, output_.scalars_every); }
+  bool due_on_all(Step const& step) const {
+    return guard_.due(step) || frame_due(step) || scalars_due(step) ||
+           (checkpoints_.is_by_steps() && checkpoints_.due(step));
+  }
 
   void write(Space const& exec, Sample const& now, Spins const& spins, bool frame, bool scalars) {
-    if (!file_) file_.emplace(open_file_());
     auto const scalar_values = as_scalars(now, units_);
     double const time = now.time * units_.time;
-    if (scalars) file_->write_scalars(now.step, time, scalar_values);
+    Real* const whole_frame = ranks_.together([&]() -> Real* {
+      if (!ranks_.is_first()) return nullptr;
+      if (!file_) file_.emplace(open_file_());
+      if (scalars) file_->write_scalars(now.step, time, scalar_values);
+      return frame ? file_->template frame<Real>() : nullptr;
+    });
     if (!frame) return;
-    HostFrame const host(file_->template frame<Real>(), static_cast<std::size_t>(spins.sites()));
+    HostFrame const host(ranks_.many() ? part_.data() : whole_frame,
+                         static_cast<std::size_t>(spins.sites()));
     if constexpr (on_host) {
       copy(exec, spins, host);
     } else {
@@ -117,10 +131,14 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
       Kokkos::deep_copy(exec, host, frame_);
     }
     exec.fence("cayspin::Watch: frame copied");
-    file_->write_frame(now.step, time, scalar_values);
+    if (ranks_.many()) ranks_.gather(spins.lattice(), 3 * sizeof(Real), host.data(), whole_frame);
+    ranks_.together([&] {
+      if (file_) file_->write_frame(now.step, time, scalar_values);
+    });
     last_frame_ = now;
   }
 
+  Ranks& ranks_;
   std::int64_t first_;
   SceneGenerator<Spins> generator_;
   std::optional<SceneGenerator<Spins>> torque_;
@@ -134,6 +152,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   Guard guard_;
   Progress progress_;
   Frame frame_;  // on its way from a device
+  Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace> part_;  // on its way to the first
   Sample last_frame_;
   std::optional<std::string> failure_;
   bool interrupted_ = false, at_rest_ = false;

@@ -16,10 +16,10 @@ namespace {
 
 using Site = std::array<std::int64_t, 3>;
 
-Site site_at(Lattice const& lattice, std::size_t number) {
+Site site_at(SiteBox const& box, std::size_t number) {
   auto const n = static_cast<std::int64_t>(number);
-  auto const& shape = lattice.shape;
-  return {n % shape[0], n / shape[0] % shape[1], n / shape[0] / shape[1]};
+  auto const& [nx, ny, nz] = box.extent;
+  return {box.begin[0] + n % nx, box.begin[1] + n / nx % ny, box.begin[2] + n / nx / ny};
 }
 
 // Value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
@@ -34,6 +34,7 @@ double random_number(std::uint64_t start, std::uint64_t counter) {
 
 struct Start {
   Scene const& scene;
+  SiteBox const& box;
   std::vector<double>& spins;
 
   std::size_t size() const { return spins.size() / 3; }
@@ -47,7 +48,7 @@ struct Start {
       set(site, *unit);
       return;
     }
-    auto const [i, j, k] = site_at(scene.lattice, site);
+    auto const [i, j, k] = site_at(box, site);
     throw scene_error(
         scene, key,
         fmt::format("the spin of site ({}, {}, {}) is ({}, {}, {}); accepted: a finite vector that "
@@ -66,7 +67,7 @@ struct Start {
     }
     auto const& shape = scene.lattice.shape;
     for (std::size_t site = 0; site < size(); ++site) {
-      auto const index = site_at(scene.lattice, site);
+      auto const index = site_at(box, site);
       std::array<double, 6> variables;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         auto const position = static_cast<double>(index[axis]);
@@ -86,9 +87,12 @@ struct Start {
   // Uniform on the sphere: z and the azimuth are uniform (Archimedes).
   void operator()(RandomStart const& random) const {
     auto const seed = static_cast<std::uint64_t>(random.seed);
+    auto const& shape = scene.lattice.shape;
     for (std::size_t site = 0; site < size(); ++site) {
-      double const z = 2 * random_number(seed, 2 * site) - 1;
-      double const azimuth = 2 * std::numbers::pi * random_number(seed, 2 * site + 1);
+      auto const [i, j, k] = site_at(box, site);
+      auto const counter = static_cast<std::uint64_t>((k * shape[1] + j) * shape[0] + i);
+      double const z = 2 * random_number(seed, 2 * counter) - 1;
+      double const azimuth = 2 * std::numbers::pi * random_number(seed, 2 * counter + 1);
       double const radius = std::sqrt((1 - z) * (1 + z));
       set_normalised(site, {radius * std::cos(azimuth), radius * std::sin(azimuth), z},
                      "initial.random");
@@ -106,14 +110,17 @@ struct Start {
   }
 
   void operator()(GivenStart const& start) const {
-    if (start.spins->size() != spins.size())
+    auto const numbers = 3 * static_cast<std::size_t>(sites(scene));
+    if (start.spins->size() != numbers)
       throw scene_error(scene, "initial.given",
                         fmt::format("{} numbers were given; accepted: {}, three for each site",
-                                    start.spins->size(), spins.size()));
+                                    start.spins->size(), numbers));
     set_all(*start.spins, "initial.given");
   }
 
   void set_all(std::vector<double> const& values, std::string_view key) const {
+    if (spins.size() != values.size())
+      return set_all(numbers_in(box, scene.lattice.shape, 3, values), key);
     for (std::size_t site = 0; site < size(); ++site) {
       auto const* const m = values.data() + 3 * site;
       set_normalised(site, {m[0], m[1], m[2]}, key);
@@ -124,8 +131,13 @@ struct Start {
 }  // namespace
 
 std::vector<double> initial_spins(Scene const& scene) {
-  std::vector<double> spins(3 * static_cast<std::size_t>(sites(scene)));
-  std::visit(Start{scene, spins}, scene.initial);
+  return initial_spins(scene, {{0, 0, 0}, scene.lattice.shape});
+}
+
+std::vector<double> initial_spins(Scene const& scene, SiteBox const& box) {
+  auto const& [nx, ny, nz] = box.extent;
+  std::vector<double> spins(3 * static_cast<std::size_t>(nx * ny * nz));
+  std::visit(Start{scene, box, spins}, scene.initial);
   return spins;
 }
 

@@ -24,6 +24,8 @@ class CheckpointSchedule {
     if (step.number == first_ || step.last) return false;
     return period_.steps > 0 ? step.number % period_.steps == 0 : elapsed_ && (*elapsed_)();
   }
+  /// Do others know at which steps?
+  bool is_by_steps() const { return period_.steps > 0; }
   /// To be called when one is stored.
   void wait() {
     if (period_.seconds == 0) return;

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <exception>
+#include <new>
 #include <optional>
 
 // What the mains of the programs share.
@@ -24,24 +26,32 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   return std::nullopt;
 }
 
-/// The exit status of perform(argc, argv). What it throws becomes one line on standard error:
-/// messages about a file begin with its name, those about the command line with the program's.
-inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
-  auto const report = [](std::string const& message, int status) {
+/// Says what went wrong in one line on standard error: messages about a file begin with its name,
+/// those about the command line with the program's. Returns the exit status.
+inline int report(std::exception_ptr const& thrown) {
+  auto const say = [](std::string const& message) {
     std::fflush(stdout);
     fmt::print(stderr, "{}\n", one_line(message));
-    return status;
   };
   try {
-    return perform(argc, argv);
-  } catch (NumbersFailed const& error) {
-    return report(error.what(), Status::numbers_failed);
+    std::rethrow_exception(thrown);
+  } catch (OtherRankFailed const&) {  // and says so itself
   } catch (UsageError const& error) {
-    return report(fmt::format("cayspin: {}", error.what()), Status::wrong_usage);
+    say(fmt::format("cayspin: {}", error.what()));
   } catch (std::bad_alloc const&) {
-    return report("cayspin: not enough memory", Status::wrong_usage);
+    say("cayspin: not enough memory");
   } catch (std::exception const& error) {
-    return report(error.what(), Status::wrong_usage);
+    say(error.what());
+  }
+  return status_of(thrown);
+}
+
+/// The exit status of perform(argc, argv), which may throw.
+inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
+  try {
+    return perform(argc, argv);
+  } catch (...) {
+    return report(std::current_exception());
   }
 }
 

@@ -201,6 +201,7 @@ class Compiled {
             .order = Stepper<HostSpins, Cayley>::order,
             .evaluations = evaluations(),
             .remembers = remembers_steps<Stepper<HostSpins, Cayley>>,
+            .ghosts = cayspin::detail::ghosts_of<Stepper<HostSpins, Cayley>>,
             .work_fields = work_fields(),
             .work_bytes = work_bytes,
             .stable_step = stable_step,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <exception>
 #include <stdexcept>
 
 namespace cayspin::simulation {
@@ -19,5 +20,25 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Thrown on the ranks that wait for one that failed, which reports it. `status` is its own.
+struct OtherRankFailed : std::runtime_error {
+  explicit OtherRankFailed(int status_of_it)
+      : std::runtime_error("another rank failed"), status(status_of_it) {}
+  int status;
+};
+
+/// The exit status that belongs to what is being handled.
+inline int status_of(std::exception_ptr const& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (NumbersFailed const&) {
+    return Status::numbers_failed;
+  } catch (OtherRankFailed const& other) {
+    return other.status;
+  } catch (...) {
+    return Status::wrong_usage;
+  }
+}
 
 }  // namespace cayspin::simulation

@@ -3,6 +3,7 @@
 
 #include "applied_field.hpp"
 #include "failure.hpp"
+#include "ranks.hpp"
 #include "text.hpp"
 
 #include <cayspin/detail/row_layout.hpp>
@@ -99,20 +100,27 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     if (slab->on_host) memory.field += memory.spins;
     if (slab->average_layer) memory.field += 8 * std::ranges::max(lattice.shape);
   }
-  std::int64_t const numbers = 3 * lattice.sites();
+  // A file is read whole, and written by the first of the ranks.
+  std::int64_t const numbers = 3 * lattice.sites(), all_sites = whole(lattice).sites();
+  bool const is_part = lattice.part != nullptr;
+  bool const writes = !is_part || own_sites(lattice).begin == std::array<std::int64_t, 3>{};
   std::int64_t start = 8 * numbers;
-  if (std::holds_alternative<io::FileStart>(scene.initial)) start *= 2;
+  if (std::holds_alternative<io::FileStart>(scene.initial)) start += 8 * 3 * all_sites;
   if (std::holds_alternative<io::InertiaFile>(scene.system.inertia) &&
       scene.system.kind == io::SystemKind::rigid_body) {
     memory.field += field_bytes<Real>(lattice, 6);
-    start += 8 * (9 + 6 + 6) * lattice.sites();
+    start += 8 * (9 + 6 + 6) * all_sites;
   }
   // Two frames on their way, and the copies of one that a compressing filter reads and writes.
   bool const copies = scene.output.compression > 0 || scene.output.chunk > 0;
-  std::int64_t const frames = (copies ? 4 : 2) * static_cast<std::int64_t>(sizeof(Real)) * numbers;
+  std::int64_t const frame = 3 * static_cast<std::int64_t>(sizeof(Real));
+  std::int64_t const frames =
+      (writes ? (copies ? 4 : 2) * frame * all_sites : 0) + (is_part ? frame * lattice.sites() : 0);
   // A field on its way into a checkpoint, in double.
   bool const stores = !scene.output.checkpoint_every.is_never();
-  std::int64_t const checkpoint = stores ? (sizeof(Real) == sizeof(double) ? 8 : 12) * numbers : 0;
+  std::int64_t const of_number = sizeof(Real) == sizeof(double) ? 8 : 12;
+  std::int64_t const checkpoint =
+      stores ? of_number * numbers + (writes && is_part ? 8 * 3 * all_sites : 0) : 0;
   memory.files = std::max(start - memory.work, frames + checkpoint);
   return memory;
 }
@@ -181,10 +189,17 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
   return std::nullopt;
 }
 
+void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local) {
+  plan.lattice = local;
+  plan.memory = precision == Precision::double_precision
+                    ? memory_of<double>(scene, local, plan.variant, precision)
+                    : memory_of<float>(scene, local, plan.variant, precision);
+}
+
 bool fits(Plan const& plan) { return plan.memory.total() <= available_memory(); }
 
-void require_memory(io::Scene const& scene, Plan const& plan) {
-  std::int64_t const available = available_memory();
+void require_memory(io::Scene const& scene, Plan const& plan, int ranks) {
+  std::int64_t const available = available_memory() / ranks;
   if (plan.memory.total() > available)
     throw io::scene_error(scene, "lattice.shape",
                           fmt::format("the run needs {} of memory, {} are available",

@@ -50,7 +50,11 @@ std::int64_t available_memory();
 /// Is there memory for the run?
 bool fits(Plan const& plan);
 
-/// Throws io::SceneError when the run needs more memory than there is.
-void require_memory(io::Scene const& scene, Plan const& plan);
+/// Makes it the plan of one of several ranks: with its part of the lattice, and memory for that.
+void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local);
+
+/// Throws io::SceneError when the run needs more memory than there is for one of so many ranks on
+/// this machine.
+void require_memory(io::Scene const& scene, Plan const& plan, int ranks = 1);
 
 }  // namespace cayspin::simulation

@@ -44,6 +44,7 @@ struct Variant {
   int order = 0;
   std::optional<int> evaluations = {};  // of the generator, per step, where that is a fixed number
   bool remembers = false;               // steps before the present one
+  int ghosts = 0;                       // on a part of a lattice; 0: not on parts
   int work_fields = 0;                  // spin fields of work memory, where stages go one by one
 
   /// Bytes of work memory. by_time_alone: the scene's field needs no spins to be made ready.

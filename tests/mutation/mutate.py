@@ -24,7 +24,7 @@ from mutations import mutations_of
 from tests import EXCLUDED, SOURCES, tests_of
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD_LIMIT, TEST_LIMIT = 600, 60  # seconds
+BUILD_LIMIT, TEST_LIMIT = 600, 400  # seconds
 
 
 def run(command, limit, **options):

@@ -82,9 +82,11 @@ Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatmen
           1024.0 * static_cast<double>(usage.ru_maxrss)};
 }
 
-pid_t ProgramTest::begin(Arguments const& arguments) const {
+pid_t ProgramTest::begin(Arguments const& arguments, fs::path const& program) const {
+  Treatment treatment;
+  treatment.program = program;
   pid_t const child = ::fork();
-  if (child == 0) become_program(folder_, arguments, {}, "/dev/null", "/dev/null");
+  if (child == 0) become_program(folder_, arguments, treatment, "/dev/null", "/dev/null");
   return child;
 }
 

@@ -60,7 +60,8 @@ class ProgramTest : public testing::Test {
   Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
 
   /// Starts the program and does not wait; what it says is lost.
-  pid_t begin(Arguments const& arguments) const;
+  pid_t begin(Arguments const& arguments,
+              std::filesystem::path const& program = CAYSPIN_PROGRAM) const;
   /// Sends it a signal, where that is not 0, and waits. As Outcome::status.
   static int end(pid_t process, int signal);
 

@@ -43,16 +43,16 @@ CAYSPIN_DETAIL_NOINLINE inline void require_whole(char const* who, Lattice const
     throw std::invalid_argument(std::string(who) + ": does not work on a part of a lattice");
 }
 
-/// Throws std::invalid_argument for a part of a lattice with fewer ghosts than `reach`, or any part
-/// if that is 0.
+/// Throws std::invalid_argument for a part of a lattice with fewer ghosts than `needed`, or any
+/// part if that is 0.
 CAYSPIN_DETAIL_NOINLINE inline void require_ghosts(std::string const& who, Lattice const& lattice,
-                                                   int reach) {
-  if (lattice.part != nullptr && reach == 0)
+                                                   int needed) {
+  if (lattice.part != nullptr && needed == 0)
     throw std::invalid_argument(who + ": does not run on a part of a lattice");
   for (auto const& [before, after] : lattice.ghosts)
     for (std::int64_t const ghosts : {before, after})
-      if (ghosts != 0 && ghosts < reach)
-        throw std::invalid_argument(who + ": a step needs " + std::to_string(reach) +
+      if (ghosts != 0 && ghosts < needed)
+        throw std::invalid_argument(who + ": a step needs " + std::to_string(needed) +
                                     " ghosts at each inner end, and the part has " +
                                     std::to_string(ghosts));
 }

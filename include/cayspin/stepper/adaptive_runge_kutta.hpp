@@ -41,13 +41,14 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
  public:
   using typename Base::Real;
   static constexpr int order = Embedded::order;
+  static constexpr int ghosts = Tableau::stages;
   static constexpr int work_fields = stages + 4;  // and a number per site
 
   /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
   /// the precision.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
-      : Base(name, like.lattice(), stages),
+      : Base(name, like.lattice(), ghosts),
         isotropy_(isotropy),
         options_(options),
         controller_(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),

@@ -39,10 +39,11 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = 1;
   static constexpr int evaluations = 2;
+  static constexpr int ghosts = 2;
   static constexpr int work_fields = 2;  // 4 numbers per site: rates, and one number
 
   explicit LieEuler(Spins const& like, Isotropy isotropy = {}, Rotation = {})
-      : LieEuler::StepperBase("LieEuler", like.lattice(), 2),
+      : LieEuler::StepperBase("LieEuler", like.lattice(), ghosts),
         isotropy_(isotropy),
         rates_("LieEuler", like.lattice()) {}
 

@@ -76,10 +76,11 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   using typename Base::Real;
   static constexpr int order = Stepper::order;
   static constexpr int evaluations = Stepper::evaluations + 1;  // energies not counted
+  static constexpr int ghosts = detail::ghosts_of<Stepper>;
   static constexpr int work_fields = Stepper::work_fields + 2;
 
   EnergyProjection(Spins const& like, Stepper stepper, int corrections = 3)
-      : Base("EnergyProjection", like.lattice(), 1),
+      : Base("EnergyProjection", like.lattice(), ghosts),
         stepper_(std::move(stepper)),
         corrections_(corrections),
         begin_("EnergyProjection::begin", like.lattice()),

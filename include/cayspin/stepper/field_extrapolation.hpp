@@ -46,11 +46,12 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   static constexpr int order = Order;
   static constexpr int evaluations = 1;  // of the generator, per step after the first ones
   static constexpr std::size_t past_fields = Estimates ? Order : Order - 1;
+  static constexpr int ghosts = Start::ghosts;
   static constexpr int work_fields = static_cast<int>(past_fields) + 1 + Start::work_fields;
 
   explicit FieldExtrapolation(std::string const& name, Spins const& like,
                               FieldExtrapolationOptions const& options = {})
-      : Base(name, like.lattice(), Start::evaluations),
+      : Base(name, like.lattice(), ghosts),
         options_(options),
         start_(like),
         next_(name + "::next", like.lattice()),

@@ -34,10 +34,11 @@ class Implicit : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
   static constexpr bool is_corrected = std::is_same_v<Isotropy, isotropy::Analytic>;
+  static constexpr int ghosts = is_corrected ? 2 : 1;  // iterations exchange their own
   static constexpr int work_fields = is_corrected ? 4 : 2;
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
-      : StepperBase<Spins>(name, like.lattice(), is_corrected ? 2 : 1),
+      : StepperBase<Spins>(name, like.lattice(), ghosts),
         isotropy_(isotropy),
         options_(options),
         level_(name + "::level", like.lattice()),

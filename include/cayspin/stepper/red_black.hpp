@@ -34,11 +34,12 @@ class RedBlack : public detail::StepperBase<Spins> {
   /// Per step of a long run; a pass over one colour counts as half of one. Steps that are taken
   /// together share the passes at which they meet. evaluations_done() counts the passes made.
   static constexpr int evaluations = Order == 2 ? 1 : 5;
+  static constexpr int ghosts = 1;  // each pass exchanges its own
   static constexpr int work_fields = 0;
 
   /// Throws std::invalid_argument when a periodic axis has an odd number of sites above one.
   explicit RedBlack(Spins const& like)
-      : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice(), 1),
+      : RedBlack::StepperBase("RedBlack" + std::to_string(Order), like.lattice(), ghosts),
         pass_label_(this->label("::colour_pass")),
         batch_label_(this->label("::batch")) {
     Lattice const& lattice = whole(this->lattice_);

@@ -42,12 +42,13 @@ class RungeKutta : public detail::StepperBase<Spins> {
   using isotropy_type = Isotropy;
   static constexpr int order = Tableau::order;
   static constexpr int evaluations = Tableau::stages;  // of the generator, per step
+  static constexpr int ghosts = Tableau::stages;
   /// Fields of three numbers per site beside the spins, when stages go one by one.
   static constexpr int work_fields = detail::work_fields<Tableau, Update>();
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
-      : Base(name, like.lattice(), stages),
+      : Base(name, like.lattice(), ghosts),
         name_(name),
         isotropy_(isotropy),
         plan_(sweep_plan(like.layout(), DefaultExec().concurrency())) {

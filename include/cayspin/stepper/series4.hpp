@@ -28,10 +28,11 @@ class Series4 : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = 4;
   static constexpr int evaluations = 4;
+  static constexpr int ghosts = 4;
   static constexpr int work_fields = 7;  // 1 for rigid bodies: the others are made when first used
 
   explicit Series4(Spins const& like, Isotropy = {})
-      : Series4::StepperBase("Series4", like.lattice(), 4),
+      : Series4::StepperBase("Series4", like.lattice(), ghosts),
         next_("Series4::next", like.lattice()) {}
 
   std::size_t work_bytes() const {

@@ -16,6 +16,13 @@
 
 namespace cayspin::detail {
 
+/// What a stepper says of itself; 0 for one that does not run on parts of a lattice.
+template <class Stepper>
+inline constexpr int ghosts_of = 0;
+template <class Stepper>
+  requires requires { Stepper::ghosts; }
+inline constexpr int ghosts_of<Stepper> = Stepper::ghosts;
+
 /// Every stepper begins a call with this: static checks, the profiling region, run-time checks.
 template <class Spins>
 class StepperBase {
@@ -30,12 +37,12 @@ class StepperBase {
   }
 
  protected:
-  /// `reach`: so many ghosts a step needs at the ends of a part of a lattice; 0 for a stepper that
+  /// `ghosts`: so many a step needs at each inner end of a part of a lattice; 0 for a stepper that
   /// does not run on parts.
-  StepperBase(std::string const& name, Lattice const& lattice, int reach = 0)
+  StepperBase(std::string const& name, Lattice const& lattice, int ghosts = 0)
       : lattice_(lattice), region_("cayspin::" + name) {
     lattice.validate();
-    require_ghosts(region_, lattice, reach);
+    require_ghosts(region_, lattice, ghosts);
   }
 
   CAYSPIN_DETAIL_NOINLINE std::string label(char const* stage) const { return region_ + stage; }

@@ -22,11 +22,12 @@ class TwoPoint : public detail::StepperBase<Spins> {
   using typename Base::Real;
   static constexpr int order = Method::order;
   static constexpr int evaluations = Method::remembers ? 1 : 2;  // of the generator, per step
+  static constexpr int ghosts = 2;
   static constexpr int work_fields = 2;
 
   explicit TwoPoint(std::string const& name, Spins const& like, Method method,
                     Isotropy isotropy = {})
-      : Base(name, like.lattice(), 2),
+      : Base(name, like.lattice(), ghosts),
         method_(method),
         isotropy_(isotropy),
         next_(name + "::next", like.lattice()),

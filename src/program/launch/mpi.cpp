@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Of a program with MPI: the ranks that a launcher such as mpiexec starts.
+#include "launched_ranks.hpp"
+#include "simulation/one_rank.hpp"
+
+#include <cayspin/mpi/domain.hpp>
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace cayspin::program {
+
+using namespace simulation;
+
+namespace {
+
+/// A datatype of MPI, freed at the end of the scope.
+class Type {
+ public:
+  explicit Type(std::size_t bytes) {
+    MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &type_);
+    MPI_Type_commit(&type_);
+  }
+  /// Sites of a box in the whole lattice.
+  Type(io::SiteBox const& box, std::array<std::int64_t, 3> const& shape, Type const& site) {
+    std::array<int, 3> sizes{}, extents{}, begins{};  // the slowest axis first
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sizes[2 - axis] = static_cast<int>(shape[axis]);
+      begins[2 - axis] = static_cast<int>(box.begin[axis]);
+      extents[2 - axis] = static_cast<int>(box.extent[axis]);
+    }
+    MPI_Type_create_subarray(3, sizes.data(), extents.data(), begins.data(), MPI_ORDER_C,
+                             site.type_, &type_);
+    MPI_Type_commit(&type_);
+  }
+  Type(Type const&) = delete;
+  Type& operator=(Type const&) = delete;
+  ~Type() { MPI_Type_free(&type_); }
+
+  MPI_Datatype get() const { return type_; }
+
+ private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
+class MpiRanks final : public Ranks {
+ public:
+  MpiRanks() {
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &threads_);
+    use(MPI_COMM_WORLD);
+    MPI_Comm here = MPI_COMM_NULL;
+    MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    MPI_Comm_size(here, &on_this_machine_);
+    MPI_Comm_free(&here);
+  }
+  MpiRanks(MpiRanks const&) = delete;
+  MpiRanks& operator=(MpiRanks const&) = delete;
+  ~MpiRanks() override {
+    wait_for_all();
+    if (comm_ != MPI_COMM_WORLD) MPI_Comm_free(&comm_);
+    MPI_Finalize();
+  }
+
+  int count() const override { return count_; }
+  int rank() const override { return rank_; }
+  int on_this_machine() const override { return on_this_machine_; }
+
+  std::array<int, 2> division(cayspin::Lattice const& lattice, int ghosts,
+                              std::optional<std::string> const& asked) const override {
+    if (!asked) return most_parts(lattice, ghosts);
+    mpi::Division const chosen = read(*asked);
+    if (std::int64_t{chosen.y} * chosen.z > count_ || !mpi::can_divide(lattice, ghosts, chosen))
+      throw UsageError(fmt::format(
+          "--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or planes "
+          "each, for at most {} ranks",
+          *asked, ghosts, count_));
+    return {chosen.y, chosen.z};
+  }
+
+  PartOfRank divide(cayspin::Lattice const& lattice, int ghosts,
+                    std::array<int, 2> const& numbers) override {
+    int const parts = numbers[0] * numbers[1];
+    bool const has_part = rank_ < parts;
+    if (parts < count_) {
+      MPI_Comm those = MPI_COMM_NULL;
+      MPI_Comm_split(comm_, has_part ? 0 : 1, rank_, &those);
+      if (is_first())
+        fmt::print(stderr,
+                   "warning: {} of {} ranks have no part: one has at least {} rows or planes\n",
+                   count_ - parts, count_, ghosts);
+      use(those);
+    }
+    if (!has_part || parts == 1) return {.local = lattice, .none = !has_part};
+    auto const domain = std::make_shared<mpi::Domain>(
+        comm_, lattice, ghosts, mpi::Division{.y = numbers[0], .z = numbers[1]});
+    return {domain->local(), domain};
+  }
+
+  std::array<bool, 2> any(std::array<bool, 2> wanted) const override {
+    std::array<int, 2> both{wanted[0], wanted[1]};
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, both.data(), 2, MPI_INT, MPI_MAX, comm_, &request);
+    wait(request);
+    return {both[0] != 0, both[1] != 0};
+  }
+
+  void tell(std::string& text) const override {
+    auto size = static_cast<std::int64_t>(text.size());
+    MPI_Bcast(&size, 1, MPI_INT64_T, 0, comm_);
+    text.resize(static_cast<std::size_t>(size));
+    MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, comm_);
+  }
+
+  void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, void const* own,
+              void* whole_numbers) const override {
+    auto const box = own_sites(local);
+    std::vector<io::SiteBox> boxes(is_first() ? static_cast<std::size_t>(count_) : 0);
+    MPI_Gather(&box, sizeof box, MPI_BYTE, boxes.data(), sizeof box, MPI_BYTE, 0, comm_);
+    Type const site(bytes_of_site);
+    auto const sites = static_cast<int>(local.sites());
+    if (!is_first()) {
+      MPI_Send(own, sites, site.get(), 0, 0, comm_);
+      return;
+    }
+    MPI_Request to_itself = MPI_REQUEST_NULL;
+    MPI_Isend(own, sites, site.get(), 0, 0, comm_, &to_itself);
+    auto const& shape = whole(local).shape;
+    for (int from = 0; from < count_; ++from) {
+      Type const part(boxes[static_cast<std::size_t>(from)], shape, site);
+      MPI_Recv(whole_numbers, 1, part.get(), from, 0, comm_, MPI_STATUS_IGNORE);
+    }
+    MPI_Wait(&to_itself, MPI_STATUS_IGNORE);
+  }
+
+  void leave_by(int status) override {
+    if (many()) MPI_Abort(MPI_COMM_WORLD, status);
+  }
+
+ protected:
+  int lowest(int number) const override {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Iallreduce(MPI_IN_PLACE, &number, 1, MPI_INT, MPI_MIN, comm_, &request);
+    wait(request);
+    return number;
+  }
+
+ private:
+  void use(MPI_Comm comm) {
+    comm_ = comm;
+    MPI_Comm_size(comm, &count_);
+    MPI_Comm_rank(comm, &rank_);
+  }
+
+  std::array<int, 2> most_parts(cayspin::Lattice const& lattice, int ghosts) const {
+    for (int parts = count_; parts > 1; --parts) {
+      try {
+        auto const [y, z] = mpi::divide(lattice, ghosts, parts);
+        return {y, z};
+      } catch (std::invalid_argument const&) {  // not into so many
+      }
+    }
+    return {1, 1};
+  }
+
+  static mpi::Division read(std::string const& text) {
+    mpi::Division division{0, 0};
+    int end = 0;
+    if (std::sscanf(text.c_str(), "%d,%d%n", &division.y, &division.z, &end) != 2 ||
+        static_cast<std::size_t>(end) != text.size() || division.y < 1 || division.z < 1)
+      throw UsageError(fmt::format("--ranks {}: accepted: two numbers, as 1,4", text));
+    return division;
+  }
+
+  static void wait(MPI_Request& request) { mpi::detail::wait_for({&request, 1}); }
+
+  /// Without taking a processor from the ranks that still work.
+  static void wait_for_all() {
+    MPI_Request all = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &all);
+    for (int done = 0; !done;) {
+      MPI_Test(&all, &done, MPI_STATUS_IGNORE);
+      if (!done) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1;
+};
+
+/// Of the environment, from launchers.
+constexpr std::array launch_variables{"PMI_RANK", "PMI_SIZE", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE"};
+
+}  // namespace
+
+std::unique_ptr<Ranks> launched_ranks() {
+  if (std::ranges::any_of(launch_variables, [](char const* name) { return std::getenv(name); }))
+    return std::make_unique<MpiRanks>();
+  return std::make_unique<OneRank>();
+}
+
+void start_others_alone() {
+  for (char const* name : launch_variables) ::unsetenv(name);
+}
+
+}  // namespace cayspin::program

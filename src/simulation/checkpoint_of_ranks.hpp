@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "ranks.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
+
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cayspin::simulation {
+
+/// Takes a part from each rank, and writes them on the first into one checkpoint.
+class CheckpointFromRanks final : public Checkpoint {
+ public:
+  /// `writer`: null but on the first rank.
+  CheckpointFromRanks(Ranks& ranks, cayspin::Lattice const& local, io::CheckpointWriter* writer)
+      : ranks_(ranks), local_(local), writer_(writer) {}
+
+  bool restores() const override { return false; }
+  void number(std::string const& name, double& value) override {
+    on_first([&] { writer_->number(name, value); });
+  }
+  void field(std::string const& name, std::vector<double>& numbers) override {
+    if (!ranks_.many()) return writer_->field(name, numbers);
+    auto const of_site = static_cast<std::int64_t>(numbers.size()) / local_.sites();
+    std::vector<double> all;
+    if (writer_) all.resize(static_cast<std::size_t>(of_site * whole(local_).sites()));
+    ranks_.gather(local_, sizeof(double) * static_cast<std::size_t>(of_site), numbers.data(),
+                  all.data());
+    on_first([&] { writer_->field(name, all); });
+  }
+  /// Throws on all ranks what went wrong on the first.
+  void commit() {
+    on_first([&] { writer_->commit(); });
+    ranks_.together([&] {
+      if (error_) std::rethrow_exception(error_);
+    });
+  }
+
+ private:
+  // The first rank takes part in what follows also where it cannot write.
+  template <class Work>
+  void on_first(Work const& work) {
+    if (!writer_ || error_) return;
+    try {
+      work();
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  }
+
+  Ranks& ranks_;
+  cayspin::Lattice const& local_;
+  io::CheckpointWriter* writer_;
+  std::exception_ptr error_;
+};
+
+/// Gives each rank its part of what a checkpoint holds. Each reads the file.
+class CheckpointForRank final : public Checkpoint {
+ public:
+  CheckpointForRank(cayspin::Lattice const& local, Checkpoint& of_all)
+      : local_(local), of_all_(of_all) {}
+
+  bool restores() const override { return true; }
+  void number(std::string const& name, double& value) override { of_all_.number(name, value); }
+  void field(std::string const& name, std::vector<double>& numbers) override {
+    of_all_.field(name, numbers);
+    auto const of_site = static_cast<std::int64_t>(numbers.size()) / whole(local_).sites();
+    numbers = part_of(local_, of_site, std::move(numbers));
+  }
+
+ private:
+  cayspin::Lattice const& local_;
+  Checkpoint& of_all_;
+};
+
+}  // namespace cayspin::simulation

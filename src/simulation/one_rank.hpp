@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "ranks.hpp"
+
+#include <fmt/format.h>
+
+namespace cayspin::simulation {
+
+class OneRank final : public Ranks {
+ public:
+  int count() const override { return 1; }
+  int rank() const override { return 0; }
+  int on_this_machine() const override { return 1; }
+  std::array<int, 2> division(cayspin::Lattice const&, int,
+                              std::optional<std::string> const& asked) const override {
+    if (asked && *asked != "1,1")
+      throw UsageError(fmt::format("--ranks {}: the run has one rank; accepted: mpiexec -n N, and a "
+                                   "program built with MPI",
+                                   *asked));
+    return {1, 1};
+  }
+  PartOfRank divide(cayspin::Lattice const& lattice, int, std::array<int, 2> const&) override {
+    return {lattice};
+  }
+  std::array<bool, 2> any(std::array<bool, 2> wanted) const override { return wanted; }
+  void tell(std::string&) const override {}
+  void gather(cayspin::Lattice const&, std::size_t, void const*, void*) const override {}
+  void leave_by(int) override {}
+
+ protected:
+  int lowest(int number) const override { return number; }
+};
+
+}  // namespace cayspin::simulation
