@@ -15,9 +15,10 @@ class OneRank final : public Ranks {
   std::array<int, 2> division(cayspin::Lattice const&, int,
                               std::optional<std::string> const& asked) const override {
     if (asked && *asked != "1,1")
-      throw UsageError(fmt::format("--ranks {}: the run has one rank; accepted: mpiexec -n N, and a "
-                                   "program built with MPI",
-                                   *asked));
+      throw UsageError(
+          fmt::format("--ranks {}: the run has one rank; accepted: mpiexec -n N, and a "
+                      "program built with MPI",
+                      *asked));
     return {1, 1};
   }
   PartOfRank divide(cayspin::Lattice const& lattice, int, std::array<int, 2> const&) override {

@@ -6,7 +6,6 @@
 #include <cayspin/io/checkpoint.hpp>
 
 #include <fmt/format.h>
-
 #include <sys/types.h>
 
 #include <algorithm>
@@ -156,8 +155,7 @@ TEST_F(OnRanks, RunRandomScenesOfEveryMethod) {
   auto const variants = simulation::variants();
   for (int draw = 0; scenes < wanted && draw < 20 * wanted && !HasFailure(); ++draw) {
     RandomRun random(static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1)), draw);
-    auto const& variant =
-        variants[(7 * static_cast<std::size_t>(draw)) % variants.size()];
+    auto const& variant = variants[(7 * static_cast<std::size_t>(draw)) % variants.size()];
     auto const scene = write("scene.toml", random.scene(variant));
     std::string const precision = random.one_in(2) ? "single" : "double";
     int const ranks = 2 + static_cast<int>(random.below(3));
@@ -231,7 +229,8 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   refused({"--space", "nowhere"}, "--space nowhere");
   refused({"--no-such-option"}, "--no-such-option");
   expect_refused(start_on(2, run_of(scene, "no/such/folder/out.h5")), "no/such/folder");
-  expect_refused(start(run_of(scene, "out.h5", {"--ranks", "1,2"})), "--ranks 1,2: the run has one");
+  expect_refused(start(run_of(scene, "out.h5", {"--ranks", "1,2"})),
+                 "--ranks 1,2: the run has one");
   expect_refused(start_on(2, {"check", scene}), "check runs on one rank; accepted: run");
 
   auto const other = write("other.toml", film("[7, 9, 13]", "method = \"heun\""));
@@ -246,9 +245,8 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
 
 TEST_F(OnRanks, SayOnceThatNumbersFailed) {
   auto const scene = write("scene.toml", film("[7, 9, 13]", "method = \"euler\""));
-  auto const outcome =
-      start_on(3, run_of(scene, "out.h5",
-                         {"--set", "field.applied=[0,0,1]", "--set", "integrator.dt=0.3"}));
+  auto const outcome = start_on(
+      3, run_of(scene, "out.h5", {"--set", "field.applied=[0,0,1]", "--set", "integrator.dt=0.3"}));
   EXPECT_EQ(outcome.status, 3);
   auto const after_warning = outcome.errors.find('\n') + 1;
   EXPECT_TRUE(contains(outcome.errors.substr(0, after_warning), "warning: "));

@@ -86,6 +86,24 @@ TEST_F(Watching, SeesARunMoveOnAndEndEarly) {
   EXPECT_EQ(step(outcome.output), info.frame_steps.back());
 }
 
+TEST_F(Watching, SpeaksAtMostEveryFiveSecondsWithoutATerminal) {
+  auto const process = begin_run("1000000000");
+  ASSERT_TRUE(eventually([&] { return exists() && step(look()) > 0; }));
+  Treatment three_seconds;
+  three_seconds.interrupt_after = 3;
+  three_seconds.interrupt_when = in_folder("run.h5");
+  auto const outcome = start({"watch", "run.h5"}, three_seconds);
+  EXPECT_TRUE(is_one_line(outcome.output)) << outcome.output;
+  EXPECT_EQ(end(process, SIGINT), 130);
+}
+
+TEST_F(Watching, KnowsNoShareOfNoSteps) {
+  run(chain_scene(), {"--set", "integrator.steps=0"});
+  auto const outcome = start({"watch", "out.h5", "--once"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(contains(outcome.output, "step 0, t = 0"));
+}
+
 TEST_F(Watching, SaysThatARunWasKilled) {
   auto const process = begin_run("1000000000");
   ASSERT_TRUE(eventually([&] { return exists() && step(look()) > 0; }));

@@ -16,6 +16,7 @@
 #include <iostream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 namespace cayspin::io {
 namespace {
@@ -104,6 +105,15 @@ TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {
   EXPECT_FALSE(read_info(path).complete);
   EXPECT_EQ(read_info(path).frames, 20);
   EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 22);
+}
+
+// A reader sees samples before the next frame.
+TEST_F(TrajectoryTest, OutputHandsOverManySamplesWithoutAFrame) {
+  RunOutput output(folder_ / "a.h5", small_header(), {.table = true});
+  for (int sample = 0; sample < 1024; ++sample)
+    output.write_scalars(sample, sample, numbered_scalars(sample));
+  EXPECT_EQ(output.frames(), 0);  // all that was handed over has been written
+  EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 1 + 1024);
 }
 
 TEST_F(TrajectoryTest, OutputHasRoomForTwoFrames) {
@@ -279,6 +289,11 @@ TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
   for (auto const* const part : {"Dimensions=\"2 3 4\"/>", ">1 0.5 0.25</", ">2 1 0.5</",
                                  "Precision=\"4\"", "a&amp;b.h5:/spins", "<Time Value=\"0.2\"/>"})
     EXPECT_TRUE(contains(text, part));
+  // Where a frame begins in /spins, its strides and its extents.
+  std::string numbers;
+  std::istringstream last(text.substr(text.rfind("Format=\"XML\">") + 13));
+  for (std::string word; last >> word && word.front() != '<';) numbers += word + ' ';
+  EXPECT_EQ(numbers, "2 0 0 0 0 1 1 1 1 1 1 2 3 4 3 ");
 }
 
 }  // namespace

@@ -62,9 +62,15 @@ class Domain final : public Part {
   /// One message per face and direction: planes along z first, and then rows along y with the
   /// ghosts along z, which are theirs to pass on.
   void update_ghosts(std::span<FieldNumbers const> fields) const override {
-    for (std::size_t const axis : {2UL, 1UL})
-      if (neighbor_[axis][0] != MPI_PROC_NULL || neighbor_[axis][1] != MPI_PROC_NULL)
-        messages_[axis].exchange(comm_, fields, faces(axis), neighbor_[axis]);
+    for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
+      messages.exchange(comm_, fields, faces(axis), neighbor_[axis]);
+    });
+  }
+  /// The same as for fields on a device, also for others.
+  void update_ghosts_packed(std::span<FieldNumbers const> fields) const {
+    for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
+      messages.exchange_packed(comm_, fields, faces(axis), neighbor_[axis]);
+    });
   }
 
  private:
@@ -101,6 +107,14 @@ class Domain final : public Part {
     MPI_Iallreduce(MPI_IN_PLACE, words.data(), static_cast<int>(words.size()), MPI_INT64_T,
                    operation, comm_, request.data());
     detail::wait_for(request);
+  }
+
+  /// Of those that are divided.
+  template <class Work>
+  void for_each_axis(Work const& work) const {
+    for (std::size_t const axis : {2UL, 1UL})
+      if (neighbor_[axis][0] != MPI_PROC_NULL || neighbor_[axis][1] != MPI_PROC_NULL)
+        work(axis, messages_[axis]);
   }
 
   /// Part number `index` of `parts` along an axis.

@@ -13,6 +13,7 @@
 #include <limits>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 namespace cayspin::mpi::detail {
 
@@ -29,10 +30,10 @@ struct Faces {
   std::array<Box, 2> sent, received;
 };
 
-/// Copies a box of a field to consecutive numbers, or back. A task is a row of one component.
+/// Copies a box of a field on a device to consecutive numbers, or back. A task is a row of one
+/// component.
 template <class Word, bool Packs>
 struct CopyRows {
-  static constexpr bool packs = Packs;
   Word* field;
   Word* buffer;
   std::ptrdiff_t row, component;
@@ -55,13 +56,92 @@ struct CopyRows {
   }
 };
 
-/// The messages to and from the two neighbours along an axis, with their buffers.
+/// A box of several fields in host memory, as it lies there.
+class BoxInPlace {
+ public:
+  BoxInPlace(std::span<FieldNumbers const> fields, Box const& box) {
+    std::vector<MPI_Datatype> types;
+    std::vector<MPI_Aint> places;
+    std::vector<int> const counts(fields.size(), 1);
+    for (auto const& field : fields) {
+      types.push_back(type_of(field, box));
+      auto const site = (box.begin[2] * field.ny + box.begin[1]) * field.row + box.begin[0];
+      places.push_back(0);
+      MPI_Get_address(static_cast<std::byte*>(field.data) + bytes(field, site), &places.back());
+    }
+    MPI_Type_create_struct(static_cast<int>(fields.size()), counts.data(), places.data(),
+                           types.data(), &type_);
+    MPI_Type_commit(&type_);
+    for (MPI_Datatype& type : types) MPI_Type_free(&type);
+  }
+  BoxInPlace(BoxInPlace const&) = delete;
+  BoxInPlace& operator=(BoxInPlace const&) = delete;
+  ~BoxInPlace() { MPI_Type_free(&type_); }
+
+  MPI_Datatype type() const { return type_; }
+
+ private:
+  static MPI_Aint bytes(FieldNumbers const& field, std::int64_t numbers) {
+    return static_cast<MPI_Aint>(numbers) * static_cast<MPI_Aint>(field.number_bytes);
+  }
+
+  // Rows go with what pads them, so that they are one block; whole planes are one block, too.
+  static MPI_Datatype type_of(FieldNumbers const& field, Box const& box) {
+    bool const whole_planes = box.extent(1) == field.ny;
+    std::int64_t const rows = whole_planes ? box.rows() : box.extent(1);
+    MPI_Aint const size = bytes(field, (rows - 1) * field.row + box.extent(0));
+    if (size > std::numeric_limits<int>::max())
+      throw std::length_error("cayspin::mpi: a face of the part is 2 GiB or more; use more ranks");
+    MPI_Datatype block = MPI_DATATYPE_NULL, planes = block, components = block;
+    MPI_Type_contiguous(static_cast<int>(size), MPI_BYTE, &block);
+    MPI_Type_create_hvector(whole_planes ? 1 : static_cast<int>(box.extent(2)), 1,
+                            bytes(field, field.ny * field.row), block, &planes);
+    MPI_Type_create_hvector(field.components, 1, bytes(field, field.component), planes,
+                            &components);
+    MPI_Type_free(&block);
+    MPI_Type_free(&planes);
+    return components;
+  }
+
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
+/// The messages to and from the two neighbours along an axis: one for the boxes of all fields to
+/// each neighbour. Two ranks on a periodic axis are each other's neighbour twice: the tag is the
+/// direction.
 class GhostMessages {
  public:
-  /// Sends boxes of all fields in one message to each neighbour. Two ranks on a periodic axis are
-  /// each other's neighbour twice: the tag is the direction.
   void exchange(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                 std::array<int, 2> const& neighbor) {
+    bool on_device = false;
+    for (auto const& field : fields) on_device = on_device || field.on_device;
+    on_device ? exchange_packed(comm, fields, faces, neighbor)
+              : exchange_in_place(comm, fields, faces, neighbor);
+  }
+
+  /// For fields in host memory.
+  static void exchange_in_place(MPI_Comm comm, std::span<FieldNumbers const> fields,
+                                Faces const& faces, std::array<int, 2> const& neighbor) {
+    std::array<MPI_Request, 4> requests;
+    requests.fill(MPI_REQUEST_NULL);
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (neighbor[side] == MPI_PROC_NULL) continue;
+      BoxInPlace const box(fields, faces.received[side]);
+      MPI_Irecv(MPI_BOTTOM, 1, box.type(), neighbor[side], static_cast<int>(1 - side), comm,
+                &requests[side]);
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (neighbor[side] == MPI_PROC_NULL) continue;
+      BoxInPlace const box(fields, faces.sent[side]);
+      MPI_Isend(MPI_BOTTOM, 1, box.type(), neighbor[side], static_cast<int>(side), comm,
+                &requests[2 + side]);
+    }
+    wait_for(requests);
+  }
+
+  /// Through buffers in host memory, for fields that Kokkos' default execution space can access.
+  void exchange_packed(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
+                       std::array<int, 2> const& neighbor) {
     std::array<MPI_Request, 4> requests;
     requests.fill(MPI_REQUEST_NULL);
     for (std::size_t side = 0; side < 2; ++side) {
@@ -118,6 +198,7 @@ class GhostMessages {
       at += field.number_bytes *
             static_cast<std::size_t>(field.components * box.rows() * box.extent(0));
     }
+    Kokkos::DefaultExecutionSpace().fence("cayspin::mpi::ghost_message");
   }
 
   template <class Number, bool Packs>
@@ -128,18 +209,11 @@ class GhostMessages {
                                        field.component,
                                        field.ny,
                                        box};
-    if (field.on_device)
-      run(Kokkos::DefaultExecutionSpace(), field.components * box.rows(), rows);
-    else
-      run(Kokkos::DefaultHostExecutionSpace(), field.components * box.rows(), rows);
-  }
-
-  template <class Exec, class Rows>
-  static void run(Exec const& exec, std::int64_t tasks, Rows const& rows) {
-    Kokkos::parallel_for(Rows::packs ? "cayspin::mpi::pack" : "cayspin::mpi::unpack",
-                         Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, tasks),
-                         rows);
-    exec.fence("cayspin::mpi::ghost_message");
+    Kokkos::DefaultExecutionSpace const exec;
+    using Policy =
+        Kokkos::RangePolicy<Kokkos::DefaultExecutionSpace, Kokkos::IndexType<std::int64_t>>;
+    Kokkos::parallel_for(Packs ? "cayspin::mpi::pack" : "cayspin::mpi::unpack",
+                         Policy(exec, 0, field.components * box.rows()), rows);
   }
 
   std::array<Buffer, 2> sent_, received_;
