@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Nanoseconds per spin and step on the ranks that mpiexec starts, and what the exchange of ghosts
-// takes of them: one line per method. Usage: bench_ranks NX NY NZ [apart]; compare_ranks.py starts it.
-// "apart": each rank has such a lattice to itself.
+// takes of them: one line per method. Usage: bench_ranks NX NY NZ [apart]; compare_ranks.py starts
+// it. "apart": each rank has such a lattice to itself.
 #include "scene.hpp"
 
 #include <cayspin/mpi/domain.hpp>
@@ -57,8 +57,7 @@ void measure(char const* name, cayspin::Lattice const& lattice, bool apart) {
     measured.exchanges = 0;
     MPI_Barrier(MPI_COMM_WORLD);
     double const begin = MPI_Wtime();
-    for (int step = 0; step < steps; ++step)
-      stepper.step(exec, generator, spins, 0, scene::dt);
+    for (int step = 0; step < steps; ++step) stepper.step(exec, generator, spins, 0, scene::dt);
     exec.fence();
     double seconds = MPI_Wtime() - begin;
     MPI_Allreduce(MPI_IN_PLACE, &seconds, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
@@ -88,8 +87,8 @@ int main(int argc, char** argv) {
         cayspin::Lattice::cubic(std::atoi(argv[1]), std::atoi(argv[2]), std::atoi(argv[3]));
     measure<cayspin::LieHeun<Spins>>("Heun", lattice, apart);
     measure<cayspin::Rkmk4<Spins>>("RKMK4", lattice, apart);
-    measure<cayspin::StereographicRungeKutta<Spins, cayspin::tableau::Classical4>>(
-        "RK4 tangent", lattice, apart);
+    measure<cayspin::StereographicRungeKutta<Spins, cayspin::tableau::Classical4>>("RK4 tangent",
+                                                                                   lattice, apart);
   }
   MPI_Finalize();
 }

@@ -64,8 +64,11 @@ namespace detail {
 
 /// A stepper that can take several steps of few spins in one launch.
 template <class Stepper, class Exec, class Generator, class Spins>
-concept has_batches = requires(Stepper& stepper, Exec const& exec, Generator const& generator,
-                               Spins& spins) { stepper.takes_batches(exec, generator, spins); };
+concept has_batches =
+    requires(Stepper& stepper, Exec const& exec, Generator const& generator, Spins& spins) {
+      stepper.takes_batches(exec, generator, spins);
+      stepper.batch(exec, generator, spins, 0.0, 0.0, std::int64_t{1});
+    };
 
 template <class Exec, class Observer, class Spins>
 Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const& spins) {

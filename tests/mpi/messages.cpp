@@ -14,7 +14,8 @@ template <class Real>
 Real number_of(Lattice const& whole, std::array<std::int64_t, 3> site, int c) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     site[axis] = (site[axis] + whole.shape[axis]) % whole.shape[axis];
-  return static_cast<Real>(((site[2] * whole.shape[1] + site[1]) * whole.shape[0] + site[0]) * 4 + c);
+  return static_cast<Real>(((site[2] * whole.shape[1] + site[1]) * whole.shape[0] + site[0]) * 4 +
+                           c);
 }
 
 template <class Real, int Components>
@@ -29,8 +30,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
     for (std::int64_t y = 0; y < layout.ny; ++y)
       for (std::int64_t x = 0; x < layout.nx; ++x)
         for (int c = 0; c < Components; ++c)
-          work({x, y, z}, c,
-               array.data[c * array.stride + (z * layout.ny + y) * layout.pitch + x]);
+          work({x, y, z}, c, array.data[c * array.stride + (z * layout.ny + y) * layout.pitch + x]);
 }
 
 /// Own numbers by their place, ghosts -1.
@@ -64,7 +64,8 @@ TEST(Ghosts, HoldWhatTheNeighboursHold) {
   int ranks = 0;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   for (auto const boundary : {Boundary::open, Boundary::periodic})
-    for (Division const& division : {Division{1, ranks}, Division{ranks, 1}, Division{2, ranks / 2}})
+    for (Division const& division :
+         {Division{1, ranks}, Division{ranks, 1}, Division{2, ranks / 2}})
       for (std::int64_t const nx : {1, 5, 19}) {
         if (division.y * division.z != ranks) continue;
         SCOPED_TRACE(testing::Message() << division.y << " x " << division.z << ", " << nx);

@@ -256,6 +256,23 @@ TEST_F(OnRanks, SayOnceThatNumbersFailed) {
   EXPECT_TRUE(contains(failure, "last good frame is "));
 }
 
+TEST_F(OnRanks, EndTogetherWhenInterrupted) {
+  auto const scene = write("scene.toml", film("[16, 33, 8]", "method = \"rkmk4\""));
+  Treatment interrupted;
+  interrupted.program = CAYSPIN_MPIEXEC;
+  interrupted.interrupt_after = 0.3;
+  interrupted.interrupt_when = in_folder("out.h5");
+  auto const outcome =
+      start(launch(3, run_of(scene, "out.h5", {"--set", "integrator.steps=1000000"})), interrupted);
+  EXPECT_EQ(outcome.status, 130);
+  auto const line = outcome.errors.find("interrupted after step ");
+  ASSERT_NE(line, std::string::npos) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("interrupted after step ", line + 1), std::string::npos);
+  auto const info = io::read_info(in_folder("out.h5"));
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(std::stoll(outcome.errors.substr(line + 23)), info.frame_steps.back());
+}
+
 TEST_F(OnRanks, SurviveTheDeathOfOne) {
   auto const scene = write(
       "scene.toml", film("[16, 33, 8]", "method = \"ab2\"") + "checkpoint_every = \"20 steps\"\n");

@@ -131,6 +131,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   /// `count` steps in one launch, to the same bits as one by one.
   /// Throws std::invalid_argument as `step` does, and where takes_batches is false.
   template <class Exec, class Generator>
+    requires detail::is_host_execution<Exec>
   void batch(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
              std::int64_t count) {
     auto const region = this->begin_step(exec, spins, "::batch");
