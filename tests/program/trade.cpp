@@ -76,6 +76,55 @@ TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
     for (auto const& [other, others] : front) EXPECT_FALSE(other <= error && others < seconds);
 }
 
+/// The lines of a text from one that begins so to the next empty one, without it.
+std::vector<std::string> table_below(std::string const& text, std::string const& heading) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  std::string line;
+  while (std::getline(stream, line) && !line.starts_with(heading)) continue;
+  while (std::getline(stream, line) && !line.empty()) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(Trading, ItsTextHasEveryRungAndJudgesTheAdvice) {
+  auto const outcome = start({"trade", write("scene.toml", scene()), "--advice", "--precision",
+                              "double", "--seconds", "1", "--threads", "1", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  auto const& text = outcome.output;
+  EXPECT_TRUE(contains(text, "the last t = 4\n"));
+
+  std::vector<double> errors;  // of rkmk4
+  int on_front = 0;
+  constexpr std::size_t name_width = 33;
+  for (auto const& line : table_below(text, "method ")) {
+    std::istringstream numbers(line.substr(name_width));
+    std::string kind, front;
+    double steps = 0, error = 0, seconds = 0, evaluations = 0;
+    ASSERT_TRUE(numbers >> kind >> steps >> error >> seconds >> evaluations) << line;
+    EXPECT_TRUE(kind == "dt" || kind == "tol") << line;
+    EXPECT_GT(seconds, 0) << line;
+    on_front += numbers >> front && front == "*";
+    if (line.starts_with("rkmk4   ")) errors.push_back(error);
+  }
+  EXPECT_GE(on_front, 3);
+  ASSERT_GE(errors.size(), 4u);
+  EXPECT_GT(errors.front(), 1e-6);
+  EXPECT_LT(errors.back(), 1e-9);
+
+  auto const goals = table_below(text, "seconds (evaluations) to an error of");
+  ASSERT_GE(goals.size(), 10u);
+  for (char const* goal : {"1e-02", "1e-04", "1e-06", "1e-08"})
+    EXPECT_TRUE(contains(goals.front(), goal));
+
+  auto const verdicts = table_below(text, "what `cayspin advise` says");
+  ASSERT_EQ(verdicts.size(), 5u);
+  for (std::size_t i = 1; i < verdicts.size(); ++i) {
+    double const ratio = std::stod(verdicts[i].substr(8 + 1 + name_width + 1 + 14));
+    EXPECT_GT(ratio, 0) << verdicts[i];
+    EXPECT_LT(ratio, 2) << verdicts[i];
+  }
+}
+
 // Of what is measured: error and evaluations of the same dt, run by itself.
 TEST_F(Trading, ARungIsARunOfTheScene) {
   auto const outcome =
