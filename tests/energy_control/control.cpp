@@ -126,6 +126,7 @@ Field turned(Source const& source, Field const& start, double higher,
   Field spins = copy_of(start);
   options.energy = energy(Space{}, source, start).value + higher;
   EnergyControl control(source, spins, options);
+  EXPECT_EQ(control.excess(), 0);
   control(Space{}, Step{0, 0, dt}, spins);
   EXPECT_NEAR(control.excess(), -higher, 1e-12);
   return spins;
