@@ -80,6 +80,31 @@ TEST_F(TrajectoryTest, FullDiskAtOverwritingKeepsTheOldFile) {
   EXPECT_FALSE(fs::exists(folder_ / "a.h5.partial"));
 }
 
+[[noreturn]] void end_on_full_disk(fs::path const& path) {
+  try {
+    auto file = write_frames(path, 5);
+    for (int sample = 0; sample < 9; ++sample)
+      file.write_scalars(50 + sample, 5, numbered_scalars(5));
+    limit_file_size(fs::file_size(path));
+    file.finish({});
+    std::exit(0);
+  } catch (std::runtime_error const& error) {
+    exit_with_message(error);
+  }
+}
+
+// Room is taken before the last samples are written, too.
+TEST_F(TrajectoryTest, FullDiskAtTheEndKeepsTheFrames) {
+  if (std::getenv("CAYSPIN_COVERAGE"))
+    GTEST_SKIP() << "the counts of executed lines do not fit on this disk, either";
+  auto const path = folder_ / "a.h5";
+  EXPECT_EXIT(end_on_full_disk(path), testing::ExitedWithCode(3),
+              "a.h5: cannot write the file: File too large$");
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(info.frames, 5);
+}
+
 // Makes every later write to `path` fail, as a broken disk would.
 void make_read_only(fs::path const& path) {
   for (auto const& entry : fs::directory_iterator("/proc/self/fd")) {
