@@ -159,11 +159,13 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
     *failure += fmt::format(" (times in units of {:.6g} s)", scene.units.time);
   if (failure) fail(*failure);
   if (controlled) summary.evaluations += controlled->evaluations();
-  auto const frames = watch.file() ? watch.file()->frames() : 0;
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
   bool const whole = !watch.failure() && !watch.interrupted();
-  ranks.together([&] {
-    if (watch.file()) whole ? watch.file()->finish(cost) : watch.file()->close(cost);
+  auto const frames = ranks.together([&]() -> std::int64_t {
+    if (!watch.file()) return 0;
+    auto const written = watch.file()->frames();
+    whole ? watch.file()->finish(cost) : watch.file()->close(cost);
+    return written;
   });
   bool const has_file = ranks.any({watch.file().has_value(), false})[0];
   if (has_file && !watch.failure() && !scene.output.checkpoint_every.is_never()) {

@@ -86,7 +86,9 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     if (ends) return Next::stop;
     if (stored) {
       // HDF5 is the writer's until it has written.
-      ranks_.together([&] { file_ ? file_->frames() : 0; });
+      ranks_.together([&] {
+        if (file_) file_->frames();
+      });
       store_checkpoint_(step);
       checkpoints_.wait();
     }
