@@ -5,8 +5,9 @@
 Usage: compare_ranks.py BUILD_DIR [--repetitions N]
 
 Strong: time of one rank with two threads over that of two ranks. Weak: time of two ranks, each
-with half of the lattice to itself, over that of two ranks that exchange ghosts. The runs alternate;
-the best of each counts. Exchange: the part of the time in which ghosts are exchanged.
+with half of the lattice to itself, over that of two ranks that exchange ghosts; in step: the same,
+where those wait for each other after each step. The runs alternate; the best of each counts.
+Exchange: the part of the time in which ghosts are exchanged.
 """
 import argparse
 import os
@@ -15,16 +16,17 @@ import re
 import subprocess
 
 SIZES = [(128, 128, 128), (256, 256, 256)]
-LINE = re.compile(r"(.*): ([\d.]+) ns, exchange ([\d.]+), exchanges (\d+)")
+LINE = re.compile(r"(.*): ([\d.]+) ns, exchange ([\d.]+), exchanges \d+, stages (\d+)")
 
 
 def measure(program, ranks, threads, size, *more):
-    """{method: (ns per spin and step, part of the exchange)}"""
+    """{method: (ns per spin and step, part of the exchange, stages)}"""
     environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMP_WAIT_POLICY="passive",
                        OMP_PROC_BIND="false")
     text = subprocess.run(["mpiexec", "-n", str(ranks), program, *map(str, size), *more],
                           check=True, capture_output=True, text=True, env=environment).stdout
-    return {name: (float(ns), float(part)) for name, ns, part, _ in LINE.findall(text)}
+    return {name: (float(ns), float(part), int(stages))
+            for name, ns, part, stages in LINE.findall(text)}
 
 
 def better(one, other):
@@ -37,16 +39,17 @@ def main():
     parser.add_argument("--repetitions", type=int, default=5)
     arguments = parser.parse_args()
     program = arguments.build / "bin" / "bench_ranks"
-    print("| sites | method | strong | weak | exchange |\n|---|---|---|---|---|")
+    print("| sites | method | strong | weak | in step | exchange |\n|---|---|---|---|---|---|")
     for nx, ny, nz in SIZES:
-        threads, ranks, apart = {}, {}, {}
+        threads, ranks, apart, in_step = {}, {}, {}, {}
         for _ in range(arguments.repetitions):
             threads = better(threads, measure(program, 1, 2, (nx, ny, nz)))
             ranks = better(ranks, measure(program, 2, 1, (nx, ny, nz)))
             apart = better(apart, measure(program, 2, 1, (nx, ny, nz // 2), "apart"))
-        for name, (ns, exchange) in ranks.items():
+            in_step = better(in_step, measure(program, 2, 1, (nx, ny, nz // 2), "in_step"))
+        for name, (ns, exchange, _) in ranks.items():
             print(f"| {nx} x {ny} x {nz} | {name} | {threads[name][0] / ns:.2f} | "
-                  f"{apart[name][0] / ns:.2f} | {100 * exchange:.1f} % |", flush=True)
+                  f"{apart[name][0] / ns:.2f} | {in_step[name][0] / ns:.2f} | {100 * exchange:.1f} % |", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Nanoseconds per spin and step on the ranks that mpiexec starts, and what the exchange of ghosts
-// takes of them: one line per method. Usage: bench_ranks NX NY NZ [apart]; compare_ranks.py starts
-// it. "apart": each rank has such a lattice to itself.
+// takes of them, as Kokkos' regions say: one line per method. Usage: bench_ranks NX NY NZ [MODE];
+// compare_ranks.py and model_ranks.py start it. Mode "apart": each rank has such a lattice to
+// itself; "in_step": and waits for the others after each step.
 #include "scene.hpp"
 
 #include <cayspin/mpi/domain.hpp>
@@ -9,7 +10,7 @@
 
 #include <mpi.h>
 
-#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -18,77 +19,87 @@ namespace {
 
 using Spins = cayspin::SpinField<double>;
 
-/// A part that measures what another one does.
-class Measured final : public cayspin::Part {
- public:
-  explicit Measured(cayspin::Part const& of) : of_(of) {}
-  cayspin::Lattice const& whole() const override { return of_.whole(); }
-  std::array<std::int64_t, 3> begin() const override { return of_.begin(); }
-  void sum(std::span<std::int64_t> words) const override { of_.sum(words); }
-  void maximum(std::span<std::int64_t> words) const override { of_.maximum(words); }
-  void update_ghosts(std::span<cayspin::FieldNumbers const> fields) const override {
-    double const begin = MPI_Wtime();
-    of_.update_ghosts(fields);
-    seconds += MPI_Wtime() - begin;
-    ++exchanges;
-  }
-  mutable double seconds = 0;
-  mutable int exchanges = 0;
+/// Seconds in the exchange of ghosts, and how often there was one.
+struct Exchange {
+  double seconds = 0, begin = 0;
+  int count = 0;
+  bool inside = false;
+} exchange;
 
- private:
-  cayspin::Part const& of_;
-};
+void enter(char const* region) {
+  exchange.inside = std::string(region) == "cayspin::mpi::update_ghosts";
+  exchange.begin = MPI_Wtime();
+}
+void leave() {
+  if (!exchange.inside) return;
+  exchange.seconds += MPI_Wtime() - exchange.begin;
+  exchange.inside = false;
+  ++exchange.count;
+}
+
+double of_all(double value, MPI_Op operation) {
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, operation, MPI_COMM_WORLD);
+  return value;
+}
+
+// As an exchange of ghosts waits.
+void wait_for_all() {
+  std::array<MPI_Request, 1> request;
+  MPI_Ibarrier(MPI_COMM_WORLD, request.data());
+  cayspin::mpi::detail::wait_for(request);
+}
 
 template <class Stepper>
-void measure(char const* name, cayspin::Lattice const& lattice, bool apart) {
+void measure(char const* name, cayspin::Lattice const& lattice, bool apart, bool in_step) {
   constexpr int steps = 4, least_repetitions = 5;
   Kokkos::DefaultExecutionSpace const exec;
   cayspin::mpi::Domain const domain(apart ? MPI_COMM_SELF : MPI_COMM_WORLD, lattice,
                                     Stepper::ghosts);
-  Measured const measured(domain);
-  auto local = domain.local();
-  local.part = &measured;
-  auto spins = scene::random<Spins>(local);
-  auto const generator = scene::Default::generator(local);
+  auto spins = scene::random<Spins>(domain.local());
+  auto const generator = scene::Default::generator(domain.local());
   Stepper stepper(spins);
-  double best = 1e300, exchange = 0, total = 0;
+  double best = 1e300, exchanging = 0, total = 0;
+  int exchanges = 0;
   for (int repetition = 0; repetition < least_repetitions || total < 1; ++repetition) {
-    measured.seconds = 0;
-    measured.exchanges = 0;
+    exchange = {};
     MPI_Barrier(MPI_COMM_WORLD);
     double const begin = MPI_Wtime();
-    for (int step = 0; step < steps; ++step) stepper.step(exec, generator, spins, 0, scene::dt);
+    for (int step = 0; step < steps; ++step) {
+      stepper.step(exec, generator, spins, 0, scene::dt);
+      if (in_step) wait_for_all();
+    }
     exec.fence();
-    double seconds = MPI_Wtime() - begin;
-    MPI_Allreduce(MPI_IN_PLACE, &seconds, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+    double const seconds = of_all(MPI_Wtime() - begin, MPI_MAX);
+    double const waited = of_all(exchange.seconds, MPI_MIN);  // of the rank that came last
     total += seconds;
-    double waited = measured.seconds;
-    MPI_Allreduce(MPI_IN_PLACE, &waited, 1, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
-    if (seconds < best) best = seconds, exchange = waited;
+    if (seconds < best) best = seconds, exchanging = waited, exchanges = exchange.count;
   }
   int rank = 0, ranks = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   if (rank != 0) return;
   auto const sites = static_cast<double>(lattice.sites() * (apart ? ranks : 1));
-  std::printf("%s: %.4f ns, exchange %.4f, exchanges %d\n", name, best / steps / sites * 1e9,
-              exchange / best, measured.exchanges / steps);
+  std::printf("%s: %.4f ns, exchange %.4f, exchanges %d, stages %d\n", name,
+              best / steps / sites * 1e9, exchanging / best, exchanges / steps, Stepper::ghosts);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool const apart = argc == 5 && std::string(argv[4]) == "apart";
+  std::string const mode = argc == 5 ? argv[4] : "";
+  bool const in_step = mode == "in_step", apart = in_step || mode == "apart";
   if (argc != 4 && !apart) return 2;
   MPI_Init(&argc, &argv);
   {
     Kokkos::ScopeGuard const kokkos(argc, argv);
+    Kokkos::Tools::Experimental::set_push_region_callback(enter);
+    Kokkos::Tools::Experimental::set_pop_region_callback(leave);
     auto const lattice =
         cayspin::Lattice::cubic(std::atoi(argv[1]), std::atoi(argv[2]), std::atoi(argv[3]));
-    measure<cayspin::LieHeun<Spins>>("Heun", lattice, apart);
-    measure<cayspin::Rkmk4<Spins>>("RKMK4", lattice, apart);
-    measure<cayspin::StereographicRungeKutta<Spins, cayspin::tableau::Classical4>>("RK4 tangent",
-                                                                                   lattice, apart);
+    measure<cayspin::LieHeun<Spins>>("Heun", lattice, apart, in_step);
+    measure<cayspin::Rkmk4<Spins>>("RKMK4", lattice, apart, in_step);
+    measure<cayspin::StereographicRungeKutta<Spins, cayspin::tableau::Classical4>>(
+        "RK4 tangent", lattice, apart, in_step);
   }
   MPI_Finalize();
 }

@@ -17,6 +17,8 @@ struct FieldNumbers {
   std::ptrdiff_t row = 0, component = 0;  // from row to row, from component to component
   std::int64_t nx = 0, ny = 0, nz = 0;
   bool on_device = false;
+
+  friend bool operator==(FieldNumbers const&, FieldNumbers const&) = default;
 };
 
 /// What a part of a larger lattice asks of the others. All parts ask in the same order.

@@ -30,13 +30,6 @@ std::pair<DataspaceHandle, DataspaceHandle> select_block(hid_t dataset, Extents 
   return {std::move(memory), std::move(file)};
 }
 
-void grow(hid_t dataset, hsize_t first_extent, std::filesystem::path const& path,
-          std::string const& action) {
-  auto grown = dataset_extents(dataset, path);
-  grown[0] = first_extent;
-  check(H5Dset_extent(dataset, grown.data()), path, action);
-}
-
 }  // namespace
 
 DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
@@ -84,20 +77,30 @@ Extents dataset_extents(hid_t dataset, std::filesystem::path const& path) {
   return extents;
 }
 
-void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
-                  void const* values, std::filesystem::path const& path) {
+void grow(hid_t dataset, hsize_t first_extent, std::filesystem::path const& path) {
+  auto grown = dataset_extents(dataset, path);
+  grown[0] = first_extent;
+  check(H5Dset_extent(dataset, grown.data()), path, "cannot write " + dataset_name(dataset));
+}
+
+void write_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
+                 void const* values, std::filesystem::path const& path) {
   auto const action = "cannot write " + dataset_name(dataset);
-  grow(dataset, begin[0] + extents[0], path, action);
   auto const [memory, file] = select_block(dataset, begin, extents, path, action);
   check(H5Dwrite(dataset, memory_type, memory.get(), file.get(), H5P_DEFAULT, values), path,
         action);
 }
 
-void append_raw_chunk(hid_t dataset, Extents const& begin, Extents const& extents,
-                      void const* stored, std::size_t bytes, std::filesystem::path const& path) {
-  auto const action = "cannot write " + dataset_name(dataset);
-  grow(dataset, begin[0] + extents[0], path, action);
-  check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, begin.data(), bytes, stored), path, action);
+void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
+                  void const* values, std::filesystem::path const& path) {
+  grow(dataset, begin[0] + extents[0], path);
+  write_block(dataset, memory_type, begin, extents, values, path);
+}
+
+void write_raw_chunk(hid_t dataset, Extents const& begin, void const* stored, std::size_t bytes,
+                     std::filesystem::path const& path) {
+  check(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, begin.data(), bytes, stored), path,
+        "cannot write " + dataset_name(dataset));
 }
 
 void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,

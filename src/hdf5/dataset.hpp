@@ -27,13 +27,20 @@ DatasetHandle open_dataset(hid_t group, char const* name, std::size_t rank,
 
 Extents dataset_extents(hid_t dataset, std::filesystem::path const& path);
 
+/// Writes a block; `begin` and `extents` have the dataset's rank.
+void write_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
+                 void const* values, std::filesystem::path const& path);
+
 /// Grows a dataset along its first extent to begin[0] + extents[0] and writes that block.
 void append_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                   void const* values, std::filesystem::path const& path);
 
-/// The same for a block that is one chunk, given as it is to stand in the file: filters applied.
-void append_raw_chunk(hid_t dataset, Extents const& begin, Extents const& extents,
-                      void const* stored, std::size_t bytes, std::filesystem::path const& path);
+/// Grows it along its first extent, with nothing written there.
+void grow(hid_t dataset, hsize_t first_extent, std::filesystem::path const& path);
+
+/// Writes the chunk that begins there, given as it is to stand in the file: filters applied.
+void write_raw_chunk(hid_t dataset, Extents const& begin, void const* stored, std::size_t bytes,
+                     std::filesystem::path const& path);
 
 /// Reads a block; `begin` and `extents` have the dataset's rank.
 void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,

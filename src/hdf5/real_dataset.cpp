@@ -27,6 +27,16 @@ RealDataset::RealDataset(std::filesystem::path path, std::string name)
   extents_ = dataset_extents(dataset_.get(), path_);
 }
 
+Extents RealDataset::chunk() const {
+  auto const action = "cannot read dataset " + name_;
+  Extents chunk(extents_.size(), 1);
+  PropertyHandle const properties(check(H5Dget_create_plist(dataset_.get()), path_, action));
+  if (H5Pget_layout(properties.get()) == H5D_CHUNKED)
+    check(H5Pget_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), path_,
+          action);
+  return chunk;
+}
+
 std::vector<double> RealDataset::read() const { return read(Extents(extents_.size()), extents_); }
 
 std::vector<double> RealDataset::read(Extents const& begin, Extents const& extents) const {

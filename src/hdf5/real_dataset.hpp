@@ -18,6 +18,8 @@ class RealDataset {
 
   hid_t file() const { return file_.get(); }
   Extents const& extents() const { return extents_; }
+  /// Extents of a chunk; 1 along each axis where there are no chunks.
+  Extents chunk() const;
   /// Machine epsilon of the stored type.
   double epsilon() const { return epsilon_; }
 

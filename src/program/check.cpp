@@ -2,8 +2,11 @@
 #include "command.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/parts.hpp"
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
+
+#include <cayspin/mpi/division.hpp>
 
 #include <fmt/format.h>
 
@@ -18,7 +21,24 @@ double bytes_per_site(Plan const& plan) {
   return static_cast<double>(plan.memory.simulation()) / static_cast<double>(plan.lattice.sites());
 }
 
-void print_json(io::Scene const& scene, Plan const& plan, Precision precision) {
+/// What a step repeats on the ranks that are asked for.
+std::optional<double> repeated_on(CheckOptions const& options, Plan const& plan) {
+  if (!options.ranks) return std::nullopt;
+  auto const parts = read_parts(*options.ranks);
+  int const ghosts = plan.variant.ghosts;
+  if (ghosts == 0)
+    throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
+                                 *options.ranks));
+  if (!mpi::can_divide(plan.lattice, ghosts, {.y = parts[0], .z = parts[1]}))
+    throw UsageError(
+        fmt::format("--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or "
+                    "planes each",
+                    *options.ranks, ghosts));
+  return repeated_share(plan.lattice, ghosts, parts);
+}
+
+void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
+                std::optional<double> const& repeated) {
   auto const& memory = plan.memory;
   auto const& units = scene.units;
   auto const stable_in = [&](double unit) {
@@ -39,6 +59,7 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision) {
         ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
         "\"energy_unit\": {}, \"reduced\": {{\"stable_dt\": {}, \"dt\": {}}}",
         units.time, units.length, units.field, units.energy, stable_in(1), plan.times.dt);
+  if (repeated) fmt::print(", \"repeated\": {}", *repeated);
   fmt::print("}}\n");
 }
 
@@ -85,7 +106,8 @@ void check_start(io::Scene const& scene) {
   io::initial_spins(scene);
 }
 
-void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
+void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
+                std::optional<double> const& repeated) {
   for (auto const& [name, text] : describe(scene)) fmt::print("{:<11} {}\n", name, text);
   auto const print = [](char const* name, std::string const& text) {
     fmt::print("{:<11} {}\n", name, text);
@@ -108,6 +130,11 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision) {
                               bytes_text(memory.files), bytes_text(memory.total())));
   if (!is_start_checked(plan)) print("", "the start's numbers are not checked: too many sites");
   if (!fits(plan)) print("", "more memory than is available now");
+  if (repeated)
+    print("ranks",
+          fmt::format("each repeats {:.3g} % of its work, and has {} rows or planes of its "
+                      "neighbours at each inner end",
+                      100 * *repeated, plan.variant.ghosts));
   print("output", output_text(scene, plan));
 }
 
@@ -122,11 +149,12 @@ int check(CheckOptions const& options) {
     scene = trade::with_method(scene, space, options.precision);
   }
   auto const plan = make_plan(scene, options.precision);
+  auto const repeated = repeated_on(options, plan);
   if (is_start_checked(plan)) check_start(scene);
   if (options.json)
-    print_json(scene, plan, options.precision);
+    print_json(scene, plan, options.precision, repeated);
   else
-    print_text(scene, plan, options.precision);
+    print_text(scene, plan, options.precision, repeated);
   return Status::done;
 }
 

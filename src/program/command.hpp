@@ -47,6 +47,7 @@ struct WatchOptions {
 
 struct CheckOptions : SceneOptions {
   Precision precision = Precision::double_precision;
+  std::optional<std::string> ranks;  // "y,z"
   bool json = false;
 };
 

@@ -105,6 +105,10 @@ int perform(int argc, char** argv) {
       "check", "Validate a scene and say what it models, the stable dt, memory and cost");
   add_scene_options(*check_command, check_options, "double (default) or single");
   check_command->add_flag("--json", check_options.json, "The numbers as JSON");
+  check_command
+      ->add_option("--ranks", check_options.ranks,
+                   "Say what a run with so many parts along y and z repeats")
+      ->type_name("Y,Z");
 
   TradeOptions trade_options;
   auto* trade_command = app.add_subcommand(

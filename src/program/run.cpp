@@ -43,13 +43,15 @@ void warn_above_stable_dt(io::Scene const& scene, Plan const& plan, Ranks const&
   if (ranks.is_first()) fmt::print(stderr, "warning: {}\n", error.what());
 }
 
-void require_one_rank(io::Scene const& scene, Plan const& plan, Ranks const& ranks) {
+void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ranks const& ranks) {
   if (!ranks.many()) return;
-  std::string const accepted = "runs on one rank alone; accepted: one rank, or another ";
+  std::string const accepted = "runs on one rank alone; accepted: one rank, ";
   if (plan.variant.ghosts == 0)
-    throw io::scene_error(scene, "integrator.method", accepted + "method");
-  if (scene.field.slab_demag && scene.field.slab_demag->average_layer)
-    throw io::scene_error(scene, "field.slab_demag.average", accepted + "field");
+    throw io::scene_error(scene, "integrator.method", accepted + "or another method");
+  auto const& slab = scene.field.slab_demag;
+  if (slab && slab->average_layer && (slab->on_host || slab->normal[0] != 0 || !on_host))
+    throw io::scene_error(scene, "field.slab_demag.average",
+                          accepted + "or a normal along y or z on a host without where = \"host\"");
 }
 
 io::CheckpointHeader checkpoint_header(io::Scene const& typed, io::Scene const& scene,
@@ -84,8 +86,8 @@ Restart restart_of(LeftBehind left, io::Scene const& scene, Plan const& plan,
 
 std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
                              Restart const* restart) {
-  return restart ? part_of(lattice, 3, restart->spins())
-                 : io::initial_spins(scene, own_sites(lattice));
+  auto const own = own_sites(lattice);
+  return restart ? restart->spins(own) : io::initial_spins(scene, own);
 }
 
 template <class Real, class Space>
@@ -110,7 +112,9 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         auto header =
             run_header(typed, options.precision, space_name<Space>(), threads, CAYSPIN_GIT_COMMIT);
         if (typed.integrator.method->automatic) header.resolved_scene = scene.text;
-        io::RunOutput file(path, header, run_output_options(scene, options.overwrite));
+        auto files = run_output_options(scene, options.overwrite);
+        files.most_planes = ranks.planes_at_once(plan.lattice);
+        io::RunOutput file(path, header, files);
         std::filesystem::remove(checkpoint_path);
         return file;
       },
@@ -242,12 +246,15 @@ int run_on_ranks(RunOptions const& options, Ranks& ranks) {
                    : "dt " + time_text(scene.units, scene.integrator.dt));
   auto plan = ranks.together([&] { return make_plan(scene, options.precision); });
   auto const parts = ranks.together([&] {
-    require_one_rank(scene, plan, ranks);
+    bool const on_host = in_space(space, options.precision, []<class, class Space>() {
+      return cayspin::detail::is_host_execution<Space>;
+    });
+    require_one_rank(scene, plan, on_host, ranks);
     return ranks.division(plan.lattice, plan.variant.ghosts, options.ranks);
   });
   auto const part = ranks.divide(plan.lattice, plan.variant.ghosts, parts);
   if (part.none) return Status::done;
-  keep_part(plan, scene, options.precision, part.local);
+  keep_part(plan, scene, options.precision, part.local, ranks.planes_at_once(part.local));
   auto const restart = ranks.together([&]() -> std::unique_ptr<Restart> {
     require_memory(scene, plan, ranks.on_this_machine());
     warn_above_stable_dt(scene, plan, ranks);

@@ -13,6 +13,8 @@
 #include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -117,15 +119,24 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   void write(Space const& exec, Sample const& now, Spins const& spins, bool frame, bool scalars) {
     auto const scalar_values = as_scalars(now, units_);
     double const time = now.time * units_.time;
-    Real* const whole_frame = ranks_.together([&]() -> Real* {
+    Real* const room = ranks_.together([&]() -> Real* {
       if (!ranks_.is_first()) return nullptr;
       if (!file_) file_.emplace(open_file_());
       if (scalars) file_->write_scalars(now.step, time, scalar_values);
       return frame ? file_->template frame<Real>() : nullptr;
     });
     if (!frame) return;
-    HostFrame const host(ranks_.many() ? part_.data() : whole_frame,
-                         static_cast<std::size_t>(spins.sites()));
+    Real* const own = ranks_.many() ? part_.data() : room;
+    copy_spins(exec, spins, own);
+    if (ranks_.many()) gather_pieces(spins.lattice(), own, room);
+    ranks_.together([&] {
+      if (file_) file_->write_frame(now.step, time, scalar_values);
+    });
+    last_frame_ = now;
+  }
+
+  void copy_spins(Space const& exec, Spins const& spins, Real* to) const {
+    HostFrame const host(to, static_cast<std::size_t>(spins.sites()));
     if constexpr (on_host) {
       copy(exec, spins, host);
     } else {
@@ -133,11 +144,24 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
       Kokkos::deep_copy(exec, host, frame_);
     }
     exec.fence("cayspin::Watch: frame copied");
-    if (ranks_.many()) ranks_.gather(spins.lattice(), 3 * sizeof(Real), host.data(), whole_frame);
-    ranks_.together([&] {
-      if (file_) file_->write_frame(now.step, time, scalar_values);
-    });
-    last_frame_ = now;
+  }
+
+  // Writes all but the last piece of the frame, and leaves that one in its room.
+  void gather_pieces(Lattice const& local, Real const* own, Real* room) {
+    auto const& shape = whole(local).shape;
+    io::TrajectoryStorage const storage{output_.compression, output_.chunk};
+    auto const at_once =
+        io::frame_pieces(shape, sizeof(Real), storage, ranks_.planes_at_once(local)).planes;
+    for (std::int64_t first = 0;; first += at_once) {
+      auto const planes = std::min(at_once, shape[2] - first);
+      ranks_.gather(local, 3 * sizeof(Real), first, planes, own, room);
+      if (first + planes == shape[2]) return;
+      room = ranks_.together([&]() -> Real* {
+        if (!file_) return nullptr;
+        file_->write_piece();
+        return file_->template frame<Real>();
+      });
+    }
   }
 
   Ranks& ranks_;

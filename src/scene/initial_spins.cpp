@@ -102,7 +102,7 @@ struct Start {
   void operator()(FileStart const& file) const {
     std::vector<double> values;
     try {
-      values = detail::read_start_file(file.path, scene.lattice.shape);
+      values = detail::read_start_file(file.path, scene.lattice.shape, box);
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }
@@ -115,12 +115,10 @@ struct Start {
       throw scene_error(scene, "initial.given",
                         fmt::format("{} numbers were given; accepted: {}, three for each site",
                                     start.spins->size(), numbers));
-    set_all(*start.spins, "initial.given");
+    set_all(numbers_in(box, scene.lattice.shape, 3, *start.spins), "initial.given");
   }
 
   void set_all(std::vector<double> const& values, std::string_view key) const {
-    if (spins.size() != values.size())
-      return set_all(numbers_in(box, scene.lattice.shape, 3, values), key);
     for (std::size_t site = 0; site < size(); ++site) {
       auto const* const m = values.data() + 3 * site;
       set_normalised(site, {m[0], m[1], m[2]}, key);

@@ -33,10 +33,10 @@ void check_start_file(std::filesystem::path const& path, std::array<std::int64_t
 }
 
 std::vector<double> read_start_file(std::filesystem::path const& path,
-                                    std::array<std::int64_t, 3> const& shape) {
-  if (!is_ovf(path)) return read_spins(path, shape);
+                                    std::array<std::int64_t, 3> const& shape, SiteBox const& box) {
+  if (!is_ovf(path)) return read_spins(path, shape, box);
   require_nodes(read_ovf_mesh(path), path, shape);
-  return read_ovf(path).values;
+  return numbers_in(box, shape, 3, read_ovf(path).values);
 }
 
 }  // namespace cayspin::io::detail

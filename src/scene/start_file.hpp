@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/io/site_box.hpp>
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -12,8 +14,8 @@ namespace cayspin::io::detail {
 /// types and shapes are looked at.
 void check_start_file(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape);
 
-/// The spins as they stand in the file, packed as (nz, ny, nx, 3).
+/// The spins of a box as they stand in the file, x fastest. Of one in OVF all is read.
 std::vector<double> read_start_file(std::filesystem::path const& path,
-                                    std::array<std::int64_t, 3> const& shape);
+                                    std::array<std::int64_t, 3> const& shape, SiteBox const& box);
 
 }  // namespace cayspin::io::detail

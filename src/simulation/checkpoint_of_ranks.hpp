@@ -5,6 +5,7 @@
 
 #include <cayspin/io/checkpoint.hpp>
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <string>
@@ -26,11 +27,16 @@ class CheckpointFromRanks final : public Checkpoint {
   void field(std::string const& name, std::vector<double>& numbers) override {
     if (!ranks_.many()) return writer_->field(name, numbers);
     auto const of_site = static_cast<std::int64_t>(numbers.size()) / local_.sites();
-    std::vector<double> all;
-    if (writer_) all.resize(static_cast<std::size_t>(of_site * whole(local_).sites()));
-    ranks_.gather(local_, sizeof(double) * static_cast<std::size_t>(of_site), numbers.data(),
-                  all.data());
-    on_first([&] { writer_->field(name, all); });
+    auto const& [nx, ny, nz] = whole(local_).shape;
+    auto const at_once = ranks_.planes_at_once(local_);
+    std::vector<double> planes;
+    for (std::int64_t first = 0; first < nz; first += at_once) {
+      auto const count = std::min(at_once, nz - first);
+      if (writer_) planes.resize(static_cast<std::size_t>(of_site * nx * ny * count));
+      ranks_.gather(local_, sizeof(double) * static_cast<std::size_t>(of_site), first, count,
+                    numbers.data(), planes.data());
+      on_first([&] { writer_->planes(name, of_site, planes); });
+    }
   }
   /// Throws on all ranks what went wrong on the first.
   void commit() {
@@ -58,23 +64,21 @@ class CheckpointFromRanks final : public Checkpoint {
   std::exception_ptr error_;
 };
 
-/// Gives each rank its part of what a checkpoint holds. Each reads the file.
+/// Gives each rank its part of what a checkpoint holds.
 class CheckpointForRank final : public Checkpoint {
  public:
-  CheckpointForRank(cayspin::Lattice const& local, Checkpoint& of_all)
+  CheckpointForRank(cayspin::Lattice const& local, io::CheckpointReader& of_all)
       : local_(local), of_all_(of_all) {}
 
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override { of_all_.number(name, value); }
   void field(std::string const& name, std::vector<double>& numbers) override {
-    of_all_.field(name, numbers);
-    auto const of_site = static_cast<std::int64_t>(numbers.size()) / whole(local_).sites();
-    numbers = part_of(local_, of_site, std::move(numbers));
+    numbers = of_all_.field(name, own_sites(local_));
   }
 
  private:
   cayspin::Lattice const& local_;
-  Checkpoint& of_all_;
+  io::CheckpointReader& of_all_;
 };
 
 }  // namespace cayspin::simulation

@@ -26,7 +26,8 @@ class OneRank final : public Ranks {
   }
   std::array<bool, 2> any(std::array<bool, 2> wanted) const override { return wanted; }
   void tell(std::string&) const override {}
-  void gather(cayspin::Lattice const&, std::size_t, void const*, void*) const override {}
+  void gather(cayspin::Lattice const&, std::size_t, std::int64_t, std::int64_t, void const*,
+              void*) const override {}
   void leave_by(int) override {}
 
  protected:

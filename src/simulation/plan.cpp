@@ -6,7 +6,10 @@
 #include "ranks.hpp"
 #include "text.hpp"
 
+#include <cayspin/detail/exact_sum.hpp>
 #include <cayspin/detail/row_layout.hpp>
+#include <cayspin/io/ovf.hpp>
+#include <cayspin/io/trajectory.hpp>
 #include <cayspin/stability.hpp>
 
 #include <fmt/format.h>
@@ -91,36 +94,45 @@ std::int64_t field_bytes(Lattice const& lattice, int components) {
 
 template <class Real>
 Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& variant,
-                 Precision precision) {
+                 Precision precision, std::int64_t planes_at_once) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
   memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field), precision);
   if (scene.field.own.nonlocal) memory.field += memory.spins;
   if (auto const& slab = scene.field.slab_demag) {
     if (slab->on_host) memory.field += memory.spins;
-    if (slab->average_layer) memory.field += 8 * std::ranges::max(lattice.shape);
+    // Means, and of parts that share layers their exact sums.
+    std::int64_t const words = lattice.part == nullptr ? 1 : 1 + cayspin::detail::ExactSum::words;
+    if (slab->average_layer) memory.field += 8 * words * std::ranges::max(whole(lattice).shape);
   }
-  // A file is read whole, and written by the first of the ranks.
-  std::int64_t const numbers = 3 * lattice.sites(), all_sites = whole(lattice).sites();
+  // A rank reads its sites by some planes at once, but OVF whole. The first one writes.
+  auto const& all = whole(lattice);
+  std::int64_t const numbers = 3 * lattice.sites(), numbers_of_all = 3 * all.sites();
   bool const is_part = lattice.part != nullptr;
   bool const writes = !is_part || own_sites(lattice).begin == std::array<std::int64_t, 3>{};
   std::int64_t start = 8 * numbers;
-  if (std::holds_alternative<io::FileStart>(scene.initial)) start += 8 * 3 * all_sites;
+  if (auto const* const file = std::get_if<io::FileStart>(&scene.initial)) {
+    constexpr std::int64_t of_planes = 512 << 20;
+    start += io::is_ovf(file->path) ? 8 * numbers_of_all
+                                    : 8 * numbers + std::min(8 * numbers_of_all, of_planes);
+  }
   if (std::holds_alternative<io::InertiaFile>(scene.system.inertia) &&
       scene.system.kind == io::SystemKind::rigid_body) {
     memory.field += field_bytes<Real>(lattice, 6);
-    start += 8 * (9 + 6 + 6) * all_sites;
+    start += 8 * (9 + 6 + 6) * all.sites();
   }
-  // Two frames on their way, and the copies of one that a compressing filter reads and writes.
-  bool const copies = scene.output.compression > 0 || scene.output.chunk > 0;
-  std::int64_t const frame = 3 * static_cast<std::int64_t>(sizeof(Real));
+  // Two frames or pieces of them on their way, and the copies of a chunk that filters make.
+  auto const pieces = io::frame_pieces(
+      all.shape, sizeof(Real), {scene.output.compression, scene.output.chunk}, planes_at_once);
   std::int64_t const frames =
-      (writes ? (copies ? 4 : 2) * frame * all_sites : 0) + (is_part ? frame * lattice.sites() : 0);
+      (writes ? static_cast<std::int64_t>(2 * pieces.bytes + pieces.copied) : 0) +
+      (is_part ? static_cast<std::int64_t>(sizeof(Real)) * numbers : 0);
   // A field on its way into a checkpoint, in double.
   bool const stores = !scene.output.checkpoint_every.is_never();
   std::int64_t const of_number = sizeof(Real) == sizeof(double) ? 8 : 12;
-  std::int64_t const checkpoint =
-      stores ? of_number * numbers + (writes && is_part ? 8 * 3 * all_sites : 0) : 0;
+  std::int64_t const of_planes =
+      is_part && writes ? 8 * 3 * all.shape[0] * all.shape[1] * planes_at_once : 0;
+  std::int64_t const checkpoint = stores ? of_number * numbers + of_planes : 0;
   memory.files = std::max(start - memory.work, frames + checkpoint);
   return memory;
 }
@@ -162,8 +174,8 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
         plan.variant.stable_step(field_bound(scene, lattice, plan.times), scene.system.damping,
                                  scene.system.precession, plan.options);
   bool const in_double = precision == Precision::double_precision;
-  plan.memory = in_double ? memory_of<double>(scene, lattice, plan.variant, precision)
-                          : memory_of<float>(scene, lattice, plan.variant, precision);
+  plan.memory = in_double ? memory_of<double>(scene, lattice, plan.variant, precision, 0)
+                          : memory_of<float>(scene, lattice, plan.variant, precision, 0);
   auto const count = [&](std::int64_t every) { return (integrator.steps + every - 1) / every + 1; };
   plan.frames = count(scene.output.every);
   std::int64_t const sample_bytes = 8 * 7;
@@ -189,11 +201,12 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
   return std::nullopt;
 }
 
-void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local) {
+void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local,
+               std::int64_t planes_at_once) {
   plan.lattice = local;
   plan.memory = precision == Precision::double_precision
-                    ? memory_of<double>(scene, local, plan.variant, precision)
-                    : memory_of<float>(scene, local, plan.variant, precision);
+                    ? memory_of<double>(scene, local, plan.variant, precision, planes_at_once)
+                    : memory_of<float>(scene, local, plan.variant, precision, planes_at_once);
 }
 
 bool fits(Plan const& plan) { return plan.memory.total() <= available_memory(); }

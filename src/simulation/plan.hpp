@@ -51,7 +51,9 @@ std::int64_t available_memory();
 bool fits(Plan const& plan);
 
 /// Makes it the plan of one of several ranks: with its part of the lattice, and memory for that.
-void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local);
+/// The first takes so many planes of the others at once.
+void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local,
+               std::int64_t planes_at_once);
 
 /// Throws io::SceneError when the run needs more memory than there is for one of so many ranks on
 /// this machine.

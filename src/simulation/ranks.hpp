@@ -3,10 +3,11 @@
 
 #include "failure.hpp"
 
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/site_box.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +18,6 @@
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace cayspin::simulation {
 
@@ -50,14 +50,21 @@ class Ranks {
   virtual PartOfRank divide(cayspin::Lattice const& lattice, int ghosts,
                             std::array<int, 2> const& parts) = 0;
 
+  /// Of a lattice with a part for each rank, the planes along z that the first takes at once: those
+  /// of a part.
+  std::int64_t planes_at_once(cayspin::Lattice const& lattice) const {
+    return std::max<std::int64_t>(1, whole(lattice).shape[2] / count());
+  }
+
   /// Which of two things one of the ranks wants?
   virtual std::array<bool, 2> any(std::array<bool, 2> wanted) const = 0;
   /// Replaces the text by that of the first rank.
   virtual void tell(std::string& text) const = 0;
-  /// Puts the numbers of a part's own sites, x fastest, into those of the whole lattice, which
-  /// only the first rank has.
-  virtual void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, void const* own,
-                      void* whole) const = 0;
+  /// Puts those of the numbers of a part's own sites, x fastest, that are in so many planes along z
+  /// from number `first` on into `gathered`: planes of the whole lattice, which only the first rank
+  /// has.
+  virtual void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, std::int64_t first,
+                      std::int64_t planes, void const* own, void* gathered) const = 0;
 
   /// Are all given the same text?
   bool same(std::string const& text) const {
@@ -116,14 +123,6 @@ inline io::SiteBox own_sites(cayspin::Lattice const& local) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       box.begin[axis] = local.part->begin()[axis] + local.ghosts[axis].before;
   return box;
-}
-
-/// Of numbers of all sites, `of_site` of each, those of a part.
-template <class Number>
-std::vector<Number> part_of(cayspin::Lattice const& local, std::int64_t of_site,
-                            std::vector<Number> of_all) {
-  if (local.part == nullptr) return of_all;
-  return io::numbers_in(own_sites(local), whole(local).shape, of_site, of_all);
 }
 
 }  // namespace cayspin::simulation

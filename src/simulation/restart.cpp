@@ -99,11 +99,15 @@ Restart::Restart(LeftBehind from, io::Scene const& scene, Plan const& plan, Prec
   if (uses_checkpoint_ && alike) memory_ = from_.checkpoint.get();
 }
 
+std::vector<double> Restart::spins(io::SiteBox const& box) const {
+  return uses_checkpoint_ ? from_.checkpoint->field("spins", box)
+                          : io::read_spins(from_.path, from_.trajectory->header.shape, box);
+}
+
 std::vector<double> Restart::spins() const {
-  if (!uses_checkpoint_) return io::read_spins(from_.path, from_.trajectory->header.shape);
-  std::vector<double> spins;
-  from_.checkpoint->field("spins", spins);
-  return spins;
+  return spins(
+      {{0, 0, 0},
+       uses_checkpoint_ ? from_.checkpoint->header().shape : from_.trajectory->header.shape});
 }
 
 std::vector<std::filesystem::path> Restart::files() const {

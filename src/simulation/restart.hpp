@@ -39,7 +39,8 @@ class Restart {
           std::int64_t end);
 
   std::int64_t step() const { return step_; }
-  /// As io::read_spins gives them: bits are kept.
+  /// Those of a box, or all, as io::read_spins gives them: bits are kept.
+  std::vector<double> spins(io::SiteBox const& box) const;
   std::vector<double> spins() const;
   /// What the run remembered, where that is needed.
   io::CheckpointReader* memory() const { return memory_; }

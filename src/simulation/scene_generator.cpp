@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_generator.hpp"
 
-#include "ranks.hpp"
 #include "space.hpp"
 
 #include <cayspin/io/scene.hpp>
 
 namespace cayspin::simulation {
-namespace {
-
-std::vector<SymmetricTensor> inverse_inertia_of(io::Scene const& scene, Lattice const& lattice) {
-  auto all = io::inverse_inertia(scene);
-  return all.size() == 1 ? all : part_of(lattice, 1, std::move(all));
-}
-
-}  // namespace
-
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice)
     : SceneGenerator(scene, lattice,
-                     scene.system.kind == io::SystemKind::llg
-                         ? std::vector{SymmetricTensor{}}
-                         : inverse_inertia_of(scene, lattice)) {}
+                     scene.system.kind == io::SystemKind::llg ? std::vector{SymmetricTensor{}}
+                                                              : io::inverse_inertia(scene)) {}
 
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,

@@ -28,11 +28,13 @@ constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;
 
-// Never 0, so that a block of zeros is no field with its checksum.
-std::int64_t checksum(std::span<double const> numbers) {
+void add(Fletcher32& sum, std::span<double const> numbers) {
   auto const bytes = std::as_bytes(numbers);
-  return std::int64_t{1} + fletcher32(bytes.data(), bytes.size());
+  sum.add(bytes.data(), bytes.size());
 }
+
+// Never 0, so that a block of zeros is no field with its checksum.
+std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.value(); }
 
 }  // namespace
 
@@ -71,31 +73,46 @@ class CheckpointWriter::Implementation {
   }
 
   void field(std::string const& name, std::vector<double> const& numbers) {
-    require_open();
     auto const sites =
         std::accumulate(extents_.begin(), extents_.end(), hsize_t{1}, std::multiplies<>{});
     if (numbers.empty() || numbers.size() % sites != 0 || numbers.size() / sites > most_components)
       throw std::invalid_argument(path_.string() + ": field " + name + " has " +
                                   std::to_string(numbers.size()) + " numbers for " +
                                   std::to_string(sites) + " sites; accepted: 1 to 3 of each site");
-    space_.reserve(numbers.size() * sizeof(double) + checkpoint_overhead_bytes, path_);
-    auto extents = extents_;
-    extents.push_back(numbers.size() / sites);
-    auto const action = "cannot write dataset " + name;
-    DataspaceHandle const space(
-        check(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), path_,
-              action));
-    DatasetHandle const dataset(check(H5Dcreate2(file_.get(), name.c_str(), stored_, space.get(),
-                                                 H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                                      path_, action));
-    check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
-          path_, action);
-    RootAttributes(dataset.get(), path_).create("checksum", checksum(numbers));
+    planes(name, numbers.size() / sites, numbers);
+  }
+
+  void planes(std::string const& name, hsize_t components, std::vector<double> const& numbers) {
+    require_open();
+    auto const of_plane = components * extents_[1] * extents_[2];
+    if (components < 1 || components > most_components || numbers.empty() ||
+        numbers.size() % of_plane != 0)
+      throw std::invalid_argument(path_.string() + ": field " + name + " has " +
+                                  std::to_string(numbers.size()) +
+                                  " numbers; accepted: those of whole planes along z");
+    auto const planes = numbers.size() / of_plane;
+    if (written_planes_ == 0) create_field(name, components);
+    if (name != name_ || components != extents_of_field_[3] ||
+        written_planes_ + planes > extents_[0])
+      throw std::logic_error(path_.string() + ": field " + name + " has other planes than " +
+                             name_ + ", which is not whole");
+    auto extents = extents_of_field_;
+    extents[0] = planes;
+    write_block(field_.get(), H5T_NATIVE_DOUBLE, {written_planes_, 0, 0, 0}, extents,
+                numbers.data(), path_);
+    add(sum_, numbers);
+    written_planes_ += planes;
+    if (written_planes_ < extents_[0]) return;
+    RootAttributes(field_.get(), path_).create("checksum", checksum(sum_));
+    field_.close();
     has_spins_ = has_spins_ || name == "spins";
+    written_planes_ = 0;
   }
 
   void commit() {
     require_open();
+    if (written_planes_ > 0)
+      throw std::logic_error(path_.string() + ": field " + name_ + " is not whole");
     if (!has_spins_)
       throw std::logic_error(path_.string() + ": a checkpoint without a field spins is of no use");
     std::string const action = "cannot write the file";
@@ -115,13 +132,34 @@ class CheckpointWriter::Implementation {
       throw std::logic_error(path_.string() + ": the checkpoint has its name already");
   }
 
+  void create_field(std::string const& name, hsize_t components) {
+    name_ = name;
+    sum_ = {};
+    extents_of_field_ = extents_;
+    extents_of_field_.push_back(components);
+    space_.reserve(std::accumulate(extents_of_field_.begin(), extents_of_field_.end(),
+                                   sizeof(double), std::multiplies<>{}) +
+                       checkpoint_overhead_bytes,
+                   path_);
+    auto const action = "cannot write dataset " + name;
+    DataspaceHandle const space(
+        check(H5Screate_simple(4, extents_of_field_.data(), nullptr), path_, action));
+    field_ = DatasetHandle(check(H5Dcreate2(file_.get(), name.c_str(), stored_, space.get(),
+                                            H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                 path_, action));
+  }
+
   std::filesystem::path path_;
   hid_t stored_;
-  Extents extents_;
+  Extents extents_, extents_of_field_;
   NewFile file_;
   OpenFileSpace space_;
   GroupHandle numbers_;
   bool has_spins_ = false;
+  DatasetHandle field_;  // of which some planes are written, but not all
+  std::string name_;
+  hsize_t written_planes_ = 0;
+  Fletcher32 sum_;
 };
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path path, CheckpointHeader const& header) {
@@ -144,6 +182,12 @@ void CheckpointWriter::number(std::string const& name, double& value) {
 void CheckpointWriter::field(std::string const& name, std::vector<double>& numbers) {
   QuietErrors const quiet;
   implementation_->field(name, numbers);
+}
+
+void CheckpointWriter::planes(std::string const& name, std::int64_t components,
+                              std::vector<double> const& numbers) {
+  QuietErrors const quiet;
+  implementation_->planes(name, static_cast<hsize_t>(components), numbers);
 }
 
 void CheckpointWriter::commit() {
@@ -181,19 +225,30 @@ class CheckpointReader::Implementation {
     return RootAttributes(numbers_.get(), path_).read_real(name.c_str());
   }
 
-  std::vector<double> field(std::string const& name) const {
+  std::vector<double> field(std::string const& name, SiteBox const& box) const {
     auto const dataset = open_dataset(file_.get(), name.c_str(), 4, path_);
     auto const extents = dataset_extents(dataset.get(), path_);
     // Before memory is taken for them.
     if (!std::equal(header_.shape.rbegin(), header_.shape.rend(), extents.begin()) ||
         extents[3] > most_components)
       throw_failure(path_, "cannot read dataset " + name, "its extents are not those of the spins");
-    std::vector<double> numbers(
-        std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>{}));
-    read_block(dataset.get(), H5T_NATIVE_DOUBLE, Extents(4), extents, numbers.data(), path_);
-    if (RootAttributes(dataset.get(), path_).read_integer("checksum") != checksum(numbers))
+    Fletcher32 sum;
+    auto const components = static_cast<std::int64_t>(extents[3]);
+    auto const at_once = planes_to_read(header_.shape, 8 * components);
+    auto chosen = read_by_planes(
+        box, header_.shape, components, at_once, [&](std::int64_t first, std::int64_t planes) {
+          auto of_planes = extents;
+          of_planes[0] = static_cast<hsize_t>(planes);
+          std::vector<double> numbers(
+              std::accumulate(of_planes.begin(), of_planes.end(), hsize_t{1}, std::multiplies<>{}));
+          read_block(dataset.get(), H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(first), 0, 0, 0},
+                     of_planes, numbers.data(), path_);
+          add(sum, numbers);
+          return numbers;
+        });
+    if (RootAttributes(dataset.get(), path_).read_integer("checksum") != checksum(sum))
       throw_failure(path_, "cannot read dataset " + name, "its numbers are not those written");
-    return numbers;
+    return chosen;
   }
 
   void read_all() const {
@@ -205,7 +260,7 @@ class CheckpointReader::Implementation {
     check(H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names), path_,
           "cannot read the checkpoint");
     for (auto const& name : names)
-      if (name != "numbers") field(name);
+      if (name != "numbers") field(name, {});
   }
 
   CheckpointHeader const& header() const { return header_; }
@@ -234,8 +289,12 @@ void CheckpointReader::number(std::string const& name, double& value) {
 }
 
 void CheckpointReader::field(std::string const& name, std::vector<double>& numbers) {
+  numbers = field(name, SiteBox{{0, 0, 0}, header().shape});
+}
+
+std::vector<double> CheckpointReader::field(std::string const& name, SiteBox const& box) const {
   QuietErrors const quiet;
-  numbers = implementation_->field(name);
+  return implementation_->field(name, box);
 }
 
 bool is_checkpoint(std::filesystem::path const& path) {

@@ -6,7 +6,24 @@
 
 namespace cayspin::io {
 
-/// The checksum of HDF5's filter fletcher32, for an even number of bytes.
-std::uint32_t fletcher32(std::byte const* data, std::size_t bytes);
+/// The checksum of HDF5's filter fletcher32, of bytes that come in pieces of an even number each.
+class Fletcher32 {
+ public:
+  void add(std::byte const* data, std::size_t bytes);
+  void add_zeros(std::size_t bytes);
+  /// What another one was given.
+  void add(Fletcher32 const& later);
+
+  std::uint32_t value() const;
+
+ private:
+  std::uint64_t words_ = 0, sum_ = 0, sum_of_sums_ = 0;
+};
+
+inline std::uint32_t fletcher32(std::byte const* data, std::size_t bytes) {
+  Fletcher32 sum;
+  sum.add(data, bytes);
+  return sum.value();
+}
 
 }  // namespace cayspin::io

@@ -16,6 +16,8 @@ inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
 inline constexpr std::size_t checksum_bytes = 4;
+/// Who reads or writes a part of a chunk has all of it in memory. HDF5 allows 4 GiB.
+inline constexpr std::uint64_t most_chunk_bytes = 256 << 20;
 inline constexpr int most_pending = 512;  // samples that are written at once
 inline constexpr char const* reduced_units = "reduced";
 inline constexpr char const* si_units = "SI";
@@ -32,11 +34,10 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
 /// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame or at
 /// most `planes` of it along z, and where that passes `limit` bytes, the frame cut into equal slabs
 /// along z, then y, then x.
-/// HDF5 stores a chunk's length in 32 bits, the 4 bytes of the checksum included.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
                                           std::int64_t planes = 0,
-                                          std::uint64_t limit = 0xFFFFFFFFu - 4u) {
+                                          std::uint64_t limit = most_chunk_bytes) {
   std::array<hsize_t, 5> chunk{1, 1, 1, 1, 3};
   std::uint64_t inner = 3 * bytes_per_component;
   for (int axis = 0; axis < 3; ++axis) {

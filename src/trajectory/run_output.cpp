@@ -64,11 +64,12 @@ class RunOutput::Implementation {
       xdmf_.emplace(beside(path, ".xdmf"), path, header.shape, options.spacing, single_,
                     options.overwrite);
     if (options.table) table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite);
-    std::size_t bytes = 3 * (single_ ? sizeof(float) : sizeof(double));
-    for (auto const extent : header.shape) bytes *= static_cast<std::size_t>(extent);
+    planes_ = header.shape[2];
+    pieces_ = frame_pieces(header.shape, single_ ? sizeof(float) : sizeof(double), options.storage,
+                           options.most_planes);
     for (auto& buffer : buffers_) {
-      buffer = std::make_unique<std::byte[]>(
-          bytes + checksum_bytes);  // zeroed: all memory is taken before a run
+      // Zeroed: all memory is taken before a run.
+      buffer = std::make_unique<std::byte[]>(pieces_.bytes);
       free_.push_back(buffer.get());
     }
     thread_ = std::jthread([this](std::stop_token const& stop) { write_parts(stop); });
@@ -92,16 +93,16 @@ class RunOutput::Implementation {
     return free_.front();
   }
 
+  void write_piece() {
+    if (next_plane_ + pieces_.planes >= planes_)
+      throw std::logic_error(path().string() + ": write_piece for the last piece of a frame");
+    hand_over_planes(pieces_.planes, std::nullopt);
+  }
+
   void write_frame(Sample const& sample) {
-    require_open();
-    if (!lent_) throw std::logic_error(path().string() + ": write_frame without a frame() before");
-    Part part{std::exchange(samples_, {}), sample, nullptr};
-    std::unique_lock lock(mutex_);
-    rethrow();
-    lent_ = false;
-    part.spins = free_.front();
-    free_.pop_front();
-    hand_over(std::move(part), lock);
+    if (next_plane_ + pieces_.planes < planes_)
+      throw std::logic_error(path().string() + ": write_frame before the last piece of a frame");
+    hand_over_planes(planes_ - next_plane_, sample);
   }
 
   void write_scalars(Sample const& sample) {
@@ -128,12 +129,28 @@ class RunOutput::Implementation {
   std::filesystem::path const& path() const { return file_->path(); }
 
  private:
-  // What the run hands over at once: samples, and then a frame or none.
+  // What the run hands over at once: samples, and then planes of a frame, and then its end; or some
+  // of these.
   struct Part {
-    std::vector<Sample> samples;
-    std::optional<Sample> frame;
+    std::vector<Sample> samples = {};
+    std::int64_t planes = 0;
     std::byte* spins = nullptr;
+    std::optional<Sample> frame = {};
   };
+
+  void hand_over_planes(std::int64_t planes, std::optional<Sample> const& frame) {
+    require_open();
+    if (!lent_)
+      throw std::logic_error(path().string() + ": spins handed over without a frame() before");
+    Part part{.samples = std::exchange(samples_, {}), .planes = planes, .frame = frame};
+    std::unique_lock lock(mutex_);
+    rethrow();
+    lent_ = false;
+    part.spins = free_.front();
+    free_.pop_front();
+    next_plane_ = frame ? 0 : next_plane_ + planes;
+    hand_over(std::move(part), lock);
+  }
 
   void require_open() const {
     if (ended_) throw std::logic_error(path().string() + ": the run has ended");
@@ -146,7 +163,7 @@ class RunOutput::Implementation {
   void hand_over_samples() {
     if (samples_.empty()) return;
     std::unique_lock lock(mutex_);
-    hand_over({std::exchange(samples_, {}), std::nullopt, nullptr}, lock);
+    hand_over({.samples = std::exchange(samples_, {})}, lock);
   }
 
   void hand_over(Part part, std::unique_lock<std::mutex>& lock) {
@@ -190,14 +207,17 @@ class RunOutput::Implementation {
     for (auto const& [step, time, scalars] : part.samples)
       file_->write_scalars(step, time, scalars);
     if (table_) table_->append(part.samples);
+    if (part.spins) file_->write_planes(part.planes, part.spins);
     if (!part.frame) return;
     auto const& [step, time, scalars] = *part.frame;
-    file_->write_frame_with_room(step, time, scalars, part.spins);
+    file_->end_frame(step, time, scalars);
     if (xdmf_) xdmf_->add_frame(time);
   }
 
   bool single_, ended_ = false;
-  bool lent_ = false;  // frame() was called for the next frame
+  bool lent_ = false;  // frame() was called for the next frame or piece
+  std::int64_t planes_ = 0, next_plane_ = 0;
+  FramePieces pieces_;
   std::optional<TrajectoryFile> file_;
   std::optional<XdmfFile> xdmf_;
   std::optional<ScalarTable> table_;
@@ -228,6 +248,8 @@ Real* RunOutput::frame() {
 }
 template float* RunOutput::frame<float>();
 template double* RunOutput::frame<double>();
+
+void RunOutput::write_piece() { not_moved(implementation_).write_piece(); }
 
 void RunOutput::write_frame(std::int64_t step, double time, Scalars const& scalars) {
   not_moved(implementation_).write_frame({step, time, scalars});

@@ -37,19 +37,19 @@ hsize_t whole_frames(RealDataset const& spins, std::optional<ScalarSeries> const
 }
 
 // As they stand in the file: what was a float is one again.
-std::uint32_t checksum_of(Sample const& sample, std::vector<double> const& spins, bool single) {
-  auto const sum = [&](auto const& stored) {
+void add(Fletcher32& sum, std::vector<double> const& spins, bool single) {
+  auto const add_bytes = [&](auto const& stored) {
     auto const bytes = std::as_bytes(std::span(stored));
-    return spins_checksum(sample, fletcher32(bytes.data(), bytes.size()));
+    sum.add(bytes.data(), bytes.size());
   };
-  return single ? sum(std::vector<float>(spins.begin(), spins.end())) : sum(spins);
+  single ? add_bytes(std::vector<float>(spins.begin(), spins.end())) : add_bytes(spins);
 }
 
 }  // namespace
 
 StoredSpins::StoredSpins(std::filesystem::path const& path,
                          std::array<std::int64_t, 3> const& shape)
-    : path_(path), dataset_(path, "/spins"), frame_{3} {
+    : path_(path), shape_(shape), dataset_(path, "/spins"), frame_{3} {
   for (auto const extent : shape) frame_.insert(frame_.begin(), static_cast<hsize_t>(extent));
   auto const& extents = dataset_.extents();
   bool const framed = extents.size() == 5;
@@ -67,17 +67,32 @@ StoredSpins::StoredSpins(std::filesystem::path const& path,
   frame_.insert(frame_.begin(), 1);
 }
 
-std::vector<double> StoredSpins::last() const { return checked(begin_); }
+std::vector<double> StoredSpins::last() const { return last(all()); }
+std::vector<double> StoredSpins::last(SiteBox const& box) const { return checked(begin_, box); }
 
-std::vector<double> StoredSpins::checked(Extents const& begin) const {
+std::vector<double> StoredSpins::checked(Extents const& begin, SiteBox const& box) const {
   QuietErrors const quiet;
-  auto spins = dataset_.read(begin, frame_);
+  auto const axis = frame_.size() - 4;  // z
+  // HDF5 has a chunk whole in memory for any part of it.
+  auto const of_chunk = static_cast<std::int64_t>(dataset_.chunk()[axis]);
+  auto const at_once =
+      std::max(of_chunk, planes_to_read(shape_, 3 * sizeof(double)) / of_chunk * of_chunk);
+  bool const single =
+      dataset_.epsilon() == static_cast<double>(std::numeric_limits<float>::epsilon());
+  Fletcher32 sum;
+  auto spins =
+      read_by_planes(box, shape_, 3, at_once, [&](std::int64_t first, std::int64_t planes) {
+        auto from = begin, extents = frame_;
+        from[axis] = static_cast<hsize_t>(first);
+        extents[axis] = static_cast<hsize_t>(planes);
+        auto numbers = dataset_.read(from, extents);
+        if (series_) add(sum, numbers, single);
+        return numbers;
+      });
   if (!series_ || !series_->has_checksums()) return spins;
   auto const frame = static_cast<std::int64_t>(begin[0]);
   auto const sample = series_->read(frame, frame + 1, path_).at(0);
-  bool const single =
-      dataset_.epsilon() == static_cast<double>(std::numeric_limits<float>::epsilon());
-  if (series_->spins_checksum(frame, path_) != checksum_of(sample, spins, single))
+  if (series_->spins_checksum(frame, path_) != spins_checksum(sample, sum.value()))
     dataset_.refuse(fmt::format("frame {} is damaged: its checksum differs", frame));
   return spins;
 }
@@ -88,12 +103,17 @@ std::vector<double> StoredSpins::frame(std::int64_t frame) const {
   if (frame < 0 || static_cast<hsize_t>(frame) > begin[0])
     dataset_.refuse(fmt::format("it has no frame {}; accepted: 0 to {}", frame, begin[0]));
   begin[0] = static_cast<hsize_t>(frame);
-  return checked(begin);
+  return checked(begin, all());
 }
 
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape) {
   return read_guarded(path, [&] { return StoredSpins(path, shape).last(); });
+}
+
+std::vector<double> read_spins(std::filesystem::path const& path,
+                               std::array<std::int64_t, 3> const& shape, SiteBox const& box) {
+  return read_guarded(path, [&] { return StoredSpins(path, shape).last(box); });
 }
 
 std::vector<double> read_spins(std::filesystem::path const& path,

@@ -4,6 +4,8 @@
 #include "hdf5/real_dataset.hpp"
 #include "scalar_series.hpp"
 
+#include <cayspin/io/site_box.hpp>
+
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -18,17 +20,20 @@ class StoredSpins {
   /// Throws unless it fits a lattice (nx, ny, nz), and, where it has frames, holds a whole one.
   StoredSpins(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape);
 
-  /// The state or the last whole frame, packed as (nz, ny, nx, 3). Throws where a trajectory's
-  /// frame is not as it was written.
+  /// The state or the last whole frame, packed as (nz, ny, nx, 3), or of it the sites of a box.
+  /// Throws where a trajectory's frame is not as it was written.
   std::vector<double> last() const;
+  std::vector<double> last(SiteBox const& box) const;
 
   /// Whole frame number `frame`. Throws also where there is none.
   std::vector<double> frame(std::int64_t frame) const;
 
  private:
-  std::vector<double> checked(Extents const& begin) const;
+  SiteBox all() const { return {{0, 0, 0}, shape_}; }
+  std::vector<double> checked(Extents const& begin, SiteBox const& box) const;
 
   std::filesystem::path path_;
+  std::array<std::int64_t, 3> shape_;
   RealDataset dataset_;
   std::optional<ScalarSeries> series_;  // of a trajectory file
   Extents begin_, frame_;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "checksum.hpp"
-#include "fletcher32.hpp"
 #include "format.hpp"
+#include "frame_writer.hpp"
 #include "hdf5/attribute.hpp"
-#include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
@@ -12,12 +11,8 @@
 
 #include <cayspin/io/trajectory.hpp>
 
-#include <algorithm>
 #include <bit>
 #include <chrono>
-#include <cstring>
-#include <limits>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -57,28 +52,6 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   attributes.create("complete", std::int64_t{0});
 }
 
-// A frame that never reached the disk reads as NaN, not as zeros.
-DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
-                           TrajectoryStorage const& storage, std::filesystem::path const& path) {
-  bool const single = header.precision == single_precision;
-  auto const chunk =
-      frame_chunk(header.shape, single ? sizeof(float) : sizeof(double), storage.chunk);
-  std::array<hsize_t, 4> inner{0, 0, 0, 3};
-  for (int axis = 0; axis < 3; ++axis) inner[2 - axis] = static_cast<hsize_t>(header.shape[axis]);
-  PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
-  auto const missing = std::numeric_limits<double>::quiet_NaN();
-  check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path,
-        "cannot create dataset spins");
-  if (storage.compression > 0) {
-    check(H5Pset_shuffle(properties.get()), path, "cannot create dataset spins");
-    check(H5Pset_deflate(properties.get(), static_cast<unsigned>(storage.compression)), path,
-          "cannot create dataset spins");
-  }
-  check(H5Pset_fletcher32(properties.get()), path, "cannot create dataset spins");
-  return create_growing_dataset(file, "spins", single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, chunk,
-                                std::move(properties), path, inner);
-}
-
 void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& storage) {
   require_precision(header.precision);
   require_shape(header.shape);
@@ -113,38 +86,26 @@ class TrajectoryFile::Implementation {
     if (single != single_)
       throw std::logic_error(path_.string() + ": spins given in another precision than the file's");
     require_spins(spins);
-    write_whole(sample, [&] {
-      append_block(spins_.get(), single ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
-                   {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_, spins, path_);
-      return fletcher32(static_cast<std::byte const*>(spins), frame_bytes_);
-    });
+    begin_frame();
+    spins_.add(planes_, spins);
+    end_frame(sample);
   }
 
-  // What the filter of HDF5 would do takes it two copies of the frame.
-  void write_frame_with_room(Sample const& sample, std::byte* spins) {
-    if (!raw_chunks_) return write_frame(sample, spins, single_);
+  void write_planes(std::int64_t planes, std::byte* spins) {
     require_spins(spins);
-    write_whole(sample, [&] {
-      auto const checksum = fletcher32(spins, frame_bytes_);
-      std::memcpy(spins + frame_bytes_, &checksum, checksum_bytes);
-      append_raw_chunk(spins_.get(), {static_cast<hsize_t>(frames_), 0, 0, 0, 0}, frame_extents_,
-                       spins, frame_bytes_ + checksum_bytes, path_);
-      return checksum;
-    });
+    if (spins_.planes() == 0) begin_frame();
+    spins_.add_in_room(planes, spins);
   }
 
   // Readers count a frame once its scalars are there, so those reach the disk after its spins.
-  // `write_spins` returns their sum.
-  template <class WriteSpins>
-  void write_whole(Sample const& sample, WriteSpins const& write_spins) {
+  void end_frame(Sample const& sample) {
     require_open();
-    space_.reserve(frame_bytes_ + overhead_bytes, path_);
-    write_pending();
-    std::uint32_t const sum = write_spins();
+    if (!spins_.is_whole())
+      throw std::logic_error(path_.string() + ": a frame ends before its last plane");
     flush();
-    frame_series_.append({sample}, path_, spins_checksum(sample, sum));
+    frame_series_.append({sample}, path_, spins_checksum(sample, spins_.checksum().value()));
     flush();
-    ++frames_;
+    spins_.begin(++frames_);
   }
 
   void write_scalars(Sample const& sample) {
@@ -178,19 +139,19 @@ class TrajectoryFile::Implementation {
  private:
   void create_datasets(hid_t file, TrajectoryHeader const& header,
                        TrajectoryStorage const& storage) {
-    spins_ = create_spins(file, header, storage, path_);
-    frame_extents_ = dataset_extents(spins_.get(), path_);
-    frame_extents_[0] = 1;
-    frame_bytes_ = single_ ? sizeof(float) : sizeof(double);
-    for (auto const extent : frame_extents_) frame_bytes_ *= extent;
-    auto const chunk =
-        frame_chunk(header.shape, single_ ? sizeof(float) : sizeof(double), storage.chunk);
-    raw_chunks_ = std::endian::native == std::endian::little && storage.compression == 0 &&
-                  std::ranges::equal(chunk, frame_extents_);
+    spins_ = FrameWriter(file, header, storage, path_);
+    planes_ = header.shape[2];
     frame_series_ = ScalarSeries::create(file, path_);
     scalars_ = GroupHandle(check(H5Gcreate2(file, "scalars", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                                  path_, "cannot create group scalars"));
     sample_series_ = ScalarSeries::create(scalars_.get(), path_);
+  }
+
+  void begin_frame() {
+    require_open();
+    spins_.begin(frames_);
+    space_.reserve(spins_.frame_bytes() + overhead_bytes, path_);
+    write_pending();
   }
 
   void require_open() const {
@@ -223,13 +184,11 @@ class TrajectoryFile::Implementation {
   std::filesystem::path path_;
   bool single_;
   FileHandle file_;
-  DatasetHandle spins_;
+  FrameWriter spins_;
+  std::int64_t planes_ = 0;  // of a frame
   GroupHandle scalars_;
   ScalarSeries frame_series_, sample_series_;
   OpenFileSpace space_;
-  Extents frame_extents_;
-  std::uint64_t frame_bytes_ = 0;
-  bool raw_chunks_ = false;
   std::vector<Sample> pending_;
   Clock::time_point flushed_ = Clock::now();
   std::int64_t frames_ = 0;
@@ -257,10 +216,14 @@ void TrajectoryFile::write_frame(std::int64_t step, double time, Scalars const& 
   not_moved(implementation_).write_frame({step, time, scalars}, spins, false);
 }
 
-void TrajectoryFile::write_frame_with_room(std::int64_t step, double time, Scalars const& scalars,
-                                           std::byte* spins) {
+void TrajectoryFile::write_planes(std::int64_t planes, std::byte* spins) {
   QuietErrors const quiet;
-  not_moved(implementation_).write_frame_with_room({step, time, scalars}, spins);
+  not_moved(implementation_).write_planes(planes, spins);
+}
+
+void TrajectoryFile::end_frame(std::int64_t step, double time, Scalars const& scalars) {
+  QuietErrors const quiet;
+  not_moved(implementation_).end_frame({step, time, scalars});
 }
 
 void TrajectoryFile::write_scalars(std::int64_t step, double time, Scalars const& scalars) {

@@ -87,6 +87,16 @@ struct Still {
         damping);
   }
 };
+/// One that knows the means over planes normal to an axis.
+template <int Axis>
+struct Layered {
+  static auto generator_on(Lattice const& lattice) {
+    return LandauLifshitz(
+        EffectiveField(Exchange(lattice, 0.4),
+                       LayerAveragedSlabDemag<Kokkos::HostSpace>(lattice, Axis, 0.7)),
+        0.1);
+  }
+};
 struct Undamped {
   static auto generator_on(Lattice const& lattice) { return Still::generator_on(lattice, 0); }
 };
@@ -220,6 +230,18 @@ TYPED_TEST(EqualBits, RedBlackAndSeries) {
       1, [](Spins const& spins) { return RedBlack2<Spins>(spins); });
   this->template expect_equal_bits<Still>(4,
                                           [](Spins const& spins) { return Series4<Spins>(spins); });
+}
+
+TYPED_TEST(EqualBits, AveragesOverLayers) {
+  using Spins = typename TypeParam::Spins;
+  if constexpr (std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>) {
+    this->template expect_equal_bits<Layered<1>>(
+        2, [](Spins const& spins) { return LieHeun<Spins>(spins); });
+    this->template expect_equal_bits<Layered<2>>(
+        4, [](Spins const& spins) { return Rkmk4<Spins>(spins); });
+    this->template expect_equal_bits<Layered<2>>(
+        1, [](Spins const& spins) { return ImplicitMidpoint<Spins>(spins); }, 2, 2);
+  }
 }
 
 TYPED_TEST(EqualBits, EnergyProjection) {

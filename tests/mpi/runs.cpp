@@ -111,11 +111,14 @@ TEST_F(OnRanks, WriteTheSameFile) {
   for (std::string const precision : {"double", "single"}) {
     Arguments const in_precision{"--precision", precision};
     ASSERT_EQ(start(run_of(scene, "one.h5", in_precision)).status, 0);
-    for (auto const& [ranks, threads, cut] :
-         {std::tuple{1, "2", ""}, std::tuple{2, "1", ""}, std::tuple{2, "2", "2,1"},
-          std::tuple{3, "1", ""}, std::tuple{4, "1", "2,2"}, std::tuple{4, "1", "1,3"}}) {
-      SCOPED_TRACE(fmt::format("{} ranks, {} threads, {}", ranks, threads, cut));
-      Arguments more{"--precision", precision, "--threads", threads};
+    // In chunks, the first rank takes a frame by pieces of whole ones.
+    for (auto const& [ranks, threads, cut, chunk] :
+         {std::tuple{1, "2", "", "13"}, std::tuple{2, "1", "", "13"},
+          std::tuple{2, "2", "2,1", "1"}, std::tuple{3, "1", "", "2"},
+          std::tuple{4, "1", "2,2", "2"}, std::tuple{4, "1", "1,3", "1"}}) {
+      SCOPED_TRACE(fmt::format("{} ranks, {} threads, {}, chunk {}", ranks, threads, cut, chunk));
+      Arguments more{"--precision", precision, "--threads",
+                     threads,       "--set",   std::string("output.chunk=") + chunk};
       if (*cut) more.insert(more.end(), {"--ranks", cut});
       auto const outcome = start_on(ranks, run_of(scene, "other.h5", more));
       EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -124,6 +127,25 @@ TEST_F(OnRanks, WriteTheSameFile) {
                                            "rows or planes\n"
                                          : "");
       EXPECT_EQ(outcome.output, "");
+      expect_same("one.h5", "other.h5");
+    }
+  }
+}
+
+TEST_F(OnRanks, AverageOverLayers) {
+  auto const scene = write("scene.toml", film("[7, 9, 13]", "method = \"rkmk4\""));
+  for (std::string const normal : {"[0, 1, 0]", "[0, 0, 1]"}) {
+    Arguments more{"--set", fmt::format("field.slab_demag={{normal={},average='layer'}}", normal)};
+    ASSERT_EQ(start(run_of(scene, "one.h5", more)).status, 0);
+    more.insert(more.end(), {"--ranks", ""});
+    for (std::string const cut : {"1,3", "2,1", "2,2"}) {
+      SCOPED_TRACE(normal + ", " + cut);
+      more.back() = cut;
+      auto const outcome = start_on(cut == "2,2"   ? 4
+                                    : cut == "2,1" ? 2
+                                                   : 3,
+                                    run_of(scene, "other.h5", more));
+      ASSERT_EQ(outcome.status, 0) << outcome.errors;
       expect_same("one.h5", "other.h5");
     }
   }
@@ -139,9 +161,19 @@ TEST_F(OnRanks, RunEveryShippedScene) {
     Arguments more;
     if (*short_run) more = {"--set", "integrator.steps=40"};
     ASSERT_EQ(start(run_of(scene, "one.h5", more)).status, 0);
-    auto const outcome = start_on(3, run_of(scene, "other.h5", more));
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
-    expect_same("one.h5", "other.h5");
+    std::vector<std::pair<int, std::string>> divisions{{3, ""}};
+    if (setting("CAYSPIN_ALL_DIVISIONS", 0))
+      divisions.insert(divisions.end(), {{1, ""}, {2, "1,2"}, {2, "2,1"}, {4, ""}, {4, "2,2"}});
+    for (auto const& [ranks, cut] : divisions) {
+      SCOPED_TRACE(fmt::format("{} ranks, {}", ranks, cut));
+      auto in_parts = more;
+      if (!cut.empty()) in_parts.insert(in_parts.end(), {"--ranks", cut});
+      auto const outcome = start_on(ranks, run_of(scene, "other.h5", in_parts));
+      // A chain or a film is not divided along every axis.
+      if (!cut.empty() && contains(outcome.errors, "--ranks " + cut + ": accepted:")) continue;
+      ASSERT_EQ(outcome.status, 0) << outcome.errors;
+      expect_same("one.h5", "other.h5");
+    }
   }
 }
 
@@ -222,8 +254,9 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   refused({"--set", "lattice.shape=[7,9,-1]"}, "lattice.shape");
   refused({"--set", "integrator.method='rkmk4_as_printed'"},
           "integrator.method: runs on one rank alone");
-  refused({"--set", "field.slab_demag={normal=[0,0,1],average='layer'}"},
-          "field.slab_demag.average: runs on one rank alone");
+  for (std::string const slab : {"normal=[1,0,0]", "normal=[0,0,1],where='host'"})
+    refused({"--set", fmt::format("field.slab_demag={{{},average='layer'}}", slab)},
+            "field.slab_demag.average: runs on one rank alone");
   refused({"--set", "initial={expression=['0','0','k-12']}"}, "the spin of site (0, 0, 12)");
   refused({"--restart", "nothing.h5"}, "nothing.h5");
   refused({"--space", "nowhere"}, "--space nowhere");
@@ -241,6 +274,29 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   Treatment launcher;
   launcher.program = CAYSPIN_MPIEXEC;
   expect_refused(start(both, launcher), "the ranks were given different scenes");
+}
+
+TEST_F(OnRanks, SayOnceThatOneHasTooLittleMemory) {
+  auto const scene = write("scene.toml", film("[256, 256, 160]", "method = \"rkmk4\""));
+  Treatment launcher;
+  launcher.program = CAYSPIN_MPIEXEC;
+  for (int const poor : {0, 1}) {
+    SCOPED_TRACE(poor);
+    Arguments both;
+    for (int rank = 0; rank < 2; ++rank) {
+      auto const run = launch(1, run_of(scene, "out.h5"));
+      both.insert(both.end(), run.begin(), run.begin() + 2);
+      // A field is 131 MB, and no program can have 300.
+      if (rank == poor)
+        both.insert(both.end(), {"sh", "-c", "ulimit -v 300000; exec \"$0\" \"$@\""});
+      both.insert(both.end(), run.begin() + 2, run.end());
+      if (rank == 0) both.push_back(":");
+    }
+    auto const outcome = start(both, launcher);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(outcome.errors.find("memory") != std::string::npos) << outcome.errors;
+  }
 }
 
 TEST_F(OnRanks, SayOnceThatNumbersFailed) {

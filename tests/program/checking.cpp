@@ -219,5 +219,44 @@ TEST_F(Checking, HelpAndVersion) {
   }
 }
 
+// RKMK4 on parts of 8 rows and 16 planes in the middle: (10 * 18 + 12 * 20 + 14 * 22) / 3 of 8
+// * 16.
+TEST_F(Checking, SaysWhatRanksRepeat) {
+  std::string const scene = R"([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [5, 32, 64]
+boundary = "periodic"
+[field]
+exchange = 1.0
+[initial]
+uniform = [1, 0, 0]
+[integrator]
+method = "rkmk4"
+dt = 0.01
+steps = 1
+)";
+  auto const repeated = [&](std::string const& parts, std::string const& more) {
+    return check(scene, {"--ranks", parts, "--set", more}).at("repeated").get<double>();
+  };
+  std::string const same = "integrator.steps=1";
+  EXPECT_DOUBLE_EQ(repeated("4,4", same),
+                   (10. * 18 + 12 * 20 + 14 * 22 + 8 * 16) / (4 * 8 * 16) - 1);
+  EXPECT_DOUBLE_EQ(repeated("1,2", same), (34. + 36 + 38 + 32) / (4 * 32) - 1);
+  EXPECT_DOUBLE_EQ(repeated("1,2", "lattice.boundary='open'"), (33. + 34 + 35 + 32) / (4 * 32) - 1);
+  EXPECT_EQ(repeated("1,1", same), 0);
+  EXPECT_EQ(repeated("2,2", "integrator.method='euler'"), 0);
+  EXPECT_FALSE(check(scene).contains("repeated"));
+  for (std::string const parts : {"4", "0,4", "4,4,4", "9,1", "1,17"}) {
+    auto const outcome = start({"check", "scene.toml", "--ranks", parts});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors));
+    EXPECT_TRUE(contains(outcome.errors, "--ranks " + parts + ": accepted:"));
+  }
+  auto const text = start({"check", "scene.toml", "--ranks", "1,2"}).output;
+  EXPECT_TRUE(contains(text, "ranks       each repeats 9.38 % of its work"));
+}
+
 }  // namespace
 }  // namespace cayspin::program::test

@@ -78,14 +78,15 @@ std::vector<WrongCall> all_of(std::string const& what, TrajectoryFile& file) {
   auto calls = calls_of("TrajectoryFile " + what, file);
   calls.push_back({what + ", write_frame", [&] { file.write_frame(1, 1, {}, spins.data()); }});
   calls.push_back({what + ", of floats", [&] { file.write_frame(1, 1, {}, single.data()); }});
-  calls.push_back(
-      {what + ", with room", [&] { file.write_frame_with_room(1, 1, {}, room.data()); }});
+  calls.push_back({what + ", planes", [&] { file.write_planes(2, room.data()); }});
+  calls.push_back({what + ", end_frame", [&] { file.end_frame(1, 1, {}); }});
   return calls;
 }
 std::vector<WrongCall> all_of(std::string const& what, RunOutput& output) {
   auto calls = calls_of("RunOutput " + what, output);
   calls.push_back({what + ", frame", [&] { output.frame<double>(); }});
   calls.push_back({what + ", frame of floats", [&] { output.frame<float>(); }});
+  calls.push_back({what + ", write_piece", [&] { output.write_piece(); }});
   calls.push_back({what + ", write_frame", [&] { output.write_frame(1, 1, {}); }});
   return calls;
 }
@@ -126,7 +127,7 @@ TEST_F(TrajectoryTest, FramesWithoutSpinsAreNotWritten) {
   expect_refused<std::logic_error>({
       {"null", [&] { file.write_frame(1, 1, {}, static_cast<double const*>(nullptr)); }},
       {"null of floats", [&] { file.write_frame(1, 1, {}, static_cast<float const*>(nullptr)); }},
-      {"null with room", [&] { file.write_frame_with_room(1, 1, {}, nullptr); }},
+      {"null planes", [&] { file.write_planes(2, nullptr); }},
   });
   for (int frame = 0; frame < 3; ++frame) {
     expect_refused<std::logic_error>(

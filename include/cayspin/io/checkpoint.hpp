@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/checkpoint.hpp>
+#include <cayspin/io/site_box.hpp>
 
 #include <array>
 #include <cstdint>
@@ -40,6 +41,8 @@ class CheckpointWriter final : public Checkpoint {
   bool restores() const override { return false; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
+  /// The same by planes along z, one call after the other: `components` numbers of each site.
+  void planes(std::string const& name, std::int64_t components, std::vector<double> const& numbers);
 
   /// Waits until the file is on the disk, then gives it its name.
   void commit();
@@ -63,6 +66,8 @@ class CheckpointReader final : public Checkpoint {
   bool restores() const override { return true; }
   void number(std::string const& name, double& value) override;
   void field(std::string const& name, std::vector<double>& numbers) override;
+  /// The numbers of these sites alone. Memory is taken for them, and for some planes.
+  std::vector<double> field(std::string const& name, SiteBox const& box) const;
 
  private:
   class Implementation;

@@ -14,14 +14,16 @@ namespace cayspin::io {
 struct RunOutputOptions {
   bool overwrite = false;
   TrajectoryStorage storage = {};
+  std::int64_t most_planes = 0;               ///< of a frame in memory, as frame_pieces() has it
   bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
   bool table = false;                         ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
 };
 
-/// Writes the files of a run while the run goes on: a thread of its own takes up to two frames from
-/// it. What fails there is thrown by the next call, as TrajectoryFile throws it. To be called from
-/// one thread, which until finish(), close() or the destructor leaves HDF5 to this object.
+/// Writes the files of a run while the run goes on: a thread of its own takes up to two frames, or
+/// pieces of frames, from it. What fails there is thrown by the next call, as TrajectoryFile throws
+/// it. To be called from one thread, which until finish(), close() or the destructor leaves HDF5 to
+/// this object.
 class RunOutput {
  public:
   /// Creates the files. One that exists is an error unless `overwrite`, and then none is changed.
@@ -33,12 +35,15 @@ class RunOutput {
   RunOutput(RunOutput&&) noexcept;
   RunOutput& operator=(RunOutput&&) noexcept;
 
-  /// Room for the next frame, packed as (nz, ny, nx, 3) in the precision of the header; the other
-  /// one throws std::logic_error. Waits while two frames are under way.
+  /// Room for the next frame, or for its next piece, packed as (planes, ny, nx, 3) in the precision
+  /// of the header; the other one throws std::logic_error. Waits while two are under way.
   template <class Real>
   Real* frame();
 
-  /// Hands over the frame that was put into frame().
+  /// Hands over a piece that is not the frame's last.
+  void write_piece();
+
+  /// Hands over the frame, or its last piece.
   void write_frame(std::int64_t step, double time, Scalars const& scalars);
 
   /// Samples reach the files with the next frame, or after about a second of calls.

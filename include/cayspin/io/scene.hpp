@@ -3,6 +3,7 @@
 
 #include <cayspin/io/field.hpp>
 #include <cayspin/io/method.hpp>
+#include <cayspin/io/site_box.hpp>
 #include <cayspin/io/units.hpp>
 #include <cayspin/io/words.hpp>
 
@@ -203,30 +204,8 @@ void check_files(Scene const& scene);
 /// ((k*ny + j)*nx + i)*3 + c. Throws SceneError naming the site of a zero or non-finite spin.
 std::vector<double> initial_spins(Scene const& scene);
 
-/// Sites from `begin`, so many along each axis.
-struct SiteBox {
-  std::array<std::int64_t, 3> begin{0, 0, 0}, extent{0, 0, 0};
-};
-
-/// The start of these sites alone, in the same order. A file is read whole.
+/// The start of these sites alone, in the same order. Of a file in OVF all is read.
 std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
-
-/// Of the numbers of all sites of a lattice, `of_site` of each, those of a box.
-template <class Number>
-std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
-                               std::int64_t of_site, std::vector<Number> const& of_all) {
-  std::vector<Number> chosen;
-  std::int64_t const row = box.extent[0] * of_site;
-  chosen.reserve(static_cast<std::size_t>(row * box.extent[1] * box.extent[2]));
-  for (std::int64_t z = 0; z < box.extent[2]; ++z)
-    for (std::int64_t y = 0; y < box.extent[1]; ++y) {
-      std::int64_t const site =
-          ((box.begin[2] + z) * shape[1] + box.begin[1] + y) * shape[0] + box.begin[0];
-      auto const from = of_all.begin() + site * of_site;
-      chosen.insert(chosen.end(), from, from + row);
-    }
-  return chosen;
-}
 
 /// The inertia tensors of a rigid body scene, row by row: one when all bodies share it, otherwise
 /// one per body. Throws SceneError naming the body that is not symmetric positive definite.

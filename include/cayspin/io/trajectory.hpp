@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/io/site_box.hpp>
 #include <cayspin/io/units.hpp>
 
 #include <array>
@@ -35,8 +36,20 @@ struct TrajectoryHeader {
 /// How /spins lies in the file.
 struct TrajectoryStorage {
   int compression = 0;     ///< level of deflate with shuffle, 0 (none) to 9
-  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the whole frame
+  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
 };
+
+/// How a frame goes into a file: by pieces of so many planes along z; the last may have fewer.
+struct FramePieces {
+  std::int64_t planes = 0;
+  std::size_t bytes = 0;   ///< of room for a piece
+  std::size_t copied = 0;  ///< bytes that HDF5 takes for copies
+};
+
+/// Pieces of whole chunks and at most so many planes (0: all), but of one chunk at least. For a
+/// lattice (nx, ny, nz) and numbers of 4 or 8 bytes.
+FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
+                         TrajectoryStorage const& storage, std::int64_t most_planes = 0);
 
 /// The observables of one instant, always in double.
 struct Scalars {
@@ -72,10 +85,12 @@ class TrajectoryFile {
   void write_frame(std::int64_t step, double time, Scalars const& scalars, float const* spins);
   void write_frame(std::int64_t step, double time, Scalars const& scalars, double const* spins);
 
-  /// The same for spins in the precision of the header that are followed by four bytes of room: a
-  /// frame that is one chunk and not compressed is then written without a copy of it.
-  void write_frame_with_room(std::int64_t step, double time, Scalars const& scalars,
-                             std::byte* spins);
+  /// The same by planes along z, in the precision of the header: write_planes() for some after the
+  /// other, so many at once as frame_pieces() says and at the end the rest, and then end_frame().
+  /// `spins` has the room of a piece, which is used. Other numbers of planes throw
+  /// std::logic_error.
+  void write_planes(std::int64_t planes, std::byte* spins);
+  void end_frame(std::int64_t step, double time, Scalars const& scalars);
 
   /// Appends one sample to /scalars; samples reach the file with the next frame, or within about a
   /// second of calls.
@@ -117,6 +132,10 @@ TrajectoryInfo read_info(std::filesystem::path const& path);
 /// kept; the result is packed as (nz, ny, nx, 3).
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
+
+/// The same for the sites of a box. Memory is taken for them, and for a chunk or some planes.
+std::vector<double> read_spins(std::filesystem::path const& path,
+                               std::array<std::int64_t, 3> const& shape, SiteBox const& box);
 
 /// The same for frame number `frame`, counted from 0, of a file with frames.
 std::vector<double> read_spins(std::filesystem::path const& path,

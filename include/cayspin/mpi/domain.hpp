@@ -5,6 +5,7 @@
 #include <cayspin/mpi/division.hpp>
 #include <cayspin/part.hpp>
 
+#include <Kokkos_Profiling_ScopedRegion.hpp>
 #include <mpi.h>
 
 #include <array>
@@ -62,6 +63,7 @@ class Domain final : public Part {
   /// One message per face and direction: planes along z first, and then rows along y with the
   /// ghosts along z, which are theirs to pass on.
   void update_ghosts(std::span<FieldNumbers const> fields) const override {
+    Kokkos::Profiling::ScopedRegion const region("cayspin::mpi::update_ghosts");
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
       messages.exchange(comm_, fields, faces(axis), neighbor_[axis]);
     });

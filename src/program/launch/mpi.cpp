@@ -2,6 +2,7 @@
 // Of a program with MPI: the ranks that a launcher such as mpiexec starts.
 #include "launched_ranks.hpp"
 #include "simulation/one_rank.hpp"
+#include "simulation/parts.hpp"
 
 #include <cayspin/mpi/domain.hpp>
 
@@ -77,13 +78,14 @@ class MpiRanks final : public Ranks {
   std::array<int, 2> division(cayspin::Lattice const& lattice, int ghosts,
                               std::optional<std::string> const& asked) const override {
     if (!asked) return most_parts(lattice, ghosts);
-    mpi::Division const chosen = read(*asked);
-    if (std::int64_t{chosen.y} * chosen.z > count_ || !mpi::can_divide(lattice, ghosts, chosen))
+    auto const chosen = read_parts(*asked);
+    auto const [y, z] = chosen;
+    if (std::int64_t{y} * z > count_ || !mpi::can_divide(lattice, ghosts, {.y = y, .z = z}))
       throw UsageError(fmt::format(
           "--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or planes "
           "each, for at most {} ranks",
           *asked, ghosts, count_));
-    return {chosen.y, chosen.z};
+    return chosen;
   }
 
   PartOfRank divide(cayspin::Lattice const& lattice, int ghosts,
@@ -102,6 +104,9 @@ class MpiRanks final : public Ranks {
     if (!has_part || parts == 1) return {.local = lattice, .none = !has_part};
     auto const domain = std::make_shared<mpi::Domain>(
         comm_, lattice, ghosts, mpi::Division{.y = numbers[0], .z = numbers[1]});
+    auto const box = own_sites(domain->local());
+    boxes_.resize(is_first() ? static_cast<std::size_t>(count_) : 0);
+    MPI_Gather(&box, sizeof box, MPI_BYTE, boxes_.data(), sizeof box, MPI_BYTE, 0, comm_);
     return {domain->local(), domain};
   }
 
@@ -120,29 +125,34 @@ class MpiRanks final : public Ranks {
     MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, comm_);
   }
 
-  void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, void const* own,
-              void* whole_numbers) const override {
-    auto const box = own_sites(local);
-    std::vector<io::SiteBox> boxes(is_first() ? static_cast<std::size_t>(count_) : 0);
-    MPI_Gather(&box, sizeof box, MPI_BYTE, boxes.data(), sizeof box, MPI_BYTE, 0, comm_);
+  void gather(cayspin::Lattice const& local, std::size_t bytes_of_site, std::int64_t first,
+              std::int64_t planes, void const* own, void* gathered) const override {
     Type const site(bytes_of_site);
-    auto const sites = static_cast<int>(local.sites());
-    if (!is_first()) {
-      MPI_Send(own, sites, site.get(), 0, 0, comm_);
-      return;
+    auto const box = own_sites(local), sent = io::in_planes(box, first, planes);
+    auto const of_plane = box.extent[0] * box.extent[1];
+    auto const before = (first + sent.begin[2] - box.begin[2]) * of_plane;
+    auto const sites = static_cast<int>(sent.extent[2] * of_plane);
+    MPI_Request request = MPI_REQUEST_NULL;
+    if (sites > 0)
+      MPI_Isend(
+          static_cast<std::byte const*>(own) + static_cast<std::size_t>(before) * bytes_of_site,
+          sites, site.get(), 0, 0, comm_, &request);
+    auto shape = whole(local).shape;
+    shape[2] = planes;
+    for (std::size_t rank = 0; rank < boxes_.size(); ++rank) {
+      auto const part = io::in_planes(boxes_[rank], first, planes);
+      if (part.extent[2] == 0) continue;
+      Type const there(part, shape, site);
+      MPI_Recv(gathered, 1, there.get(), static_cast<int>(rank), 0, comm_, MPI_STATUS_IGNORE);
     }
-    MPI_Request to_itself = MPI_REQUEST_NULL;
-    MPI_Isend(own, sites, site.get(), 0, 0, comm_, &to_itself);
-    auto const& shape = whole(local).shape;
-    for (int from = 0; from < count_; ++from) {
-      Type const part(boxes[static_cast<std::size_t>(from)], shape, site);
-      MPI_Recv(whole_numbers, 1, part.get(), from, 0, comm_, MPI_STATUS_IGNORE);
-    }
-    MPI_Wait(&to_itself, MPI_STATUS_IGNORE);
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
   }
 
   void leave_by(int status) override {
-    if (many()) MPI_Abort(MPI_COMM_WORLD, status);
+    if (!many()) return;
+    // All has been said, and MPI would add a line.
+    static_cast<void>(std::freopen("/dev/null", "w", stderr));
+    MPI_Abort(MPI_COMM_WORLD, status);
   }
 
  protected:
@@ -171,15 +181,6 @@ class MpiRanks final : public Ranks {
     return {1, 1};
   }
 
-  static mpi::Division read(std::string const& text) {
-    mpi::Division division{0, 0};
-    int end = 0;
-    if (std::sscanf(text.c_str(), "%d,%d%n", &division.y, &division.z, &end) != 2 ||
-        static_cast<std::size_t>(end) != text.size() || division.y < 1 || division.z < 1)
-      throw UsageError(fmt::format("--ranks {}: accepted: two numbers, as 1,4", text));
-    return division;
-  }
-
   static void wait(MPI_Request& request) { mpi::detail::wait_for({&request, 1}); }
 
   /// Without taking a processor from the ranks that still work.
@@ -193,6 +194,7 @@ class MpiRanks final : public Ranks {
   }
 
   MPI_Comm comm_ = MPI_COMM_NULL;
+  std::vector<io::SiteBox> boxes_;  // of all parts, on the first rank
   int threads_ = 0, count_ = 0, rank_ = 0, on_this_machine_ = 1;
 };
 

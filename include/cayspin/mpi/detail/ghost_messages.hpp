@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/mpi/detail/faces.hpp>
+#include <cayspin/mpi/detail/messages_in_place.hpp>
 #include <cayspin/mpi/detail/wait_for.hpp>
 #include <cayspin/part.hpp>
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,19 +19,6 @@
 #include <vector>
 
 namespace cayspin::mpi::detail {
-
-/// Sites from `begin` to before `end`.
-struct Box {
-  std::array<std::int64_t, 3> begin, end;
-
-  KOKKOS_FUNCTION std::int64_t extent(std::size_t axis) const { return end[axis] - begin[axis]; }
-  std::int64_t rows() const { return extent(1) * extent(2); }
-};
-
-/// What goes to the neighbour before and to the one after, and where what comes from them goes.
-struct Faces {
-  std::array<Box, 2> sent, received;
-};
 
 /// Copies a box of a field on a device to consecutive numbers, or back. A task is a row of one
 /// component.
@@ -56,56 +46,6 @@ struct CopyRows {
   }
 };
 
-/// A box of several fields in host memory, as it lies there.
-class BoxInPlace {
- public:
-  BoxInPlace(std::span<FieldNumbers const> fields, Box const& box) {
-    std::vector<MPI_Datatype> types;
-    std::vector<MPI_Aint> places;
-    std::vector<int> const counts(fields.size(), 1);
-    for (auto const& field : fields) {
-      types.push_back(type_of(field, box));
-      auto const site = (box.begin[2] * field.ny + box.begin[1]) * field.row + box.begin[0];
-      places.push_back(0);
-      MPI_Get_address(static_cast<std::byte*>(field.data) + bytes(field, site), &places.back());
-    }
-    MPI_Type_create_struct(static_cast<int>(fields.size()), counts.data(), places.data(),
-                           types.data(), &type_);
-    MPI_Type_commit(&type_);
-    for (MPI_Datatype& type : types) MPI_Type_free(&type);
-  }
-  BoxInPlace(BoxInPlace const&) = delete;
-  BoxInPlace& operator=(BoxInPlace const&) = delete;
-  ~BoxInPlace() { MPI_Type_free(&type_); }
-
-  MPI_Datatype type() const { return type_; }
-
- private:
-  static MPI_Aint bytes(FieldNumbers const& field, std::int64_t numbers) {
-    return static_cast<MPI_Aint>(numbers) * static_cast<MPI_Aint>(field.number_bytes);
-  }
-
-  // Rows go with what pads them, so that they are one block; whole planes are one block, too.
-  static MPI_Datatype type_of(FieldNumbers const& field, Box const& box) {
-    bool const whole_planes = box.extent(1) == field.ny;
-    std::int64_t const rows = whole_planes ? box.rows() : box.extent(1);
-    MPI_Aint const size = bytes(field, (rows - 1) * field.row + box.extent(0));
-    if (size > std::numeric_limits<int>::max())
-      throw std::length_error("cayspin::mpi: a face of the part is 2 GiB or more; use more ranks");
-    MPI_Datatype block = MPI_DATATYPE_NULL, planes = block, components = block;
-    MPI_Type_contiguous(static_cast<int>(size), MPI_BYTE, &block);
-    MPI_Type_create_hvector(whole_planes ? 1 : static_cast<int>(box.extent(2)), 1,
-                            bytes(field, field.ny * field.row), block, &planes);
-    MPI_Type_create_hvector(field.components, 1, bytes(field, field.component), planes,
-                            &components);
-    MPI_Type_free(&block);
-    MPI_Type_free(&planes);
-    return components;
-  }
-
-  MPI_Datatype type_ = MPI_DATATYPE_NULL;
-};
-
 /// The messages to and from the two neighbours along an axis: one for the boxes of all fields to
 /// each neighbour. Two ranks on a periodic axis are each other's neighbour twice: the tag is the
 /// direction.
@@ -119,27 +59,20 @@ class GhostMessages {
               : exchange_in_place(comm, fields, faces, neighbor);
   }
 
-  /// For fields in host memory.
-  static void exchange_in_place(MPI_Comm comm, std::span<FieldNumbers const> fields,
-                                Faces const& faces, std::array<int, 2> const& neighbor) {
-    std::array<MPI_Request, 4> requests;
-    requests.fill(MPI_REQUEST_NULL);
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (neighbor[side] == MPI_PROC_NULL) continue;
-      BoxInPlace const box(fields, faces.received[side]);
-      MPI_Irecv(MPI_BOTTOM, 1, box.type(), neighbor[side], static_cast<int>(1 - side), comm,
-                &requests[side]);
+  /// For fields in host memory. Steppers give the same few fields again and again.
+  void exchange_in_place(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
+                         std::array<int, 2> const& neighbor) {
+    constexpr std::size_t most = 8;
+    auto found = std::ranges::find_if(
+        in_place_, [&](MessagesInPlace const& messages) { return messages.are_of(fields); });
+    if (found == in_place_.end()) {
+      if (in_place_.size() == most) in_place_.clear();
+      found = in_place_.emplace(in_place_.end(), comm, fields, faces, neighbor);
     }
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (neighbor[side] == MPI_PROC_NULL) continue;
-      BoxInPlace const box(fields, faces.sent[side]);
-      MPI_Isend(MPI_BOTTOM, 1, box.type(), neighbor[side], static_cast<int>(side), comm,
-                &requests[2 + side]);
-    }
-    wait_for(requests);
+    found->exchange();
   }
 
-  /// Through buffers in host memory, for fields that Kokkos' default execution space can access.
+  /// Through buffers, for fields that Kokkos' default execution space can access.
   void exchange_packed(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                        std::array<int, 2> const& neighbor) {
     std::array<MPI_Request, 4> requests;
@@ -164,7 +97,12 @@ class GhostMessages {
   }
 
  private:
-  using Buffer = Kokkos::View<std::byte*, Kokkos::SharedHostPinnedSpace>;
+#ifdef CAYSPIN_MPI_DEVICE_MEMORY
+  using Memory = Kokkos::DefaultExecutionSpace::memory_space;
+#else
+  using Memory = Kokkos::SharedHostPinnedSpace;
+#endif
+  using Buffer = Kokkos::View<std::byte*, Memory>;
 
   static std::size_t bytes(std::span<FieldNumbers const> fields, Box const& box) {
     std::size_t sum = 0;
@@ -216,6 +154,7 @@ class GhostMessages {
                          Policy(exec, 0, field.components * box.rows()), rows);
   }
 
+  std::vector<MessagesInPlace> in_place_;
   std::array<Buffer, 2> sent_, received_;
 };
 

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""A model of steps on many ranks: fitted to two ranks here, and what it says of more.
+
+Usage: model_ranks.py BUILD_DIR [--latency S --bandwidth B] [--plot FILE.png]
+
+A step of a part of n x n x n sites takes the time of its sites and of those that it repeats, and
+one exchange of ghosts along z and one along y, each of a latency and of its bytes over a bandwidth.
+The time of a site, of a repeated site, the latency and the bandwidth are fitted to runs of
+bench_ranks on two ranks, which share the memory of this machine. --latency and --bandwidth are
+those of the network between the ranks of the predictions.
+"""
+import argparse
+import pathlib
+import sys
+
+import numpy
+
+from compare_ranks import better, measure
+
+SIZES = [(64, 64, 64), (64, 64, 128), (128, 128, 64), (128, 128, 128), (192, 192, 128),
+         (256, 256, 128), (256, 256, 256)]
+RANKS = [8, 64, 512, 4096]
+SITE_BYTES = 3 * 8
+# arXiv 2202.12309: a hydrodynamics application of Parthenon, against one node of eight.
+PUBLISHED = (73728, 0.92)
+
+
+def measured(program, repetitions):
+    """{method: [(sites, repeated sites, bytes, seconds apart, seconds together, in exchange)]},
+    of one rank and step."""
+    rows = {}
+    for nx, ny, nz in SIZES:
+        together, apart = {}, {}
+        for _ in range(repetitions):
+            together = better(together, measure(program, 2, 1, (nx, ny, nz)))
+            apart = better(apart, measure(program, 2, 1, (nx, ny, nz // 2), "apart"))
+        for name, (ns, exchange, stages) in together.items():
+            sites, plane = nx * ny * nz // 2, nx * ny
+            repeated = plane * (stages - 1) / 2  # of one inner end, in units of all stages
+            seconds = ns * 1e-9 * 2 * sites
+            rows.setdefault(name, []).append(
+                (sites, repeated, SITE_BYTES * stages * plane, apart[name][0] * 1e-9 * 2 * sites,
+                 seconds, exchange * seconds, stages))
+    return rows
+
+
+def relative_fit(columns, values):
+    """Coefficients >= 0 that give the values with the least relative errors."""
+    columns, values = numpy.array(columns, float).T, numpy.array(values, float)
+    chosen = list(range(columns.shape[1]))
+    while True:
+        found, *_ = numpy.linalg.lstsq(columns[:, chosen] / values[:, None],
+                                       numpy.ones(len(values)), rcond=None)
+        if (found >= 0).all():
+            break
+        chosen.remove(chosen[int(found.argmin())])
+    result = numpy.zeros(columns.shape[1])
+    result[chosen] = found
+    return result, columns @ result / values - 1
+
+
+class Model:
+    def __init__(self, site, repeated, stages, latency, bandwidth):
+        self.site, self.repeated, self.stages = site, repeated, stages
+        self.latency, self.bandwidth = latency, bandwidth
+
+    def exchange(self, n, depth):
+        """Seconds: two faces along z, and then two along y with the ghosts along z."""
+        sites = n * depth * (2 * n + 2 * depth)
+        return 2 * self.latency + 2 * SITE_BYTES * sites / self.bandwidth
+
+    def step(self, n, depth=None):
+        """Seconds of a step of a part with neighbours on all four sides that exchanges `depth`
+        planes at a time, as many as all stages of one or more steps need, or 1."""
+        depth = depth or self.stages
+        exchanges = self.stages / depth
+        sites = numpy.mean([n * (n + 2 * k)**2 - n**3 for k in range(depth)])
+        return self.site * n**3 + self.repeated * sites + exchanges * self.exchange(n, depth)
+
+    def efficiency(self, n, ranks):
+        """Of ranks with n x n x n sites each, against one. Few ranks have fewer neighbours."""
+        inner = 1 - 1 / ranks**0.5  # ends inside the lattice, of all ends along an axis
+        alone = self.site * n**3
+        return alone / (alone + inner * (self.step(n) - alone))
+
+
+def depth_name(depth, stages):
+    return "each stage" if depth == 1 else f"each {depth // stages} steps" if depth > stages \
+        else "each step"
+
+
+def draw(models, path):
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
+    from cayspin_plots import style
+
+    figure, axes = style.plt.subplots(figsize=(7.5, 4.2), layout="constrained")
+    ranks = numpy.logspace(0, numpy.log2(PUBLISHED[0]), 60, base=2)
+    for (name, model), colour in zip(models.items(), style.COMPONENTS):
+        for n, line in ((256, "--"), (512, "-")):
+            axes.plot(ranks, [model.efficiency(n, r) for r in ranks], line, color=colour,
+                      label=f"{name}, {n}³ sites a rank (model)")
+    axes.plot(*PUBLISHED, "o", color=style.INK, label="Parthenon on GPUs (measured, published)")
+    axes.set(xscale="log", xlabel="ranks", ylabel="weak efficiency", ylim=(0.8, 1.005),
+             title="Predicted from two ranks; nothing here was run on more")
+    axes.legend(fontsize=9, loc="lower left")
+    style.save(figure, path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--repetitions", type=int, default=3)
+    parser.add_argument("--latency", type=float, default=2e-6, help="of the network, seconds")
+    parser.add_argument("--bandwidth", type=float, default=1e10, help="bytes a second of a rank")
+    parser.add_argument("--plot", type=pathlib.Path)
+    arguments = parser.parse_args()
+    rows = measured(arguments.build / "bin" / "bench_ranks", arguments.repetitions)
+
+    in_exchange = [row for of_method in rows.values() for row in of_method]
+    (latency, per_byte), errors = relative_fit(
+        [[1] * len(in_exchange), [row[2] for row in in_exchange]], [row[5] for row in in_exchange])
+    print(f"exchange here: {latency * 1e6:.0f} us and {1e-9 / per_byte:.1f} GB/s a direction, "
+          f"errors up to {100 * max(abs(errors)):.0f} %")
+    models = {}
+    for name, of_method in rows.items():
+        (site, repeated), errors = relative_fit(
+            [[row[0] for row in of_method] * 2,
+             [0] * len(of_method) + [row[1] for row in of_method]],
+            [row[3] for row in of_method] + [row[4] - row[5] for row in of_method])
+        print(f"{name}: {site * 1e9:.2f} ns a site, {repeated * 1e9:.2f} ns a repeated one, errors "
+              f"up to {100 * max(abs(errors)):.0f} %")
+        models[name] = Model(site, repeated, of_method[0][6], arguments.latency,
+                             arguments.bandwidth)
+
+    print(f"\nweak efficiency, network of {arguments.latency * 1e6:.3g} us and "
+          f"{arguments.bandwidth * 1e-9:.3g} GB/s a rank")
+    print(f"| sites a rank | method | {' | '.join(map(str, RANKS))} |")
+    print("|---|---|" + "---|" * len(RANKS))
+    for n in (256, 512):
+        for name, model in models.items():
+            found = " | ".join(f"{model.efficiency(n, ranks):.3f}" for ranks in RANKS)
+            print(f"| {n} x {n} x {n} | {name} | {found} |")
+
+    print("\nwhen to exchange: time of a step over that of the sites alone; * is the best")
+    sizes = [8, 16, 32, 64, 128, 256, 512]
+    print(f"| method | exchange | {' | '.join(f'{n}^3' for n in sizes)} |")
+    print("|---|---|" + "---|" * len(sizes))
+    for name, model in models.items():
+        depths = [1] + [model.stages * steps for steps in (1, 2, 4)]
+        table = [[model.step(n, depth) / (model.site * n**3) for n in sizes] for depth in depths]
+        for row, depth in zip(table, depths):
+            cells = " | ".join(
+                f"{value:.3f}" + ("*" if value == min(other[i] for other in table) else "")
+                for i, value in enumerate(row))
+            print(f"| {name} | {depth_name(depth, model.stages)} | {cells} |")
+    if arguments.plot:
+        draw(models, arguments.plot)
+
+
+if __name__ == "__main__":
+    main()

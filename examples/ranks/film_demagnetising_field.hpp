@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "../standard_problem_4/tensor.hpp"
+
+#include <cayspin/mpi/domain.hpp>
+
+#include <fftw3.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+/// The field H = -N m of all cells of a film of one layer, divided along y, for HostField. Each rank
+/// transforms its rows along x; then each transforms some columns along y, of twice the extents, so
+/// that the film does not see its periodic images. All transforms are of one row or column, so the
+/// bits do not depend on the number of ranks. In units of Ms, for open boundaries.
+class FilmDemagnetisingField {
+ public:
+  static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
+
+  FilmDemagnetisingField(cayspin::mpi::Domain const& domain, TensorOfCells& tensor)
+      : film_(std::make_shared<Film>(domain, tensor)) {}
+
+  template <class HostSpins>
+  void operator()(HostSpins const& spins, HostSpins const& field, double /*t*/) const {
+    using Real = typename HostSpins::value_type;
+    auto& film = *film_;
+    film.transform([&](double* row, std::size_t c, std::size_t y) {
+      for (std::size_t x = 0; x < film.nx(); ++x) {
+        auto const m = spins.get(static_cast<std::int64_t>(y * film.nx() + x));
+        row[x] = c == 0 ? m.x : c == 1 ? m.y : m.z;
+      }
+    });
+    film.multiply_by_kernel();
+    film.transform_back();
+    for (std::size_t site = 0; site < film.rows() * film.nx(); ++site)
+      field.set(static_cast<std::int64_t>(site),
+                {static_cast<Real>(film.result(0, site)), static_cast<Real>(film.result(1, site)),
+                 static_cast<Real>(film.result(2, site))});
+  }
+
+ private:
+  using Complex = std::complex<double>;
+
+  /// Items of 0 .. extent - 1 that each rank has.
+  struct Shares {
+    std::vector<std::size_t> begin;
+    std::size_t of(std::size_t rank) const { return begin[rank + 1] - begin[rank]; }
+  };
+
+  class Film {
+   public:
+    Film(cayspin::mpi::Domain const& domain, TensorOfCells& tensor)
+        : comm_(domain.comm()), rank_(static_cast<std::size_t>(domain.rank())) {
+      auto const& film = domain.whole();
+      auto const open = cayspin::Boundary::open;
+      if (film.shape[2] != 1 || film.boundary[0] != open || film.boundary[1] != open)
+        throw std::invalid_argument("FilmDemagnetisingField: one layer with open boundaries");
+      nx_ = static_cast<std::size_t>(film.shape[0]);
+      ny_ = static_cast<std::size_t>(film.shape[1]);
+      auto const ranks = static_cast<std::size_t>(domain.division().y);
+      for (std::size_t rank = 0; rank <= ranks; ++rank) {
+        y_.begin.push_back(ny_ * rank / ranks);  // as the domain divides
+        k_.begin.push_back((nx_ + 1) * rank / ranks);
+      }
+      row_.resize(2 * nx_);
+      row_spectrum_.resize(nx_ + 1);
+      of_rows_.resize(3 * rows() * (nx_ + 1));
+      of_columns_.resize(3 * ny_ * columns());
+      column_.resize(3 * columns() * 2 * ny_);
+      results_.resize(3 * rows() * nx_);
+      make_plans();
+      find_kernel(film, tensor);
+    }
+
+    std::size_t nx() const { return nx_; }
+    std::size_t rows() const { return y_.of(rank_); }
+    double result(std::size_t c, std::size_t site) const { return results_[c * rows() * nx_ + site]; }
+
+    /// fill(row, component, own row): the numbers of a row along x. After it each rank has the
+    /// spectra of its columns.
+    template <class Fill>
+    void transform(Fill const& fill) {
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t y = 0; y < rows(); ++y) {
+          std::ranges::fill(row_, 0.0);
+          fill(row_.data(), c, y);
+          fftw_execute_dft_r2c(forward_x_.get(), row_.data(), as_fftw(row_spectrum_.data()));
+          for_each_share(k_, [&](std::size_t rank, std::size_t begin, std::size_t count) {
+            std::copy_n(&row_spectrum_[begin], count,
+                        &of_rows_[3 * rows() * begin + (c * rows() + y) * k_.of(rank)]);
+          });
+        }
+      exchange(of_rows_, rows(), k_, of_columns_, columns(), y_);
+      std::ranges::fill(column_, Complex(0));
+      for_each_number([&](Complex& in_column, Complex& in_message) { in_column = in_message; });
+      for_each_column([&](fftw_complex* column) {
+        fftw_execute_dft(forward_y_.get(), column, column);
+      });
+    }
+
+    void multiply_by_kernel() {
+      std::size_t const component = columns() * 2 * ny_;
+      for (std::size_t i = 0; i < component; ++i) {
+        Tensor const& n = kernel_[i];
+        Complex const x = column_[i], y = column_[component + i], z = column_[2 * component + i];
+        column_[i] = n.xx * x + n.xy * y;  // in the film's plane N has no xz and no yz
+        column_[component + i] = n.xy * x + n.yy * y;
+        column_[2 * component + i] = n.zz * z;
+      }
+    }
+
+    void transform_back() {
+      for_each_column([&](fftw_complex* column) {
+        fftw_execute_dft(backward_y_.get(), column, column);
+      });
+      for_each_number([&](Complex& in_column, Complex& in_message) { in_message = in_column; });
+      exchange(of_columns_, columns(), y_, of_rows_, rows(), k_);
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t y = 0; y < rows(); ++y) {
+          for_each_share(k_, [&](std::size_t rank, std::size_t begin, std::size_t count) {
+            std::copy_n(&of_rows_[3 * rows() * begin + (c * rows() + y) * k_.of(rank)], count,
+                        &row_spectrum_[begin]);
+          });
+          fftw_execute_dft_c2r(backward_x_.get(), as_fftw(row_spectrum_.data()), row_.data());
+          std::copy_n(row_.data(), nx_, &results_[(c * rows() + y) * nx_]);
+        }
+    }
+
+   private:
+    struct Free {
+      void operator()(fftw_plan plan) const { fftw_destroy_plan(plan); }
+    };
+    using Plan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, Free>;
+
+    static fftw_complex* as_fftw(Complex* numbers) {
+      return reinterpret_cast<fftw_complex*>(numbers);
+    }
+    std::size_t columns() const { return k_.of(rank_); }
+
+    // FFTW_ESTIMATE and FFTW_UNALIGNED: the same plan for each row, and with it the same bits.
+    void make_plans() {
+      constexpr unsigned flags = FFTW_ESTIMATE | FFTW_UNALIGNED;
+      auto const x = static_cast<int>(2 * nx_), y = static_cast<int>(2 * ny_);
+      std::vector<Complex> column(2 * ny_);
+      auto* const one = as_fftw(column.data());
+      auto* const spectrum = as_fftw(row_spectrum_.data());
+      forward_x_.reset(fftw_plan_dft_r2c_1d(x, row_.data(), spectrum, flags));
+      backward_x_.reset(fftw_plan_dft_c2r_1d(x, spectrum, row_.data(), flags));
+      forward_y_.reset(fftw_plan_dft_1d(y, one, one, FFTW_FORWARD, flags));
+      backward_y_.reset(fftw_plan_dft_1d(y, one, one, FFTW_BACKWARD, flags));
+    }
+
+    template <class Work>
+    static void for_each_share(Shares const& shares, Work const& work) {
+      for (std::size_t rank = 0; rank + 1 < shares.begin.size(); ++rank)
+        work(rank, shares.begin[rank], shares.of(rank));
+    }
+
+    // Each of the columns with all rows, and where a message has it: (component, row, column) of
+    // the rows of each rank.
+    template <class Work>
+    void for_each_number(Work const& work) {
+      for_each_share(y_, [&](std::size_t, std::size_t begin, std::size_t count) {
+        Complex* in_message = &of_columns_[3 * columns() * begin];
+        for (std::size_t c = 0; c < 3; ++c)
+          for (std::size_t y = begin; y < begin + count; ++y)
+            for (std::size_t k = 0; k < columns(); ++k)
+              work(column_[(c * columns() + k) * 2 * ny_ + y], *in_message++);
+      });
+    }
+    template <class Work>
+    void for_each_column(Work const& work) {
+      for (std::size_t i = 0; i < 3 * columns(); ++i) work(as_fftw(&column_[i * 2 * ny_]));
+    }
+
+    // What a rank has are `lines` lines, and of each the share of every other rank.
+    void exchange(std::vector<Complex> const& from, std::size_t lines, Shares const& shares,
+                  std::vector<Complex>& to, std::size_t lines_there, Shares const& shares_there) {
+      auto const counts = [](std::size_t of_line, Shares const& of_ranks) {
+        std::array<std::vector<int>, 2> counts_and_places;
+        for_each_share(of_ranks, [&](std::size_t, std::size_t begin, std::size_t count) {
+          counts_and_places[0].push_back(static_cast<int>(3 * of_line * count));
+          counts_and_places[1].push_back(static_cast<int>(3 * of_line * begin));
+        });
+        return counts_and_places;
+      };
+      auto const sent = counts(lines, shares), received = counts(lines_there, shares_there);
+      MPI_Alltoallv(from.data(), sent[0].data(), sent[1].data(), MPI_C_DOUBLE_COMPLEX, to.data(),
+                    received[0].data(), received[1].data(), MPI_C_DOUBLE_COMPLEX, comm_);
+    }
+
+    /// The spectrum of -N, which is real: N is even along x and y, but for xy, which is odd.
+    void find_kernel(cayspin::Lattice const& film, TensorOfCells& tensor) {
+      kernel_.resize(columns() * 2 * ny_);
+      for (bool const odd : {false, true}) {
+        transform_tensors(film, tensor, odd);
+        for (std::size_t k = 0; k < columns(); ++k) {
+          for (std::size_t c = 0; c < 3; ++c) mirror(&column_[(c * columns() + k) * 2 * ny_], odd);
+          for (std::size_t y = 0; y < 2 * ny_; ++y) {
+            auto const at = [&](std::size_t c) {
+              return column_[(c * columns() + k) * 2 * ny_ + y].real();
+            };
+            Tensor& n = kernel_[k * 2 * ny_ + y];
+            n = odd ? Tensor{n.xx, n.yy, n.zz, at(0), 0, 0} : Tensor{at(0), at(1), at(2), 0, 0, 0};
+          }
+        }
+      }
+    }
+    void transform_tensors(cayspin::Lattice const& film, TensorOfCells& tensor, bool odd) {
+      double const scale = -1.0 / static_cast<double>(4 * nx_ * ny_);
+      auto const& size = film.spacing;
+      transform([&](double* row, std::size_t c, std::size_t y) {
+        for (std::size_t x = 0; x < nx_; ++x) {
+          double const distance = static_cast<double>(y_.begin[rank_] + y) * size[1];
+          Tensor const n = tensor({static_cast<double>(x) * size[0], distance, 0}, size);
+          row[x] = scale * (odd ? n.xy : c == 0 ? n.xx : c == 1 ? n.yy : n.zz);
+          if (x > 0) row[2 * nx_ - x] = odd ? -row[x] : row[x];
+        }
+      });
+    }
+    // Of a column's spectrum of half of its numbers, that with their mirror images.
+    void mirror(Complex* column, bool odd) {
+      fftw_execute_dft(backward_y_.get(), as_fftw(column), as_fftw(column));
+      for (std::size_t y = 0; y < ny_; ++y) column[y] /= static_cast<double>(2 * ny_);
+      column[ny_] = 0;
+      for (std::size_t y = 1; y < ny_; ++y) column[2 * ny_ - y] = odd ? -column[y] : column[y];
+      fftw_execute_dft(forward_y_.get(), as_fftw(column), as_fftw(column));
+    }
+
+    MPI_Comm comm_;
+    std::size_t rank_, nx_ = 0, ny_ = 0;
+    Shares y_, k_;  // rows, and columns of the spectrum, of each rank
+    std::vector<double> row_, results_;
+    std::vector<Complex> row_spectrum_, of_rows_, of_columns_, column_;
+    Plan forward_x_, backward_x_, forward_y_, backward_y_;
+    std::vector<Tensor> kernel_;
+  };
+
+  std::shared_ptr<Film> film_;
+};

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace cayspin::io {
+
+/// Sites from `begin`, so many along each axis.
+struct SiteBox {
+  std::array<std::int64_t, 3> begin{0, 0, 0}, extent{0, 0, 0};
+};
+
+/// What a box has of `planes` planes along z, where the first of them has this number. The result
+/// counts from that one.
+inline SiteBox in_planes(SiteBox const& box, std::int64_t first, std::int64_t planes) {
+  SiteBox part = box;
+  std::int64_t const begin = std::max(box.begin[2], first);
+  std::int64_t const end = std::min(box.begin[2] + box.extent[2], first + planes);
+  part.begin[2] = begin - first;
+  part.extent[2] = std::max<std::int64_t>(0, end - begin);
+  return part;
+}
+
+/// Of numbers of consecutive planes of a lattice (nx, ny, nz), `of_site` of each site, appends
+/// those of a box.
+template <class Number>
+void append_numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
+                       std::int64_t of_site, std::vector<Number> const& of_planes,
+                       std::vector<Number>& chosen) {
+  for (std::int64_t z = 0; z < box.extent[2]; ++z)
+    for (std::int64_t y = 0; y < box.extent[1]; ++y) {
+      std::int64_t const site =
+          ((box.begin[2] + z) * shape[1] + box.begin[1] + y) * shape[0] + box.begin[0];
+      auto const from = of_planes.begin() + site * of_site;
+      chosen.insert(chosen.end(), from, from + box.extent[0] * of_site);
+    }
+}
+
+/// Of the numbers of all sites of a lattice, `of_site` of each, those of a box.
+template <class Number>
+std::vector<Number> numbers_in(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
+                               std::int64_t of_site, std::vector<Number> const& of_all) {
+  std::vector<Number> chosen;
+  auto const& [nx, ny, nz] = box.extent;
+  chosen.reserve(static_cast<std::size_t>(nx * ny * nz * of_site));
+  append_numbers_in(box, shape, of_site, of_all, chosen);
+  return chosen;
+}
+
+/// Reads numbers of all sites, `of_site` of each, by so many planes at once, and keeps those of a
+/// box: read(first plane, number of planes) returns a vector.
+template <class Read>
+std::vector<double> read_by_planes(SiteBox const& box, std::array<std::int64_t, 3> const& shape,
+                                   std::int64_t of_site, std::int64_t at_once, Read const& read) {
+  std::vector<double> chosen;
+  auto const& [nx, ny, nz] = box.extent;
+  chosen.reserve(static_cast<std::size_t>(nx * ny * nz * of_site));
+  for (std::int64_t first = 0; first < shape[2]; first += at_once) {
+    auto const planes = std::min(at_once, shape[2] - first);
+    append_numbers_in(in_planes(box, first, planes), shape, of_site, read(first, planes), chosen);
+  }
+  return chosen;
+}
+
+/// Planes along z of a lattice (nx, ny, nz) of which 16 MiB hold the numbers, and one at least.
+inline std::int64_t planes_to_read(std::array<std::int64_t, 3> const& shape,
+                                   std::int64_t bytes_of_site) {
+  constexpr std::int64_t at_once = 16 << 20;
+  return std::max<std::int64_t>(1, at_once / (bytes_of_site * shape[0] * shape[1]));
+}
+
+}  // namespace cayspin::io

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "parts.hpp"
+
+#include "failure.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+
+namespace cayspin::simulation {
+
+std::array<int, 2> read_parts(std::string const& text) {
+  std::array<int, 2> parts{0, 0};
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%d,%d%n", &parts[0], &parts[1], &end) != 2 ||
+      static_cast<std::size_t>(end) != text.size() || parts[0] < 1 || parts[1] < 1)
+    throw UsageError(fmt::format("--ranks {}: accepted: two numbers, as 1,4", text));
+  return parts;
+}
+
+double repeated_share(cayspin::Lattice const& lattice, int ghosts,
+                      std::array<int, 2> const& parts) {
+  std::array<double, 2> extent{}, ends{};  // of a part in the middle, along y and z
+  for (std::size_t i = 0; i < 2; ++i) {
+    extent[i] = static_cast<double>(lattice.shape[i + 1]) / parts[i];
+    bool const closed = lattice.boundary[i + 1] == cayspin::Boundary::periodic;
+    ends[i] = parts[i] == 1 ? 0 : parts[i] == 2 && !closed ? 1 : 2;
+  }
+  double work = 0;
+  for (int further = 0; further < ghosts; ++further)
+    work += (extent[0] + ends[0] * further) * (extent[1] + ends[1] * further);
+  return work / (ghosts * extent[0] * extent[1]) - 1;
+}
+
+}  // namespace cayspin::simulation

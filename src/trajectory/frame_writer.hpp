@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "fletcher32.hpp"
+#include "hdf5/dataset.hpp"
+
+#include <cayspin/io/trajectory.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+namespace cayspin::io {
+
+/// Dataset /spins of a trajectory file, to which frames are added by planes along z.
+class FrameWriter {
+ public:
+  FrameWriter() = default;
+  /// Creates it.
+  FrameWriter(hid_t file, TrajectoryHeader const& header, TrajectoryStorage const& storage,
+              std::filesystem::path path);
+
+  std::uint64_t frame_bytes() const;
+
+  /// Begins frame number `frame`, also again.
+  void begin(std::int64_t frame);
+  /// Adds the next planes; those of whole chunks, or all that are left. Other numbers throw
+  /// std::logic_error.
+  void add(std::int64_t planes, void const* spins);
+  /// The same, without a copy where that can be: `spins` is followed by the room of a piece.
+  void add_in_room(std::int64_t planes, std::byte* spins);
+
+  std::int64_t planes() const { return planes_; }  ///< of the frame, so far
+  bool is_whole() const { return planes_ == shape_[2]; }
+  Fletcher32 const& checksum() const { return checksum_; }
+
+  void close() { dataset_.close(); }
+
+ private:
+  void require_planes(std::int64_t planes) const;
+  void add_raw(std::int64_t planes, std::byte* spins);
+  Extents place(std::int64_t plane) const;
+
+  std::filesystem::path path_;
+  DatasetHandle dataset_;
+  std::array<std::int64_t, 3> shape_{};
+  std::array<hsize_t, 5> chunk_{};
+  std::size_t number_bytes_ = 0, plane_bytes_ = 0;
+  bool raw_ = false;
+  std::int64_t frame_ = 0, planes_ = 0;
+  Fletcher32 checksum_;
+};
+
+}  // namespace cayspin::io

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The demagnetising field of examples/ranks, by FFTs over all ranks, against that of one rank.
+#include "../../examples/ranks/film_demagnetising_field.hpp"
+#include "../../examples/standard_problem_4/demagnetising_field.hpp"
+#include "../../examples/standard_problem_4/newell.hpp"
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+
+namespace cayspin::test {
+namespace {
+
+using HostSpins = SpinField<double, Kokkos::HostSpace>;
+
+TEST(FilmDemagnetisingField, IsThatOfOneRank) {
+  int ranks = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  for (Lattice const& film : {Lattice{.shape = {7, 13, 1}, .spacing = {2, 1.5, 1}},
+                              Lattice{.shape = {16, 8, 1}}, Lattice{.shape = {1, 5, 1}}}) {
+    mpi::Domain const domain(MPI_COMM_WORLD, film, 1, {.y = ranks, .z = 1});
+    auto const& local = domain.local();
+    auto const m = random_directions(film.sites(), 3);
+    auto const first = static_cast<std::size_t>(
+        3 * film.shape[0] * (domain.begin()[1] + local.ghosts[1].before));
+    auto const own = static_cast<std::size_t>(3 * local.sites());
+    std::vector<double> const part(m.begin() + static_cast<std::ptrdiff_t>(first),
+                                   m.begin() + static_cast<std::ptrdiff_t>(first + own));
+    HostSpins const whole_spins = spins_of<HostSpins>(film, m), whole_field("field", film);
+    HostSpins const spins = spins_of<HostSpins>(local, part), field("field", local);
+    DemagnetisingField const of_one_rank(film, newell::tensor);
+    of_one_rank(whole_spins, whole_field, 0);
+    FilmDemagnetisingField const of_all(domain, newell::tensor);
+    for (int again = 0; again < 2; ++again) of_all(spins, field, 0);
+    auto const expected = copy_to_host(whole_field), found = copy_to_host(field);
+    for (std::size_t i = 0; i < own; ++i)
+      EXPECT_NEAR(found[i], expected[first + i], 1e-14) << i;
+  }
+  EXPECT_THROW(FilmDemagnetisingField(
+                   mpi::Domain(MPI_COMM_WORLD, Lattice::cubic(4, 8, 2), 1, {.y = ranks, .z = 1}),
+                   newell::tensor),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cayspin::test
