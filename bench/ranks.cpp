@@ -2,7 +2,8 @@
 // Nanoseconds per spin and step on the ranks that mpiexec starts, and what the exchange of ghosts
 // takes of them, as Kokkos' regions say: one line per method. Usage: bench_ranks NX NY NZ [MODE];
 // compare_ranks.py and model_ranks.py start it. Mode "apart": each rank has such a lattice to
-// itself; "in_step": and waits for the others after each step.
+// itself; "in_step": and waits for the others after each step; "passes": and takes a pass for each
+// stage, as exchanges between stages would want.
 #include "scene.hpp"
 
 #include <cayspin/mpi/domain.hpp>
@@ -50,7 +51,8 @@ void wait_for_all() {
 }
 
 template <class Stepper>
-void measure(char const* name, cayspin::Lattice const& lattice, bool apart, bool in_step) {
+void measure(char const* name, cayspin::Lattice const& lattice, std::string const& mode) {
+  bool const apart = !mode.empty(), in_step = mode == "in_step";
   constexpr int steps = 4, least_repetitions = 5;
   Kokkos::DefaultExecutionSpace const exec;
   cayspin::mpi::Domain const domain(apart ? MPI_COMM_SELF : MPI_COMM_WORLD, lattice,
@@ -58,6 +60,7 @@ void measure(char const* name, cayspin::Lattice const& lattice, bool apart, bool
   auto spins = scene::random<Spins>(domain.local());
   auto const generator = scene::Default::generator(domain.local());
   Stepper stepper(spins);
+  if (mode == "passes") stepper.use(cayspin::Path::pass);
   double best = 1e300, exchanging = 0, total = 0;
   int exchanges = 0;
   for (int repetition = 0; repetition < least_repetitions || total < 1; ++repetition) {
@@ -86,9 +89,8 @@ void measure(char const* name, cayspin::Lattice const& lattice, bool apart, bool
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc != 4 && argc != 5) return 2;
   std::string const mode = argc == 5 ? argv[4] : "";
-  bool const in_step = mode == "in_step", apart = in_step || mode == "apart";
-  if (argc != 4 && !apart) return 2;
   MPI_Init(&argc, &argv);
   {
     Kokkos::ScopeGuard const kokkos(argc, argv);
@@ -96,10 +98,10 @@ int main(int argc, char** argv) {
     Kokkos::Tools::Experimental::set_pop_region_callback(leave);
     auto const lattice =
         cayspin::Lattice::cubic(std::atoi(argv[1]), std::atoi(argv[2]), std::atoi(argv[3]));
-    measure<cayspin::LieHeun<Spins>>("Heun", lattice, apart, in_step);
-    measure<cayspin::Rkmk4<Spins>>("RKMK4", lattice, apart, in_step);
-    measure<cayspin::StereographicRungeKutta<Spins, cayspin::tableau::Classical4>>(
-        "RK4 tangent", lattice, apart, in_step);
+    measure<cayspin::LieHeun<Spins>>("Heun", lattice, mode);
+    measure<cayspin::Rkmk4<Spins>>("RKMK4", lattice, mode);
+    measure<cayspin::StereographicRungeKutta<Spins, cayspin::tableau::Classical4>>("RK4 tangent",
+                                                                                   lattice, mode);
   }
   MPI_Finalize();
 }

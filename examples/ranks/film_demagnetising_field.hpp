@@ -18,10 +18,10 @@
 #include <type_traits>
 #include <vector>
 
-/// The field H = -N m of all cells of a film of one layer, divided along y, for HostField. Each rank
-/// transforms its rows along x; then each transforms some columns along y, of twice the extents, so
-/// that the film does not see its periodic images. All transforms are of one row or column, so the
-/// bits do not depend on the number of ranks. In units of Ms, for open boundaries.
+/// The field H = -N m of all cells of a film of one layer, divided along y, for HostField. Each
+/// rank transforms its rows along x; then each transforms some columns along y, of twice the
+/// extents, so that the film does not see its periodic images. All transforms are of one row or
+/// column, so the bits do not depend on the number of ranks. In units of Ms, for open boundaries.
 class FilmDemagnetisingField {
  public:
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
@@ -83,7 +83,9 @@ class FilmDemagnetisingField {
 
     std::size_t nx() const { return nx_; }
     std::size_t rows() const { return y_.of(rank_); }
-    double result(std::size_t c, std::size_t site) const { return results_[c * rows() * nx_ + site]; }
+    double result(std::size_t c, std::size_t site) const {
+      return results_[c * rows() * nx_ + site];
+    }
 
     /// fill(row, component, own row): the numbers of a row along x. After it each rank has the
     /// spectra of its columns.
@@ -102,9 +104,8 @@ class FilmDemagnetisingField {
       exchange(of_rows_, rows(), k_, of_columns_, columns(), y_);
       std::ranges::fill(column_, Complex(0));
       for_each_number([&](Complex& in_column, Complex& in_message) { in_column = in_message; });
-      for_each_column([&](fftw_complex* column) {
-        fftw_execute_dft(forward_y_.get(), column, column);
-      });
+      for_each_column(
+          [&](fftw_complex* column) { fftw_execute_dft(forward_y_.get(), column, column); });
     }
 
     void multiply_by_kernel() {
@@ -119,9 +120,8 @@ class FilmDemagnetisingField {
     }
 
     void transform_back() {
-      for_each_column([&](fftw_complex* column) {
-        fftw_execute_dft(backward_y_.get(), column, column);
-      });
+      for_each_column(
+          [&](fftw_complex* column) { fftw_execute_dft(backward_y_.get(), column, column); });
       for_each_number([&](Complex& in_column, Complex& in_message) { in_message = in_column; });
       exchange(of_columns_, columns(), y_, of_rows_, rows(), k_);
       for (std::size_t c = 0; c < 3; ++c)

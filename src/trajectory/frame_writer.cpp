@@ -52,8 +52,8 @@ FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t n
   auto const of_chunk = static_cast<std::int64_t>(chunk[1]);
   auto const plane_bytes = 3 * number_bytes * static_cast<std::size_t>(shape[0] * shape[1]);
   std::int64_t const most = most_planes > 0 ? std::min(most_planes, shape[2]) : shape[2];
-  std::int64_t const chunks =
-      most == shape[2] ? (most + of_chunk - 1) / of_chunk : std::max<std::int64_t>(1, most / of_chunk);
+  std::int64_t const chunks = most == shape[2] ? (most + of_chunk - 1) / of_chunk
+                                               : std::max<std::int64_t>(1, most / of_chunk);
   auto const room = plane_bytes * static_cast<std::size_t>(chunks * of_chunk);
   auto const of_chunk_bytes = 3 * number_bytes * chunk[1] * chunk[2] * chunk[3];
   return {.planes = std::min(chunks * of_chunk, shape[2]),

@@ -20,8 +20,8 @@ TEST(FilmDemagnetisingField, IsThatOfOneRank) {
     mpi::Domain const domain(MPI_COMM_WORLD, film, 1, {.y = ranks, .z = 1});
     auto const& local = domain.local();
     auto const m = random_directions(film.sites(), 3);
-    auto const first = static_cast<std::size_t>(
-        3 * film.shape[0] * (domain.begin()[1] + local.ghosts[1].before));
+    auto const first =
+        static_cast<std::size_t>(3 * film.shape[0] * (domain.begin()[1] + local.ghosts[1].before));
     auto const own = static_cast<std::size_t>(3 * local.sites());
     std::vector<double> const part(m.begin() + static_cast<std::ptrdiff_t>(first),
                                    m.begin() + static_cast<std::ptrdiff_t>(first + own));
@@ -32,8 +32,7 @@ TEST(FilmDemagnetisingField, IsThatOfOneRank) {
     FilmDemagnetisingField const of_all(domain, newell::tensor);
     for (int again = 0; again < 2; ++again) of_all(spins, field, 0);
     auto const expected = copy_to_host(whole_field), found = copy_to_host(field);
-    for (std::size_t i = 0; i < own; ++i)
-      EXPECT_NEAR(found[i], expected[first + i], 1e-14) << i;
+    for (std::size_t i = 0; i < own; ++i) EXPECT_NEAR(found[i], expected[first + i], 1e-14) << i;
   }
   EXPECT_THROW(FilmDemagnetisingField(
                    mpi::Domain(MPI_COMM_WORLD, Lattice::cubic(4, 8, 2), 1, {.y = ranks, .z = 1}),

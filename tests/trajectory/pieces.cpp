@@ -13,7 +13,8 @@ namespace cayspin::io {
 namespace {
 
 constexpr std::array<std::int64_t, 3> odd_shape{4, 3, 7};
-constexpr SiteBox boxes[] = {{{0, 0, 0}, odd_shape}, {{0, 1, 2}, {4, 2, 3}}, {{1, 0, 6}, {2, 3, 1}}};
+constexpr SiteBox boxes[] = {
+    {{0, 0, 0}, odd_shape}, {{0, 1, 2}, {4, 2, 3}}, {{1, 0, 6}, {2, 3, 1}}};
 
 TrajectoryHeader odd_header(std::string const& precision = "double") {
   auto header = small_header(precision);
@@ -24,8 +25,7 @@ TrajectoryHeader odd_header(std::string const& precision = "double") {
 template <class Real>
 void write_in_pieces(std::filesystem::path const& path, RunOutputOptions const& options) {
   auto const header = odd_header(sizeof(Real) == sizeof(float) ? "single" : "double");
-  auto const pieces =
-      frame_pieces(odd_shape, sizeof(Real), options.storage, options.most_planes);
+  auto const pieces = frame_pieces(odd_shape, sizeof(Real), options.storage, options.most_planes);
   RunOutput output(path, header, options);
   for (int frame = 0; frame < 3; ++frame) {
     auto const spins = numbered_spins<Real>(header, frame);
@@ -89,8 +89,7 @@ TEST_F(TrajectoryTest, PiecesAreWholeChunks) {
   auto const last_is_short = frame_pieces(odd_shape, 8, {.chunk = 2});
   EXPECT_EQ(last_is_short.bytes, 8 * plane_bytes + 4);
   EXPECT_EQ(last_is_short.copied, 0U);
-  EXPECT_EQ(frame_pieces(odd_shape, 8, {.compression = 1, .chunk = 2}).copied,
-            2 * 2 * plane_bytes);
+  EXPECT_EQ(frame_pieces(odd_shape, 8, {.compression = 1, .chunk = 2}).copied, 2 * 2 * plane_bytes);
 }
 
 TEST_F(TrajectoryTest, PiecesOutOfOrderAreRefused) {

@@ -21,7 +21,7 @@ namespace cayspin::mpi::detail {
 /// A box of a field in host memory, as it lies there: the same number of bytes again and again.
 struct BytesInPlace {
   std::byte* first;
-  int bytes;           // in a row
+  int bytes;  // in a row
   int planes, components;
   MPI_Aint plane, component;  // bytes from one to the next
 
@@ -101,9 +101,8 @@ class MessagesInPlace {
     constexpr int long_bytes = 32 * 1024;
     std::vector<BytesInPlace> boxes;
     for (auto const& field : fields_) boxes.emplace_back(field, box);
-    bool const apart = std::ranges::all_of(boxes, [](BytesInPlace const& one) {
-      return one.planes == 1 && one.bytes >= long_bytes;
-    });
+    bool const apart = std::ranges::all_of(
+        boxes, [](BytesInPlace const& one) { return one.planes == 1 && one.bytes >= long_bytes; });
     if (!apart) return add_together(boxes, make);
     for (auto const& one : boxes)
       for (int c = 0; c < one.components; ++c)
