@@ -5,6 +5,7 @@
 
 #include <cayspin/cayspin.hpp>
 #include <cayspin/mpi/domain.hpp>
+#include <cayspin/observer/thermal_noise.hpp>
 
 #include <bit>
 #include <cmath>
@@ -242,6 +243,31 @@ TYPED_TEST(EqualBits, AveragesOverLayers) {
     this->template expect_equal_bits<Layered<2>>(
         1, [](Spins const& spins) { return ImplicitMidpoint<Spins>(spins); }, 2, 2);
   }
+}
+
+// The noise of a site, also of one that is a ghost, is that of its place in the whole lattice.
+TYPED_TEST(EqualBits, ThermalNoise) {
+  using Spins = typename TypeParam::Spins;
+  typename TypeParam::Exec const exec;
+  auto const run = [&](Spins& spins) {
+    auto const generator = Still::generator_on(spins.lattice());
+    ThermalNoise<Spins> const noise(spins, 0.1, {.temperature = 0.5, .seed = 3});
+    LieHeun<Spins> stepper(spins);
+    Times const times{0, 0.05, 4};
+    integrate(exec, stepper, generator, spins, times, noise.after_steps(times),
+              noise.before_steps());
+    return numbers_of(spins);
+  };
+  for (Lattice const& lattice : lattices())
+    for (mpi::Division const& division : divisions(lattice, 2)) {
+      auto const numbers = random_directions(lattice.sites(), 7);
+      auto whole = spins_of<Spins>(lattice, numbers);
+      mpi::Domain const domain(MPI_COMM_WORLD, lattice, 2, division);
+      auto part = spins_of<Spins>(domain.local(), numbers_of_part(domain.local(), numbers));
+      run(whole);
+      EXPECT_EQ(run(part), numbers_of_part(domain.local(), numbers_of(whole)))
+          << name_of(lattice, division);
+    }
 }
 
 TYPED_TEST(EqualBits, EnergyProjection) {

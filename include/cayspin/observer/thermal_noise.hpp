@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/philox.hpp>
+#include <cayspin/integrate.hpp>
+#include <cayspin/part.hpp>
+#include <cayspin/rotation/exponential.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/step.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+
+namespace cayspin {
+
+namespace detail {
+
+/// m <- exp(v) m. The components of v are sqrt(3) s, 0 or -sqrt(3) s with the probabilities 1/6,
+/// 2/3 and 1/6: the moments of normal numbers of deviation s up to the fifth, which is all that a
+/// step of weak order 2 knows of them (Kloeden and Platen 1992, Sec. 14.2).
+template <class Real>
+struct TurnAtRandom {
+  SiteArray<Real, 3> spins;
+  OutputArray<Real, 3> output;
+  Real angle;  // sqrt(3) s
+  std::uint64_t seed, draw;
+  std::int64_t first_y, first_z, nx, ny, nz;  // of the part in the whole lattice, and that
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    constexpr int lanes = lanes_of<Value>;
+    std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
+    auto const number = static_cast<std::uint64_t>((z * ny + y) * nx + site.x());
+    Philox<lanes> random(number, draw);
+    random.encrypt(seed);
+    Vec3<Value> const v{turned<Value>(random.word[0]), turned<Value>(random.word[1]),
+                        turned<Value>(random.word[2])};
+    site.store(Exponential::rotate(v, site.load(spins)), output);
+  }
+
+ private:
+  template <class Value, class Words>
+  KOKKOS_FORCEINLINE_FUNCTION Value turned(Words const& words) const {
+    constexpr std::uint64_t sixth = 0x2AAAAAAB, last_sixth = 0xFFFFFFFF - sixth;
+    constexpr int lanes = lanes_of<Value>;
+    if constexpr (lanes == 1) {
+      return words < sixth ? -angle : words > last_sixth ? angle : Real(0);
+    } else {
+      using Doubles = typename LanesOf<double, lanes>::type;
+      Doubles const none{}, up = none + double(angle);
+      Doubles const found = words < sixth ? -up : (words > last_sixth ? up : none);
+      auto const rounded = __builtin_convertvector(found, typename LanesOf<Real, lanes>::type);
+      Real numbers[std::size_t{lanes}];
+      std::memcpy(numbers, &rounded, sizeof rounded);
+      return load<Value>(numbers);
+    }
+  }
+};
+
+}  // namespace detail
+
+/// Options of ThermalNoise.
+struct ThermalNoiseOptions {
+  double temperature = 0;  ///< in units of moment times field: kB T over the energy of a site
+  std::uint64_t seed = 0;
+};
+
+/// The noise of a temperature around the steps of any one-step method for LandauLifshitz with
+/// damping: half of it before each step and half after. A half turns each spin by a random angle
+/// about a random axis, of which the variance per component is s^2 = u - u^2/12 with
+/// u = damping temperature dt. Spins without a field then diffuse with an error of the third order
+/// in u. The whole is a Strang splitting that tends to Boltzmann's distribution of E / temperature.
+///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
+///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
+///             noise.before_steps());
+/// The random numbers are those of Philox by seed, site and step: the bits do not depend on
+/// threads, host spaces or ranks, nor on where a run is cut. Costs no memory and two passes a step.
+/// Refused when compiled with an AdaptiveStepper. Methods that remember steps lose their order.
+template <class Spins>
+class ThermalNoise {
+  using Real = typename Spins::value_type;
+
+ public:
+  enum class Half { before, after };
+
+  /// Throws std::invalid_argument for a temperature or damping that is negative or not finite.
+  ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options)
+      : lattice_(like.lattice()), damping_(damping), options_(options) {
+    if (!(damping >= 0) || !std::isfinite(damping))
+      throw std::invalid_argument("cayspin::ThermalNoise: the damping must be finite and >= 0");
+    if (!(options.temperature >= 0) || !std::isfinite(options.temperature))
+      throw std::invalid_argument("cayspin::ThermalNoise: the temperature must be finite and >= 0");
+  }
+
+  /// The noise before or after step number `step`, of length dt, also of ghosts.
+  /// Throws std::invalid_argument where half of a step would turn spins by more than a radian, and
+  /// for spins on another lattice.
+  template <class Exec>
+  void turn(Exec const& exec, std::int64_t step, Half half, double dt, Spins const& spins) const {
+    detail::check_access<Exec, typename Spins::memory_space>();
+    require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
+    double const u = damping_ * options_.temperature * std::abs(dt);
+    if (!(u <= 1))
+      throw std::invalid_argument(
+          "cayspin::ThermalNoise: damping temperature dt must be at most 1: a smaller dt");
+    if (u == 0) return;
+    auto const& all = whole(lattice_);
+    auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
+    auto const draw = 2 * static_cast<std::uint64_t>(step) + (half == Half::after ? 1 : 0);
+    detail::for_each_site<Real>(
+        exec, "cayspin::ThermalNoise", spins.layout(),
+        detail::TurnAtRandom<Real>{spins.array(), spins.output(false),
+                                   static_cast<Real>(std::sqrt(3 * (u - u * u / 12))),
+                                   options_.seed, draw, begin[1], begin[2], all.shape[0],
+                                   all.shape[1], all.shape[2]});
+  }
+
+  /// An observer: the second half of each step. The first among the observers, so that the others
+  /// see the spins as they are after it.
+  auto after_steps(Times const& times) const { return AfterSteps{*this, times.first}; }
+  /// An observer: the first half of the step that follows. The last among the observers.
+  auto before_steps() const { return BeforeSteps{*this}; }
+
+ private:
+  struct AfterSteps {
+    static constexpr bool changes_spins = true;
+    ThermalNoise noise;
+    std::int64_t first;
+
+    template <class Exec>
+    void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
+      if (step.number > first) noise.turn(exec, step.number, Half::after, step.dt, spins);
+    }
+  };
+  struct BeforeSteps {
+    static constexpr bool changes_spins = true;
+    ThermalNoise noise;
+
+    template <class Exec>
+    void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
+      if (!step.last) noise.turn(exec, step.number + 1, Half::before, step.dt, spins);
+    }
+  };
+
+  Lattice lattice_;
+  double damping_;
+  ThermalNoiseOptions options_;
+};
+
+}  // namespace cayspin

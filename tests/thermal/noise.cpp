@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Thermal noise: diffusion on the sphere, Langevin's function, Boltzmann's law of a uniaxial spin,
+// and bits that do not depend on where and in how many pieces a run takes place. Seeds are fixed;
+// statistical limits are five standard errors.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/observer/thermal_noise.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace cayspin::test {
+namespace {
+
+template <class Backend>
+class Thermal : public ::testing::Test {
+ protected:
+  using Spins = typename Backend::Spins;
+  using Noise = ThermalNoise<Spins>;
+  using Half = typename Noise::Half;
+  typename Backend::Exec exec;
+
+  /// Independent spins in a field, from +z, `steps` steps to rest.
+  template <class Field>
+  Spins at_rest(Field const& field, double temperature, double dt, int steps) {
+    Spins spins("spins", Lattice::square(256, 64));
+    double const damping = 1;
+    LandauLifshitz const generator(field, damping);
+    Noise const noise(spins, damping, {.temperature = temperature, .seed = 11});
+    LieHeun<Spins> stepper(spins);
+    Times const times{0, dt, steps};
+    integrate(exec, stepper, generator, spins, times, noise.after_steps(times),
+              noise.before_steps());
+    return spins;
+  }
+};
+TYPED_TEST_SUITE(Thermal, Backends, BackendName);
+
+/// What a half turn leaves of <m, m_0> on average, over the 27 vectors v.
+double kept_of_direction(double u) {
+  double const angle = std::sqrt(3 * (u - u * u / 12));
+  double kept = 0;
+  constexpr double weight[] = {1. / 6, 2. / 3, 1. / 6};
+  for (int i = 0; i < 27; ++i) {
+    std::array<int, 3> const at{i % 3, i / 3 % 3, i / 9};
+    double square = 0, product = 1;
+    for (int const level : at) {
+      square += (level - 1) * (level - 1);
+      product *= weight[level];
+    }
+    kept += product * (1 + 2 * std::cos(angle * std::sqrt(square))) / 3;
+  }
+  return kept;
+}
+
+// exp(-u) is what diffusion keeps; an error of the third order in u is one of weak order 2.
+TEST(ThermalTurn, IsDiffusionToTheThirdOrder) {
+  double last = 0;
+  for (double const u : {0.1, 0.05, 0.025, 0.0125}) {
+    double const error = std::abs(kept_of_direction(u) - std::exp(-u));
+    if (last > 0) {
+      EXPECT_GT(std::log2(last / error), 2.9) << u;
+      EXPECT_LT(std::log2(last / error), 3.1) << u;
+    }
+    last = error;
+  }
+}
+
+TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
+  using Spins = typename TypeParam::Spins;
+  using Half = typename TestFixture::Half;
+  auto const lattice = Lattice::cubic(37, 41, 43);
+  auto const start = random_directions(lattice.sites(), 3);
+  auto const spins = spins_of<Spins>(lattice, start);
+  ThermalNoise<Spins> const noise(spins, 0.5, {.temperature = 0.4, .seed = 5});
+  double const u = 0.5 * 0.4 * 0.3;
+  for (int step = 1; step <= 10; ++step)
+    for (auto const half : {Half::before, Half::after})
+      noise.turn(this->exec, step, half, 0.3, spins);
+  this->exec.fence();
+  auto const now = numbers_of(spins);
+  auto const sites = static_cast<double>(lattice.sites());
+  std::array<double, 3> mean{};  // of products of components, and of neighbours' turns
+  double largest_defect = 0;
+  for (std::size_t i = 0; i < now.size(); i += 3) {
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      mean[c] += 3 * now[i + c] * start[i + c] / sites;
+      square += now[i + c] * now[i + c];
+    }
+    largest_defect = std::max(largest_defect, std::abs(square - 1));
+  }
+  // Each of three components keeps the same part: variance below 3 <(m m_0)^2> <= 9/5.
+  double const kept = std::pow(kept_of_direction(u), 20);
+  for (double const of_component : mean) EXPECT_NEAR(of_component, kept, 5 * std::sqrt(1.8 / sites));
+  EXPECT_LT(largest_defect, 200 * epsilon<typename TypeParam::Real>);
+}
+
+// <m_z> = coth x - 1/x in a field of x temperatures; <m_z^2> = 1 - 2 <m_z> / x.
+TYPED_TEST(Thermal, SpinsInAFieldFollowLangevin) {
+  double const temperature = 0.5, field = 1, x = field / temperature;
+  double const langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
+  auto const spins = this->at_rest(EffectiveField(Zeeman{{0, 0, field}}), temperature, 0.05, 300);
+  auto const m = magnetization(this->exec, spins);
+  double const error = std::sqrt((square - langevin * langevin) / static_cast<double>(spins.sites()));
+  EXPECT_NEAR(m.z, langevin, 5 * error + 5e-4);  // and the bias of dt = 0.05
+  EXPECT_NEAR(m.x, 0, 5 * std::sqrt((1 - square) / 2 / static_cast<double>(spins.sites())));
+}
+
+// E = -K m_z^2 / 2 or so: <m_z^2> by Simpson's rule over Boltzmann's weights.
+TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
+  using Spins = typename TypeParam::Spins;
+  double const temperature = 0.4, constant = 1;
+  UniaxialAnisotropy const term(constant, {0, 0, 1});
+  auto const energy_of = [&](double z) {
+    auto const one = spins_of<Spins>(Lattice::chain(1), {std::sqrt(1 - z * z), 0, z});
+    return energy(this->exec, EffectiveField(term), one).value;
+  };
+  double const slope = (energy_of(1) - energy_of(0)) / temperature;  // of z^2
+  double weights = 0, squares = 0, fourths = 0;
+  constexpr int intervals = 200;
+  for (int i = 0; i <= intervals; ++i) {
+    double const z = static_cast<double>(i) / intervals;
+    double const simpson = i == 0 || i == intervals ? 1 : i % 2 == 1 ? 4 : 2;
+    double const weight = simpson * std::exp(-slope * z * z);
+    weights += weight;
+    squares += weight * z * z;
+    fourths += weight * z * z * z * z;
+  }
+  double const expected = squares / weights;
+  auto const spins = this->at_rest(EffectiveField(term), temperature, 0.05, 300);
+  double found = 0;
+  auto const numbers = numbers_of(spins);
+  for (std::size_t i = 2; i < numbers.size(); i += 3) found += numbers[i] * numbers[i];
+  auto const sites = static_cast<double>(spins.sites());
+  double const error = std::sqrt((fourths / weights - expected * expected) / sites);
+  EXPECT_NEAR(found / sites, expected, 5 * error + 5e-4);
+}
+
+// A run in one piece, and the same in two: the noise goes on with the number of the step.
+TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::cubic(21, 6, 5);
+  auto const start = random_directions(lattice.sites(), 3);
+  auto const run = [&](std::initializer_list<std::array<int, 2>> const& pieces,
+                       std::uint64_t seed) {
+    auto spins = spins_of<Spins>(lattice, start);
+    LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1)), 0.3);
+    ThermalNoise<Spins> const noise(spins, 0.3, {.temperature = 0.2, .seed = seed});
+    Rkmk4<Spins> stepper(spins);
+    for (auto const& [first, last] : pieces) {
+      Times const times{0, 0.05, last, first};
+      integrate(this->exec, stepper, generator, spins, times, noise.after_steps(times),
+                noise.before_steps());
+    }
+    return numbers_of(spins);
+  };
+  auto const whole = run({{0, 12}}, 9);
+  EXPECT_EQ(run({{0, 5}, {5, 12}}, 9), whole);
+  EXPECT_NE(run({{0, 12}}, 10), whole);
+  EXPECT_NE(run({{0, 12}}, 9 + (1ULL << 40U)), whole);
+}
+
+TEST(ThermalBits, AreThoseOfEveryHostSpace) {
+  auto const run = [](auto const& exec) {
+    using Spins = SpinField<double, Kokkos::HostSpace>;
+    auto const lattice = Lattice::square(131, 77);
+    auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+    ThermalNoise<Spins> const noise(spins, 1, {.temperature = 0.2, .seed = 1});
+    noise.turn(exec, 7, ThermalNoise<Spins>::Half::after, 0.1, spins);
+    exec.fence();
+    return numbers_of(spins);
+  };
+  EXPECT_EQ(run(Kokkos::Serial()), run(Kokkos::DefaultHostExecutionSpace()));
+}
+
+TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
+  using Spins = SpinField<double, Kokkos::HostSpace>;
+  Spins const spins("spins", Lattice::chain(4)), others("others", Lattice::chain(5));
+  for (double const wrong : {-1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(ThermalNoise<Spins>(spins, wrong, {}), std::invalid_argument);
+    EXPECT_THROW(ThermalNoise<Spins>(spins, 1, {.temperature = wrong}), std::invalid_argument);
+  }
+  Kokkos::DefaultHostExecutionSpace const exec;
+  using Half = ThermalNoise<Spins>::Half;
+  ThermalNoise<Spins> const noise(spins, 0.5, {.temperature = 2});
+  EXPECT_THROW(noise.turn(exec, 1, Half::before, 1.1, spins), std::invalid_argument);
+  EXPECT_THROW(noise.turn(exec, 1, Half::before, std::nan(""), spins), std::invalid_argument);
+  EXPECT_THROW(noise.turn(exec, 1, Half::before, 0.1, others), std::invalid_argument);
+  auto const before = numbers_of(spins);
+  ThermalNoise<Spins>(spins, 0.5, {}).turn(exec, 1, Half::before, 0.1, spins);
+  EXPECT_EQ(numbers_of(spins), before) << "at temperature 0";
+}
+
+}  // namespace
+}  // namespace cayspin::test
