@@ -28,7 +28,8 @@ TEST(Philox, GivesTheKnownAnswersInEveryLane) {
       return std::uint64_t{high} << 32U | low;
     };
     auto const& [counter, key, expected] = answer;
-    std::uint64_t const number = words(counter[0], counter[1]), draw = words(counter[2], counter[3]);
+    std::uint64_t const number = words(counter[0], counter[1]),
+                        draw = words(counter[2], counter[3]);
     Philox<1> alone(number, draw);
     Philox<8> fourth(number - 3, draw);
     alone.encrypt(words(key[0], key[1]));

@@ -74,7 +74,8 @@ struct ThermalNoiseOptions {
 /// damping: half of it before each step and half after. A half turns each spin by a random angle
 /// about a random axis, of which the variance per component is s^2 = u - u^2/12 with
 /// u = damping temperature dt. Spins without a field then diffuse with an error of the third order
-/// in u. The whole is a Strang splitting that tends to Boltzmann's distribution of E / temperature.
+/// in u. The whole is a splitting of second order. It tends to Boltzmann's distribution of
+/// E / temperature.
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
 ///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
 ///             noise.before_steps());
@@ -114,10 +115,9 @@ class ThermalNoise {
     auto const draw = 2 * static_cast<std::uint64_t>(step) + (half == Half::after ? 1 : 0);
     detail::for_each_site<Real>(
         exec, "cayspin::ThermalNoise", spins.layout(),
-        detail::TurnAtRandom<Real>{spins.array(), spins.output(false),
-                                   static_cast<Real>(std::sqrt(3 * (u - u * u / 12))),
-                                   options_.seed, draw, begin[1], begin[2], all.shape[0],
-                                   all.shape[1], all.shape[2]});
+        detail::TurnAtRandom<Real>{
+            spins.array(), spins.output(false), static_cast<Real>(std::sqrt(3 * (u - u * u / 12))),
+            options_.seed, draw, begin[1], begin[2], all.shape[0], all.shape[1], all.shape[2]});
   }
 
   /// An observer: the second half of each step. The first among the observers, so that the others
