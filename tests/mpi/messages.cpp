@@ -66,7 +66,7 @@ TEST(Ghosts, HoldWhatTheNeighboursHold) {
   for (auto const boundary : {Boundary::open, Boundary::periodic})
     for (Division const& division :
          {Division{1, ranks}, Division{ranks, 1}, Division{2, ranks / 2}})
-      for (std::int64_t const nx : {1, 5, 19}) {
+      for (std::int64_t const nx : {1, 5, 19, 700}) {  // the last by components
         if (division.y * division.z != ranks) continue;
         SCOPED_TRACE(testing::Message() << division.y << " x " << division.z << ", " << nx);
         Domain const domain(MPI_COMM_WORLD, Lattice::cubic(nx, 13, 15, 1, boundary), 3, division);
