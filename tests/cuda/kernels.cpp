@@ -2,6 +2,7 @@
 // The kernels of every stepper, isotropy policy, generator, field term and scalar, compiled in both
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
+#include <cayspin/observer/thermal_noise.hpp>
 
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
@@ -77,6 +78,8 @@ struct Generators {
       stepper.step(Exec(), generator, spins, 0, 0.1);
       return energy(Exec(), generator, spins).value + largest_rate(Exec(), generator, spins);
     };
+    using Half = typename ThermalNoise<S>::Half;
+    ThermalNoise<S>(spins, 0.1, {.temperature = 1}).turn(Exec(), 1, Half::before, 0.1, spins);
     return std::apply([&](auto const&... generator) { return (one(generator) + ...); },
                       generators) +
            norm_defect(Exec(), spins) + magnetization(Exec(), spins).x +
