@@ -5,7 +5,6 @@
 #include <cayspin/detail/philox.hpp>
 #include <cayspin/integrate.hpp>
 #include <cayspin/part.hpp>
-#include <cayspin/rotation/exponential.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/step.hpp>
 
@@ -13,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <stdexcept>
 
 namespace cayspin {
@@ -21,44 +21,66 @@ namespace detail {
 
 /// m <- exp(v) m. The components of v are sqrt(3) s, 0 or -sqrt(3) s with the probabilities 1/6,
 /// 2/3 and 1/6: the moments of normal numbers of deviation s up to the fifth, which is all that a
-/// step of weak order 2 knows of them (Kloeden and Platen 1992, Sec. 14.2).
+/// step of weak order 2 knows of them (Kloeden and Platen 1992, Sec. 14.2). So |v| has four values.
 template <class Real>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
-  Real angle;  // sqrt(3) s
   std::uint64_t seed, draw;
   std::int64_t first_y, first_z, nx, ny, nz;  // of the part in the whole lattice, and that
+  // The quaternion of exp(v) is cosine[n] + sine[n] e, with e = v / (sqrt(3) s) and n = e.e.
+  Real cosine[4], sine[4];
+
+  /// s^2: the variance of each component.
+  void set_variance(double variance) {
+    for (int n = 0; n < 4; ++n) {
+      double const half_angle = std::sqrt(3 * variance * n) / 2;
+      cosine[n] = static_cast<Real>(std::cos(half_angle));
+      sine[n] = static_cast<Real>(n == 0 ? 0 : std::sin(half_angle) / std::sqrt(n));
+    }
+  }
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    constexpr int lanes = lanes_of<Value>;
     std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
     auto const number = static_cast<std::uint64_t>((z * ny + y) * nx + site.x());
-    Philox<lanes> random(number, draw);
+    Philox<lanes_of<Value>> random(number, draw);
     random.encrypt(seed);
-    Vec3<Value> const v{turned<Value>(random.word[0]), turned<Value>(random.word[1]),
-                        turned<Value>(random.word[2])};
-    site.store(Exponential::rotate(v, site.load(spins)), output);
+    Vec3<Value> const e{sign<Value>(random.word[0]), sign<Value>(random.word[1]),
+                        sign<Value>(random.word[2])};
+    Value const n = dot(e, e);
+    Vec3<Value> const m = site.load(spins), w = of_four(sine, n) * e;
+    Vec3<Value> const turned = cross(w, m);
+    Vec3<Value> const half = multiply_add(of_four(cosine, n), turned, cross(w, turned));
+    site.store(multiply_add(Value(2), half, m), output);
   }
 
  private:
+  /// -1, 0 or 1
   template <class Value, class Words>
-  KOKKOS_FORCEINLINE_FUNCTION Value turned(Words const& words) const {
+  KOKKOS_FORCEINLINE_FUNCTION static Value sign(Words const& words) {
     constexpr std::uint64_t sixth = 0x2AAAAAAB, last_sixth = 0xFFFFFFFF - sixth;
     constexpr int lanes = lanes_of<Value>;
     if constexpr (lanes == 1) {
-      return words < sixth ? -angle : words > last_sixth ? angle : Real(0);
+      return words < sixth ? Real(-1) : words > last_sixth ? Real(1) : Real(0);
     } else {
       using Doubles = typename LanesOf<double, lanes>::type;
-      Doubles const none{}, up = none + double(angle);
+      Doubles const none{}, up = none + 1.0;
       Doubles const found = words < sixth ? -up : (words > last_sixth ? up : none);
       auto const rounded = __builtin_convertvector(found, typename LanesOf<Real, lanes>::type);
       Real numbers[std::size_t{lanes}];
       std::memcpy(numbers, &rounded, sizeof rounded);
       return load<Value>(numbers);
     }
+  }
+
+  /// The entry of a table for n = 0, 1, 2 or 3.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value of_four(Real const (&table)[4], Value const& n) {
+    Value const low = select<Value>(n < Value(Real(0.5)), Value(table[0]), Value(table[1]));
+    Value const high = select<Value>(n < Value(Real(2.5)), Value(table[2]), Value(table[3]));
+    return select<Value>(n < Value(Real(1.5)), low, high);
   }
 };
 
@@ -113,11 +135,18 @@ class ThermalNoise {
     auto const& all = whole(lattice_);
     auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
     auto const draw = 2 * static_cast<std::uint64_t>(step) + (half == Half::after ? 1 : 0);
-    detail::for_each_site<Real>(
-        exec, "cayspin::ThermalNoise", spins.layout(),
-        detail::TurnAtRandom<Real>{
-            spins.array(), spins.output(false), static_cast<Real>(std::sqrt(3 * (u - u * u / 12))),
-            options_.seed, draw, begin[1], begin[2], all.shape[0], all.shape[1], all.shape[2]});
+    detail::TurnAtRandom<Real> kernel{};
+    kernel.spins = spins.array();
+    kernel.output = spins.output(false);
+    kernel.seed = options_.seed;
+    kernel.draw = draw;
+    kernel.first_y = begin[1];
+    kernel.first_z = begin[2];
+    kernel.nx = all.shape[0];
+    kernel.ny = all.shape[1];
+    kernel.nz = all.shape[2];
+    kernel.set_variance(u - u * u / 12);
+    detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
   }
 
   /// An observer: the second half of each step. The first among the observers, so that the others
