@@ -143,21 +143,26 @@ TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(21, 6, 5);
   auto const start = random_directions(lattice.sites(), 3);
-  auto const run = [&](std::initializer_list<std::array<int, 2>> const& pieces,
-                       std::uint64_t seed) {
+  auto const run = [&](std::initializer_list<std::array<int, 2>> const& pieces, std::uint64_t seed,
+                       bool at_once = false) {
     auto spins = spins_of<Spins>(lattice, start);
     LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1)), 0.3);
     ThermalNoise<Spins> const noise(spins, 0.3, {.temperature = 0.2, .seed = seed});
     Rkmk4<Spins> stepper(spins);
     for (auto const& [first, last] : pieces) {
       Times const times{0, 0.05, last, first};
-      integrate(this->exec, stepper, generator, spins, times, noise.after_steps(times),
-                noise.before_steps());
+      if (at_once)
+        integrate(this->exec, stepper, generator, spins, times, noise.between_steps(times));
+      else
+        integrate(this->exec, stepper, generator, spins, times, noise.after_steps(times),
+                  noise.before_steps());
     }
     return numbers_of(spins);
   };
   auto const whole = run({{0, 12}}, 9);
   EXPECT_EQ(run({{0, 5}, {5, 12}}, 9), whole);
+  EXPECT_EQ(run({{0, 12}}, 9, true), whole);
+  EXPECT_EQ(run({{0, 5}, {5, 5}, {5, 12}}, 9, true), whole);
   EXPECT_NE(run({{0, 12}}, 10), whole);
   EXPECT_NE(run({{0, 12}}, 9 + (1ULL << 40U)), whole);
 }

@@ -26,7 +26,7 @@ template <class Real>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
-  std::uint64_t seed, draw;
+  std::uint64_t seed, first_draw, last_draw;
   std::int64_t first_y, first_z, nx, ny, nz;  // of the part in the whole lattice, and that
   // The quaternion of exp(v) is cosine[n] + sine[n] e, with e = v / (sqrt(3) s) and n = e.e.
   Real cosine[4], sine[4];
@@ -45,18 +45,25 @@ struct TurnAtRandom {
     using Value = typename Site::value_type;
     std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
     auto const number = static_cast<std::uint64_t>((z * ny + y) * nx + site.x());
+    Vec3<Value> m = turned(number, first_draw, site.load(spins));
+    for (std::uint64_t draw = first_draw + 1; draw <= last_draw; ++draw)
+      m = turned(number, draw, m);
+    site.store(m, output);
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(std::uint64_t number, std::uint64_t draw,
+                                                 Vec3<Value> const& m) const {
     Philox<lanes_of<Value>> random(number, draw);
     random.encrypt(seed);
     Vec3<Value> const e{sign<Value>(random.word[0]), sign<Value>(random.word[1]),
                         sign<Value>(random.word[2])};
     Value const n = dot(e, e);
-    Vec3<Value> const m = site.load(spins), w = of_four(sine, n) * e;
-    Vec3<Value> const turned = cross(w, m);
-    Vec3<Value> const half = multiply_add(of_four(cosine, n), turned, cross(w, turned));
-    site.store(multiply_add(Value(2), half, m), output);
+    Vec3<Value> const w = of_four(sine, n) * e, c = cross(w, m);
+    return multiply_add(Value(2), multiply_add(of_four(cosine, n), c, cross(w, c)), m);
   }
 
- private:
   /// -1, 0 or 1
   template <class Value, class Words>
   KOKKOS_FORCEINLINE_FUNCTION static Value sign(Words const& words) {
@@ -101,9 +108,10 @@ struct ThermalNoiseOptions {
 ///   ThermalNoise const noise(spins, damping, {.temperature = 0.5, .seed = 1});
 ///   integrate(exec, stepper, generator, spins, times, noise.after_steps(times), observers...,
 ///             noise.before_steps());
-/// The random numbers are those of Philox by seed, site and step: the bits do not depend on
-/// threads, host spaces or ranks, nor on where a run is cut. Costs no memory and two passes a step.
-/// Refused when compiled with an AdaptiveStepper. Methods that remember steps lose their order.
+/// Without observers in between, noise.between_steps(times) does both at once. The random numbers
+/// are those of Philox by seed, site and step: the bits do not depend on threads, host spaces or
+/// ranks, nor on where a run is cut. Costs no memory and two passes a step. Refused when compiled
+/// with an AdaptiveStepper. Methods that remember steps lose their order.
 template <class Spins>
 class ThermalNoise {
   using Real = typename Spins::value_type;
@@ -125,6 +133,26 @@ class ThermalNoise {
   /// for spins on another lattice.
   template <class Exec>
   void turn(Exec const& exec, std::int64_t step, Half half, double dt, Spins const& spins) const {
+    auto const draw = draw_of(step, half);
+    turn_by(exec, draw, draw, dt, spins);
+  }
+
+  /// An observer: the second half of each step. The first among the observers, so that the others
+  /// see the spins as they are after it.
+  auto after_steps(Times const& times) const { return AfterSteps{*this, times.first}; }
+  /// An observer: the first half of the step that follows. The last among the observers.
+  auto before_steps() const { return BeforeSteps{*this}; }
+  /// Both in one pass, where no observer is between them.
+  auto between_steps(Times const& times) const { return BetweenSteps{*this, times.first}; }
+
+ private:
+  static std::uint64_t draw_of(std::int64_t step, Half half) {
+    return 2 * static_cast<std::uint64_t>(step) + (half == Half::after ? 1 : 0);
+  }
+
+  template <class Exec>
+  void turn_by(Exec const& exec, std::uint64_t first_draw, std::uint64_t last_draw, double dt,
+               Spins const& spins) const {
     detail::check_access<Exec, typename Spins::memory_space>();
     require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
     double const u = damping_ * options_.temperature * std::abs(dt);
@@ -134,12 +162,12 @@ class ThermalNoise {
     if (u == 0) return;
     auto const& all = whole(lattice_);
     auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
-    auto const draw = 2 * static_cast<std::uint64_t>(step) + (half == Half::after ? 1 : 0);
     detail::TurnAtRandom<Real> kernel{};
     kernel.spins = spins.array();
     kernel.output = spins.output(false);
     kernel.seed = options_.seed;
-    kernel.draw = draw;
+    kernel.first_draw = first_draw;
+    kernel.last_draw = last_draw;
     kernel.first_y = begin[1];
     kernel.first_z = begin[2];
     kernel.nx = all.shape[0];
@@ -149,13 +177,6 @@ class ThermalNoise {
     detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
   }
 
-  /// An observer: the second half of each step. The first among the observers, so that the others
-  /// see the spins as they are after it.
-  auto after_steps(Times const& times) const { return AfterSteps{*this, times.first}; }
-  /// An observer: the first half of the step that follows. The last among the observers.
-  auto before_steps() const { return BeforeSteps{*this}; }
-
- private:
   struct AfterSteps {
     static constexpr bool changes_spins = true;
     ThermalNoise noise;
@@ -173,6 +194,22 @@ class ThermalNoise {
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
       if (!step.last) noise.turn(exec, step.number + 1, Half::before, step.dt, spins);
+    }
+  };
+
+  struct BetweenSteps {
+    static constexpr bool changes_spins = true;
+    ThermalNoise noise;
+    std::int64_t first;
+
+    template <class Exec>
+    void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
+      bool const begins = step.number == first;
+      if (begins && step.last) return;
+      noise.turn_by(
+          exec, draw_of(step.number + (begins ? 1 : 0), begins ? Half::before : Half::after),
+          draw_of(step.number + (step.last ? 0 : 1), step.last ? Half::after : Half::before),
+          step.dt, spins);
     }
   };
 
