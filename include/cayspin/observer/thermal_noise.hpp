@@ -26,7 +26,8 @@ template <class Real>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
-  std::uint64_t seed, first_draw, last_draw;
+  std::uint64_t seed, draw;
+  bool after, before;                         // which halves
   std::int64_t first_y, first_z, nx, ny, nz;  // of the part in the whole lattice, and that
   // The quaternion of exp(v) is cosine[n] + sine[n] e, with e = v / (sqrt(3) s) and n = e.e.
   Real cosine[4], sine[4];
@@ -45,41 +46,54 @@ struct TurnAtRandom {
     using Value = typename Site::value_type;
     std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
     auto const number = static_cast<std::uint64_t>((z * ny + y) * nx + site.x());
-    Vec3<Value> m = turned(number, first_draw, site.load(spins));
-    for (std::uint64_t draw = first_draw + 1; draw <= last_draw; ++draw)
-      m = turned(number, draw, m);
+    constexpr int lanes = lanes_of<Value>;
+    Real signs[2][3][std::size_t{lanes}];
+    for (int lane = 0; lane < lanes; lane += group<lanes>)
+      draw_signs<group<lanes>>(number + static_cast<std::uint64_t>(lane), lane, signs);
+    Vec3<Value> m = site.load(spins);
+    if (after) m = turned(signs[0], m);
+    if (before) m = turned(signs[1], m);
     site.store(m, output);
   }
 
  private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(std::uint64_t number, std::uint64_t draw,
-                                                 Vec3<Value> const& m) const {
-    Philox<lanes_of<Value>> random(number, draw);
+  // As many counters as fit a register of the processors that there are.
+  template <int Lanes>
+  static constexpr int group = Lanes < 8 ? Lanes : 8;
+
+  /// -1, 0 or 1 for each half, component and lane: two digits to the base 6 of each random word.
+  template <int Count, std::size_t Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION void draw_signs(std::uint64_t number, int first,
+                                              Real (&signs)[2][3][Lanes]) const {
+    constexpr std::uint64_t low_half = 0xFFFFFFFF;
+    Philox<Count> random(number, draw);
     random.encrypt(seed);
-    Vec3<Value> const e{sign<Value>(random.word[0]), sign<Value>(random.word[1]),
-                        sign<Value>(random.word[2])};
+    for (int c = 0; c < 3; ++c) {
+      auto const digit = random.word[c] * 6, next = (digit & low_half) * 6;
+      keep_signs<Count>(digit >> 32, signs[0][c] + first);
+      keep_signs<Count>(next >> 32, signs[1][c] + first);
+    }
+  }
+  template <int Count, class Words>
+  KOKKOS_FORCEINLINE_FUNCTION static void keep_signs(Words const& digits, Real* signs) {
+    if constexpr (Count == 1) {
+      *signs = digits == 0 ? Real(-1) : digits == 5 ? Real(1) : Real(0);
+    } else {
+      using Doubles = typename LanesOf<double, Count>::type;
+      Doubles const none{}, up = none + 1.0;
+      Doubles const found = digits == 0 ? -up : (digits == 5 ? up : none);
+      auto const rounded = __builtin_convertvector(found, typename LanesOf<Real, Count>::type);
+      std::memcpy(signs, &rounded, sizeof rounded);
+    }
+  }
+
+  template <class Value, std::size_t Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Real const (&signs)[3][Lanes],
+                                                 Vec3<Value> const& m) const {
+    Vec3<Value> const e{load<Value>(signs[0]), load<Value>(signs[1]), load<Value>(signs[2])};
     Value const n = dot(e, e);
     Vec3<Value> const w = of_four(sine, n) * e, c = cross(w, m);
     return multiply_add(Value(2), multiply_add(of_four(cosine, n), c, cross(w, c)), m);
-  }
-
-  /// -1, 0 or 1
-  template <class Value, class Words>
-  KOKKOS_FORCEINLINE_FUNCTION static Value sign(Words const& words) {
-    constexpr std::uint64_t sixth = 0x2AAAAAAB, last_sixth = 0xFFFFFFFF - sixth;
-    constexpr int lanes = lanes_of<Value>;
-    if constexpr (lanes == 1) {
-      return words < sixth ? Real(-1) : words > last_sixth ? Real(1) : Real(0);
-    } else {
-      using Doubles = typename LanesOf<double, lanes>::type;
-      Doubles const none{}, up = none + 1.0;
-      Doubles const found = words < sixth ? -up : (words > last_sixth ? up : none);
-      auto const rounded = __builtin_convertvector(found, typename LanesOf<Real, lanes>::type);
-      Real numbers[std::size_t{lanes}];
-      std::memcpy(numbers, &rounded, sizeof rounded);
-      return load<Value>(numbers);
-    }
   }
 
   /// The entry of a table for n = 0, 1, 2 or 3.
@@ -133,8 +147,8 @@ class ThermalNoise {
   /// for spins on another lattice.
   template <class Exec>
   void turn(Exec const& exec, std::int64_t step, Half half, double dt, Spins const& spins) const {
-    auto const draw = draw_of(step, half);
-    turn_by(exec, draw, draw, dt, spins);
+    bool const after = half == Half::after;
+    turn_between(exec, after ? step : step - 1, after, !after, dt, spins);
   }
 
   /// An observer: the second half of each step. The first among the observers, so that the others
@@ -146,13 +160,10 @@ class ThermalNoise {
   auto between_steps(Times const& times) const { return BetweenSteps{*this, times.first}; }
 
  private:
-  static std::uint64_t draw_of(std::int64_t step, Half half) {
-    return 2 * static_cast<std::uint64_t>(step) + (half == Half::after ? 1 : 0);
-  }
-
+  /// Between a step and the next one: the half after that step, the one before the next, or both.
   template <class Exec>
-  void turn_by(Exec const& exec, std::uint64_t first_draw, std::uint64_t last_draw, double dt,
-               Spins const& spins) const {
+  void turn_between(Exec const& exec, std::int64_t step, bool after, bool before, double dt,
+                    Spins const& spins) const {
     detail::check_access<Exec, typename Spins::memory_space>();
     require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
     double const u = damping_ * options_.temperature * std::abs(dt);
@@ -166,8 +177,9 @@ class ThermalNoise {
     kernel.spins = spins.array();
     kernel.output = spins.output(false);
     kernel.seed = options_.seed;
-    kernel.first_draw = first_draw;
-    kernel.last_draw = last_draw;
+    kernel.draw = static_cast<std::uint64_t>(step);
+    kernel.after = after;
+    kernel.before = before;
     kernel.first_y = begin[1];
     kernel.first_z = begin[2];
     kernel.nx = all.shape[0];
@@ -204,12 +216,7 @@ class ThermalNoise {
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      bool const begins = step.number == first;
-      if (begins && step.last) return;
-      noise.turn_by(
-          exec, draw_of(step.number + (begins ? 1 : 0), begins ? Half::before : Half::after),
-          draw_of(step.number + (step.last ? 0 : 1), step.last ? Half::after : Half::before),
-          step.dt, spins);
+      noise.turn_between(exec, step.number, step.number > first, !step.last, step.dt, spins);
     }
   };
 
