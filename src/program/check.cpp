@@ -6,8 +6,6 @@
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
 
-#include <cayspin/mpi/division.hpp>
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -24,17 +22,11 @@ double bytes_per_site(Plan const& plan) {
 /// What a step repeats on the ranks that are asked for.
 std::optional<double> repeated_on(CheckOptions const& options, Plan const& plan) {
   if (!options.ranks) return std::nullopt;
-  auto const parts = read_parts(*options.ranks);
   int const ghosts = plan.variant.ghosts;
   if (ghosts == 0)
     throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
                                  *options.ranks));
-  if (!mpi::can_divide(plan.lattice, ghosts, {.y = parts[0], .z = parts[1]}))
-    throw UsageError(
-        fmt::format("--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or "
-                    "planes each",
-                    *options.ranks, ghosts));
-  return repeated_share(plan.lattice, ghosts, parts);
+  return repeated_share(plan.lattice, ghosts, read_parts(*options.ranks, plan.lattice, ghosts));
 }
 
 void print_json(io::Scene const& scene, Plan const& plan, Precision precision,

@@ -3,6 +3,8 @@
 
 #include "failure.hpp"
 
+#include <cayspin/mpi/division.hpp>
+
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -11,12 +13,18 @@
 
 namespace cayspin::simulation {
 
-std::array<int, 2> read_parts(std::string const& text) {
+std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& lattice,
+                              int ghosts) {
   std::array<int, 2> parts{0, 0};
   int end = 0;
   if (std::sscanf(text.c_str(), "%d,%d%n", &parts[0], &parts[1], &end) != 2 ||
       static_cast<std::size_t>(end) != text.size() || parts[0] < 1 || parts[1] < 1)
     throw UsageError(fmt::format("--ranks {}: accepted: two numbers, as 1,4", text));
+  if (!mpi::can_divide(lattice, ghosts, {.y = parts[0], .z = parts[1]}))
+    throw UsageError(
+        fmt::format("--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or "
+                    "planes each",
+                    text, ghosts));
   return parts;
 }
 

@@ -8,8 +8,9 @@
 
 namespace cayspin::simulation {
 
-/// Numbers of parts along y and z, given as "y,z". Throws UsageError.
-std::array<int, 2> read_parts(std::string const& text);
+/// Numbers of parts along y and z, given as "y,z". Throws UsageError for what is none, and for
+/// parts of fewer rows or planes than `ghosts`.
+std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& lattice, int ghosts);
 
 /// What a step repeats on such parts, of the work of a part: with `ghosts` stages, each goes as
 /// many rows or planes further as stages follow it, at each end inside the lattice.

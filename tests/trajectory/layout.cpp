@@ -134,7 +134,7 @@ TEST_F(TrajectoryTest, LongSceneIsKept) {
   EXPECT_EQ(read_info(path).header.scene_text, header.scene_text);
 }
 
-// 2048 x 1024 x 100 spins in double are 4.7 GiB, more than HDF5 lets a chunk have.
+// 2048 x 1024 x 100 spins in double are 4.7 GiB, of which a chunk has 256 MiB at most.
 TEST_F(TrajectoryTest, FrameAboveTheChunkLimitIsSplit) {
   auto const path = folder_ / "a.h5";
   auto header = small_header();

@@ -22,6 +22,12 @@ TrajectoryHeader odd_header(std::string const& precision = "double") {
   return header;
 }
 
+CheckpointHeader of_odd_run() {
+  CheckpointHeader header;
+  header.shape = odd_shape;
+  return header;
+}
+
 template <class Real>
 void write_in_pieces(std::filesystem::path const& path, RunOutputOptions const& options) {
   auto const header = odd_header(sizeof(Real) == sizeof(float) ? "single" : "double");
@@ -177,10 +183,9 @@ TEST(Fletcher, OfPiecesIsThatOfAll) {
 TEST_F(TrajectoryTest, CheckpointsByPlanesAreThoseOfFields) {
   auto header = odd_header();
   auto numbers = numbered_spins<double>(header, 1);
-  CheckpointHeader const of_run{.cayspin_version = "1.2.3", .shape = odd_shape};
   for (std::int64_t const planes : {1, 2, 7}) {
     auto const path = folder_ / (std::to_string(planes) + ".checkpoint.h5");
-    CheckpointWriter writer(path, of_run);
+    CheckpointWriter writer(path, of_odd_run());
     for (std::string const name : {"spins", "other"})
       for (std::int64_t first = 0; first < 7; first += planes) {
         auto const begin = numbers.begin() + 36 * first;
@@ -194,8 +199,7 @@ TEST_F(TrajectoryTest, CheckpointsByPlanesAreThoseOfFields) {
 }
 
 TEST_F(TrajectoryTest, FieldsOfACheckpointAreNotMixedOrCutShort) {
-  CheckpointWriter writer(folder_ / "a.checkpoint.h5",
-                          {.cayspin_version = "1.2.3", .shape = odd_shape});
+  CheckpointWriter writer(folder_ / "a.checkpoint.h5", of_odd_run());
   std::vector<double> const plane(36, 0.5), row(12, 0.5);
   EXPECT_THROW(writer.planes("spins", 3, row), std::invalid_argument);
   EXPECT_THROW(writer.planes("spins", 4, plane), std::invalid_argument);

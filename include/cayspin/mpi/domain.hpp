@@ -60,8 +60,8 @@ class Domain final : public Part {
   void sum(std::span<std::int64_t> words) const override { combine(words, MPI_SUM); }
   void maximum(std::span<std::int64_t> words) const override { combine(words, MPI_MAX); }
 
-  /// One message per face and direction: planes along z first, and then rows along y with the
-  /// ghosts along z, which are theirs to pass on.
+  /// One message per face and direction, or one per component of a large face: planes along z
+  /// first, and then rows along y with the ghosts along z, which are theirs to pass on.
   void update_ghosts(std::span<FieldNumbers const> fields) const override {
     Kokkos::Profiling::ScopedRegion const region("cayspin::mpi::update_ghosts");
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {

@@ -153,11 +153,15 @@ class ThermalNoise {
 
   /// An observer: the second half of each step. The first among the observers, so that the others
   /// see the spins as they are after it.
-  auto after_steps(Times const& times) const { return AfterSteps{*this, times.first}; }
+  auto after_steps(Times const& times) const {
+    return BetweenSteps{*this, true, false, times.first};
+  }
   /// An observer: the first half of the step that follows. The last among the observers.
-  auto before_steps() const { return BeforeSteps{*this}; }
+  auto before_steps() const { return BetweenSteps{*this, false, true}; }
   /// Both in one pass, where no observer is between them.
-  auto between_steps(Times const& times) const { return BetweenSteps{*this, times.first}; }
+  auto between_steps(Times const& times) const {
+    return BetweenSteps{*this, true, true, times.first};
+  }
 
  private:
   /// Between a step and the next one: the half after that step, the one before the next, or both.
@@ -189,34 +193,17 @@ class ThermalNoise {
     detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
   }
 
-  struct AfterSteps {
-    static constexpr bool changes_spins = true;
-    ThermalNoise noise;
-    std::int64_t first;
-
-    template <class Exec>
-    void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      if (step.number > first) noise.turn(exec, step.number, Half::after, step.dt, spins);
-    }
-  };
-  struct BeforeSteps {
-    static constexpr bool changes_spins = true;
-    ThermalNoise noise;
-
-    template <class Exec>
-    void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      if (!step.last) noise.turn(exec, step.number + 1, Half::before, step.dt, spins);
-    }
-  };
-
+  /// Of the two halves between steps, those that are wanted.
   struct BetweenSteps {
     static constexpr bool changes_spins = true;
     ThermalNoise noise;
-    std::int64_t first;
+    bool after, before;
+    std::int64_t first = 0;  // no step ends there
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      noise.turn_between(exec, step.number, step.number > first, !step.last, step.dt, spins);
+      bool const ends = after && step.number > first, begins = before && !step.last;
+      if (ends || begins) noise.turn_between(exec, step.number, ends, begins, step.dt, spins);
     }
   };
 

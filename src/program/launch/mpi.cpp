@@ -78,13 +78,10 @@ class MpiRanks final : public Ranks {
   std::array<int, 2> division(cayspin::Lattice const& lattice, int ghosts,
                               std::optional<std::string> const& asked) const override {
     if (!asked) return most_parts(lattice, ghosts);
-    auto const chosen = read_parts(*asked);
-    auto const [y, z] = chosen;
-    if (std::int64_t{y} * z > count_ || !mpi::can_divide(lattice, ghosts, {.y = y, .z = z}))
-      throw UsageError(fmt::format(
-          "--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or planes "
-          "each, for at most {} ranks",
-          *asked, ghosts, count_));
+    auto const chosen = read_parts(*asked, lattice, ghosts);
+    if (std::int64_t{chosen[0]} * chosen[1] > count_)
+      throw UsageError(
+          fmt::format("--ranks {}: accepted: parts for at most {} ranks", *asked, count_));
     return chosen;
   }
 

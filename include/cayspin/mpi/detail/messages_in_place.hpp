@@ -62,15 +62,15 @@ class MessagesInPlace {
  public:
   MessagesInPlace(MPI_Comm comm, std::span<FieldNumbers const> fields, Faces const& faces,
                   std::array<int, 2> const& neighbor)
-      : comm_(comm), fields_(fields.begin(), fields.end()) {
+      : fields_(fields.begin(), fields.end()) {
     for (std::size_t side = 0; side < 2; ++side) {
       if (neighbor[side] == MPI_PROC_NULL) continue;
       int const tag = static_cast<int>(side);
       add(faces.received[side], [&](void* first, int count, MPI_Datatype type) {
-        MPI_Recv_init(first, count, type, neighbor[side], 1 - tag, comm_, next());
+        MPI_Recv_init(first, count, type, neighbor[side], 1 - tag, comm, next());
       });
       add(faces.sent[side], [&](void* first, int count, MPI_Datatype type) {
-        MPI_Send_init(first, count, type, neighbor[side], tag, comm_, next());
+        MPI_Send_init(first, count, type, neighbor[side], tag, comm, next());
       });
     }
   }
@@ -127,7 +127,6 @@ class MessagesInPlace {
     MPI_Type_free(&type);
   }
 
-  MPI_Comm comm_;
   std::vector<FieldNumbers> fields_;
   std::vector<MPI_Request> requests_;
 };
