@@ -36,8 +36,8 @@ Section turns() {
                   R"(
 One spin or body, damping 0. dt |A| is pi, which the Cayley map cannot rotate by; 2 pi, where
 the exponential's inverse tangent has its pole; 1e8; and 1e160, whose square overflows. `run`
-warns in all four. The exponential is exact where A rests, up to 1e8. Numbers that overflow
-stop the run at its first step.)",
+warns in all four. The exponential is exact where A rests, up to 1e8. An overflow stops the run at
+its first step.)",
                   {exact, warned},
                   {warned},
                   {}};
@@ -58,8 +58,8 @@ Section fields() {
                   R"(
 Damping 0.1. A spin without a field, or along it, rests. Numbers below the smallest normal one
 count as zero: rates err by at most 2.3e-308, in single precision 1.2e-38. Numbers too large
-for the precision stop the run at its first step. A field that is switched on within a step
-costs every method its order there: the error is at most dt times the field.)",
+stop the run at its first step. A field that is switched on within a step costs every method its
+order there: the error is at most dt times the field.)",
                   {exact, bounded, warned, refused, detected},
                   {exact, drifts, detected},
                   {both("A = 0", {.field = 0, .damping = 0.1}, solution),
@@ -111,8 +111,8 @@ Section lattices() {
   Section section{"Lattices",
                   R"(
 Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact: each spin is where
-one alone is, to 8 epsilon. fx and red_black take neighbours apart from the spin and are
-bounded. A lattice that does not fit is refused with what it needs and what there is.)",
+one alone is, to 8 epsilon. fx and red_black are bounded. A lattice that does not fit is refused
+with what it needs and what there is.)",
                   {exact, refused},
                   {exact, refused},
                   {}};

@@ -34,8 +34,8 @@ std::string join(std::vector<std::string> const& parts) {
 void print_head() {
   fmt::print(R"(# Behaviour at extreme inputs
 
-The first part of this page is what `cayspin extremes` prints, the last what `cayspin extremes
---long` prints. Tests hold the page to the output, and every run to the promise above its table.
+`cayspin extremes` prints this page, `cayspin extremes --long` its last part. Tests hold the page
+to the output, and every run to the promise above its table.
 
 | word | meaning |
 |---|---|
@@ -49,7 +49,7 @@ The first part of this page is what `cayspin extremes` prints, the last what `ca
 Runs take six steps of 1/128 unless the table says otherwise. Two words are for double and single
 precision. Brackets hold generators and rotations where not all behave alike. Constant sigmas
 behave as zero does. Methods that conserve the energy run without damping, unless the table is
-about damping. Adaptive methods have a table of their own.
+about damping.
 
 A program of your own has neither the warnings nor the guard. Where a table says warned or
 detected, call `largest_stable_step` before the run, and `energy` and `norm_defect` during it.
