@@ -114,6 +114,7 @@ struct SlabDemagnetization {
   double strength = 1;
   bool average_layer = false;  ///< (m.n) averaged over each plane normal to n, along an axis
   bool on_host = false;        ///< computed on the host through a mirror copy
+  bool dear = false;           ///< evaluated once or twice a step, between substeps of the rest
 };
 
 /// A number, or the text of an expression in t.
@@ -125,6 +126,7 @@ struct Field {
   std::optional<InterfacialDmi> dmi;
   std::vector<Anisotropy> anisotropies;
   std::optional<std::array<AppliedComponent, 3>> applied;
+  std::vector<Triple> applied_in_turn;  ///< of `cayspin relax`: one state of rest for each
   std::optional<SlabDemagnetization> slab_demag;
   double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
   OwnField own;    ///< empty, unless a program sets it

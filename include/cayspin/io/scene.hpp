@@ -91,6 +91,7 @@ struct Integrator {
   Rotation rotation = Rotation::cayley;
   double dt = 0;                    ///< of adaptive methods: from one look at the spins to the next
   std::int64_t steps = 0;           ///< computed from `end` when the scene gives that
+  std::int64_t substeps = 1;        ///< of the method in each step, where a field is dear
   std::optional<double> tolerance;  ///< of adaptive methods, which have one
   std::optional<double> error;      ///< of method "auto": what its choice is to come to
   double min_dt = 0, max_dt = std::numeric_limits<double>::infinity();  ///< of their own steps
@@ -106,6 +107,12 @@ struct Integrator {
                                             {"energy_control", &Integrator::energy_control},
                                             {"refuse_unstable", &Integrator::refuse_unstable}});
   }
+};
+
+/// The table [thermal].
+struct Thermal {
+  double temperature = 0;  ///< kB T over the energy of a site, >= 0
+  std::int64_t seed = 0;
 };
 
 /// How often a run stores what it needs to go on with the same bits, in FILE.checkpoint.h5: after
@@ -158,6 +165,7 @@ struct Scene {
   Field field;
   Initial initial;
   Integrator integrator;
+  std::optional<Thermal> thermal;
   Output output;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
