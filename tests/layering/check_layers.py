@@ -19,6 +19,7 @@ LIBRARY = [
     ("rotations", ["rotation/"]),
     ("isotropies", ["isotropy/", "isotropy.hpp"]),
     ("reductions", ["scalars.hpp", "evaluate.hpp"]),
+    ("solvers", ["solver/"]),
     ("stages", ["stage/"]),
     ("stability", ["stability.hpp"]),
     ("steppers", ["stepper/"]),

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cayspin::detail {
+
+/// One axis of a cell-centred grid, and the coarser axes of its multigrid hierarchy.
+class CellAxis {
+ public:
+  CellAxis(std::int64_t cells, bool periodic)
+      : widths_(static_cast<std::size_t>(cells), 1.0), periodic_(periodic) {}
+
+  std::size_t cells() const { return widths_.size(); }
+  std::size_t coarse_cells() const { return std::max<std::size_t>(cells() / 2, 1); }
+  /// The coarse cell that holds a cell: pairs, and three in the last one where the number is odd.
+  std::size_t parent(std::size_t cell) const { return std::min(cell / 2, coarse_cells() - 1); }
+
+  CellAxis coarser() const {
+    CellAxis coarse(static_cast<std::int64_t>(coarse_cells()), periodic_);
+    coarse.widths_.assign(coarse_cells(), 0.0);
+    for (std::size_t i = 0; i < cells(); ++i) coarse.widths_[parent(i)] += widths_[i];
+    return coarse;
+  }
+
+  /// The second difference at a cell is to_previous (u_previous - u) + to_next (u_next - u).
+  double to_next(std::size_t i) const {
+    if (cells() == 1 || (!periodic_ && i + 1 == cells())) return 0;
+    return 2 / (widths_[i] * (widths_[i] + widths_[(i + 1) % cells()]));
+  }
+  double to_previous(std::size_t i) const {
+    if (cells() == 1 || (!periodic_ && i == 0)) return 0;
+    return 2 / (widths_[i] * (widths_[i] + widths_[(i + cells() - 1) % cells()]));
+  }
+  /// The largest sum of both, half of which bounds the frequencies from one side.
+  double largest_sum() const {
+    double largest = 0;
+    for (std::size_t i = 0; i < cells(); ++i)
+      largest = std::max(largest, to_next(i) + to_previous(i));
+    return largest;
+  }
+
+  /// A cell's value from coarse ones, by linear interpolation between centres:
+  /// (1 - share) of its parent's and `share` of the coarse cell `beside` it.
+  struct Interpolation {
+    std::size_t beside;
+    double share;
+  };
+  Interpolation interpolation(std::size_t cell) const {
+    std::size_t const own = parent(cell), last = coarse_cells() - 1;
+    if (last == 0) return {own, 0};
+    CellAxis const coarse = coarser();
+    double before = 0;  // from the parent's first edge to the cell's centre
+    for (std::size_t i = 2 * own; i < cell; ++i) before += widths_[i];
+    double const way = before + 0.5 * widths_[cell] - 0.5 * coarse.widths_[own];
+    if (way == 0 || (!periodic_ && own == (way < 0 ? 0 : last))) return {own, 0};
+    std::size_t const beside = way < 0 ? (own + last) % (last + 1) : (own + 1) % (last + 1);
+    return {beside, 2 * std::abs(way) / (coarse.widths_[own] + coarse.widths_[beside])};
+  }
+
+  /// Restriction: the interpolation's transpose, scaled by widths. A coarse value is the sum over
+  /// `reach` cells, from 2 coarse - 1 on and around the end, with these weights.
+  static constexpr std::size_t reach = 5;
+  std::vector<std::array<double, reach>> restriction() const {
+    CellAxis const coarse = coarser();
+    std::vector<std::array<double, reach>> weights(coarse_cells(), std::array<double, reach>{});
+    auto const add = [&](std::size_t to, std::size_t cell, double weight) {
+      for (std::size_t k = 0; k < reach; ++k)
+        if ((2 * to + k + cells() - 1) % cells() == cell) {
+          weights[to][k] += weight * widths_[cell] / coarse.widths_[to];
+          return;
+        }
+    };
+    for (std::size_t i = 0; i < cells(); ++i) {
+      auto const [beside, share] = interpolation(i);
+      add(parent(i), i, 1 - share);
+      if (share != 0) add(beside, i, share);
+    }
+    return weights;
+  }
+
+ private:
+  std::vector<double> widths_;
+  bool periodic_;
+};
+
+/// The numbers of an axis as kernels take them.
+template <class Real>
+struct CellAxisArrays {
+  Real const *to_previous = nullptr, *to_next = nullptr;  // with the coupling
+  Real const *share = nullptr, *weights = nullptr;
+  std::int32_t const* beside = nullptr;
+};
+
+/// Their memory.
+template <class Real, class MemorySpace>
+class CellAxisTables {
+ public:
+  CellAxisTables() = default;
+  CellAxisTables(std::string const& name, CellAxis const& axis, double coupling)
+      : cells_(axis.cells()),
+        numbers_("cayspin::" + name + "::axis", 3 * cells_ + CellAxis::reach * axis.coarse_cells()),
+        beside_("cayspin::" + name + "::beside", cells_) {
+    auto const numbers = Kokkos::create_mirror_view(numbers_);
+    auto const beside = Kokkos::create_mirror_view(beside_);
+    for (std::size_t i = 0; i < cells_; ++i) {
+      auto const interpolation = axis.interpolation(i);
+      numbers(i) = static_cast<Real>(coupling * axis.to_previous(i));
+      numbers(cells_ + i) = static_cast<Real>(coupling * axis.to_next(i));
+      numbers(2 * cells_ + i) = static_cast<Real>(interpolation.share);
+      beside(i) = static_cast<std::int32_t>(interpolation.beside);
+    }
+    std::size_t at = 3 * cells_;
+    for (auto const& weights : axis.restriction())
+      for (double const weight : weights) numbers(at++) = static_cast<Real>(weight);
+    Kokkos::deep_copy(numbers_, numbers);
+    Kokkos::deep_copy(beside_, beside);
+  }
+
+  CellAxisArrays<Real> arrays() const {
+    Real const* const data = numbers_.data();
+    return {data, data + cells_, data + 2 * cells_, data + 3 * cells_, beside_.data()};
+  }
+
+ private:
+  std::size_t cells_ = 0;
+  Kokkos::View<Real*, MemorySpace> numbers_;
+  Kokkos::View<std::int32_t*, MemorySpace> beside_;
+};
+
+}  // namespace cayspin::detail

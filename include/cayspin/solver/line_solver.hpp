@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/solver/coefficient_scalar.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <array>
+#include <complex>
+#include <vector>
+
+namespace cayspin::detail {
+
+/// The factors of c + b K on a line, for kernels: y_i = inverse_i r_i + ratio_i y_(i-1) forwards,
+/// z_i = y_i + ratio_i z_(i+1) backwards; on a periodic line z - (z_0 + last z_last) closing.
+template <class Scalar>
+struct LineFactors {
+  Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
+  Scalar last{};
+  bool periodic = false;
+};
+
+/// Solves lines along one axis. A task is a bundle of lines that are neighbours along x, or one
+/// line along x.
+template <class Scalar, int RightHandComponents>
+struct SolveLines {
+  using Real = real_part_t<Scalar>;
+  static constexpr int parts = real_parts<Scalar>;
+
+  LineFactors<Scalar> factors;
+  RowLayout layout;
+  int axis;
+  std::int32_t bundle;  // lines of a task
+  SiteArray<Real, RightHandComponents> r;
+  SiteArray<Real, 3 * parts> z;
+
+  std::int32_t bundles() const {
+    return axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle;
+  }
+  std::int64_t tasks() const {
+    return axis == 0   ? layout.rows()
+           : axis == 1 ? std::int64_t(layout.nz) * bundles()
+                       : std::int64_t(layout.ny) * bundles();
+  }
+
+  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
+    std::int64_t const across = axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle;
+    std::ptrdiff_t const plane = layout.pitch * layout.ny;
+    std::ptrdiff_t const strides[3] = {1, layout.pitch, plane};
+    std::int64_t const line = task / across;
+    auto const x = static_cast<std::int32_t>(task % across) * bundle;
+    std::ptrdiff_t const begin = axis == 0 ? line * layout.pitch
+                                           : x + line * (axis == 1 ? plane : layout.pitch);
+    std::int32_t const extents[3] = {layout.nx, layout.ny, layout.nz};
+    std::int32_t const width = axis == 0 ? 1 : Kokkos::min(bundle, layout.nx - x);
+    for (int component = 0; component < 3; ++component)
+      solve(component, begin, strides[axis], extents[axis], width);
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION void solve(int component, std::ptrdiff_t begin, std::ptrdiff_t stride,
+                                         std::int32_t count, std::int32_t width) const {
+    Real* to[parts];
+    for (int part = 0; part < parts; ++part)
+      to[part] = z.data + (component + 3 * part) * z.stride + begin;
+    Real const* from[parts] = {};
+    for (int part = 0; part < RightHandComponents / 3; ++part)
+      from[part] = r.data + (component + 3 * part) * r.stride + begin;
+    for (std::int32_t i = 0; i < count; ++i)
+      for (std::int32_t k = 0; k < width; ++k) {
+        std::ptrdiff_t const at = i * stride + k;
+        Real right[parts] = {}, before[parts] = {}, sum[parts] = {};
+        for (int part = 0; part < RightHandComponents / 3; ++part) right[part] = from[part][at];
+        multiply_add_to(factors.inverse[i], right, sum);
+        if (i > 0) {
+          for (int part = 0; part < parts; ++part) before[part] = to[part][at - stride];
+          multiply_add_to(factors.ratio[i], before, sum);
+        }
+        for (int part = 0; part < parts; ++part) to[part][at] = sum[part];
+      }
+    for (std::int32_t i = count - 2; i >= 0; --i)
+      for (std::int32_t k = 0; k < width; ++k) {
+        std::ptrdiff_t const at = i * stride + k;
+        Real after[parts], sum[parts];
+        for (int part = 0; part < parts; ++part) {
+          after[part] = to[part][at + stride];
+          sum[part] = to[part][at];
+        }
+        multiply_add_to(factors.ratio[i], after, sum);
+        for (int part = 0; part < parts; ++part) to[part][at] = sum[part];
+      }
+    if (factors.periodic) close(to, stride, count, width);
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION void close(Real* const (&to)[parts], std::ptrdiff_t stride,
+                                         std::int32_t count, std::int32_t width) const {
+    for (std::int32_t k = 0; k < width; ++k) {
+      Real ends[parts], end[parts];
+      for (int part = 0; part < parts; ++part) {
+        ends[part] = to[part][k];
+        end[part] = to[part][(count - 1) * stride + k];
+      }
+      multiply_add_to(factors.last, end, ends);
+      for (std::int32_t i = 0; i < count; ++i) {
+        Real sum[parts];
+        for (int part = 0; part < parts; ++part) sum[part] = to[part][i * stride + k];
+        multiply_subtract_from(factors.closing[i], ends, sum);
+        for (int part = 0; part < parts; ++part) to[part][i * stride + k] = sum[part];
+      }
+    }
+  }
+};
+
+/// z = (c + b K)^-1 r where one axis alone couples: tridiagonal lines, on a periodic axis by Sherman
+/// and Morrison. Factors are kept for the last few pairs (c, b).
+template <class Scalar, class MemorySpace>
+class LineSolver {
+  using Real = real_part_t<Scalar>;
+  static constexpr int parts = real_parts<Scalar>;
+
+ public:
+  LineSolver() = default;
+  LineSolver(std::string const& name, RowLayout const& layout, int axis, double coupling)
+      : label_("cayspin::" + name + "::lines"), layout_(layout), axis_(axis) {
+    std::int32_t const extents[3] = {layout.nx, layout.ny, layout.nz};
+    count_ = static_cast<std::size_t>(extents[axis]);
+    periodic_ = layout.periodic[axis] && count_ > 2;
+    // A periodic axis of two sites has its bond twice.
+    coupling_ = layout.periodic[axis] && count_ == 2 ? 2 * coupling : coupling;
+    for (Kept& kept : kept_)
+      kept.factors = Kokkos::View<Scalar*, MemorySpace>("cayspin::" + name + "::factors", 3 * count_);
+  }
+
+  template <class Exec, int RightHandComponents>
+  void solve(Exec const& exec, double c, Scalar b,
+             SiteField<Real, RightHandComponents, MemorySpace> const& r,
+             SiteField<Real, 3 * parts, MemorySpace> const& z) {
+    Kept const& kept = factors_of(c, b);
+    Scalar const* const data = kept.factors.data();
+    SolveLines<Scalar, RightHandComponents> const lines{
+        {data, data + count_, data + 2 * count_, kept.last, periodic_},
+        layout_,
+        axis_,
+        is_host_execution<Exec> ? 32 : 1,
+        r.array(),
+        z.array()};
+    for_each_task(exec, label_, lines.tasks(), layout_.sites(), lines);
+  }
+
+ private:
+  using Number = std::complex<double>;
+  struct Kept {
+    double c = 0;
+    Scalar b{}, last{};
+    Kokkos::View<Scalar*, MemorySpace> factors;
+  };
+
+  static Number number(Scalar const& value) {
+    if constexpr (parts == 1)
+      return {value, 0};
+    else
+      return {value.real(), value.imag()};
+  }
+  static Scalar scalar(Number const& value) {
+    if constexpr (parts == 1)
+      return static_cast<Scalar>(value.real());
+    else
+      return {static_cast<Real>(value.real()), static_cast<Real>(value.imag())};
+  }
+
+  Kept const& factors_of(double c, Scalar b) {
+    for (Kept const& kept : kept_)
+      if (kept.c == c && kept.b == b) return kept;
+    Kept& kept = kept_[oldest_];
+    oldest_ = (oldest_ + 1) % kept_.size();
+    factorize(kept, c, b);
+    return kept;
+  }
+
+  void factorize(Kept& kept, double c, Scalar b) const {
+    Number const e = number(b) * coupling_;  // less what is beside the diagonal
+    Number const inner = c + 2.0 * e;
+    auto const n = count_;
+    std::vector<Number> diagonal(n, inner), inverse(n), ratio(n), closing(n);
+    if (!periodic_) {
+      diagonal.front() -= e;
+      diagonal.back() -= e;
+    }
+    // c + b K = T + (inner, .., -e)^T (-1, .., e / inner), T tridiagonal.
+    if (periodic_) {
+      diagonal.front() += inner;
+      diagonal.back() += e * e / inner;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      inverse[i] = 1.0 / (i == 0 ? diagonal[i] : diagonal[i] - e * ratio[i - 1]);
+      ratio[i] = e * inverse[i];
+    }
+    if (periodic_) {
+      for (std::size_t i = 0; i < n; ++i) {
+        Number const right = i == 0 ? -inner : i + 1 == n ? -e : Number(0);
+        closing[i] = inverse[i] * right + (i == 0 ? Number(0) : ratio[i] * closing[i - 1]);
+      }
+      for (std::size_t i = n - 1; i-- > 0;) closing[i] += ratio[i] * closing[i + 1];
+      Number const last = e / inner, scale = 1.0 / (1.0 + closing.front() + last * closing.back());
+      for (Number& value : closing) value *= scale;
+      kept.last = scalar(last);
+    }
+    auto const factors = Kokkos::create_mirror_view(kept.factors);
+    for (std::size_t i = 0; i < n; ++i) {
+      factors(i) = scalar(inverse[i]);
+      factors(n + i) = scalar(ratio[i]);
+      factors(2 * n + i) = scalar(closing[i]);
+    }
+    Kokkos::deep_copy(kept.factors, factors);
+    kept.c = c;
+    kept.b = b;
+  }
+
+  std::string label_;
+  RowLayout layout_;
+  int axis_ = 0;
+  std::size_t count_ = 0;
+  bool periodic_ = false;
+  double coupling_ = 0;
+  std::array<Kept, 4> kept_{};
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace cayspin::detail

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/solver/cell_axis.hpp>
+#include <cayspin/solver/coefficient_scalar.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+// The passes of a multigrid cycle. A task is a row on hosts, where compilers vectorise along it,
+// and a site on devices.
+namespace cayspin::detail {
+
+/// Cells [begin, end) of a row.
+struct CellsOfRow {
+  std::int32_t y, z, begin, end;
+};
+
+template <class Functor>
+struct CellTasks {
+  Functor functor;
+  std::int32_t ny, cells, per_task;  // cells of a row; of a task
+
+  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
+    std::int64_t const per_row = cells / per_task, row = task / per_row;
+    auto const begin = static_cast<std::int32_t>(task % per_row) * per_task;
+    functor(CellsOfRow{static_cast<std::int32_t>(row % ny), static_cast<std::int32_t>(row / ny),
+                       begin, begin + per_task});
+  }
+};
+
+/// Calls functor(cells) for all cells of a layout.
+template <class Exec, class Functor>
+void for_each_cell(Exec const& exec, std::string const& label, RowLayout const& layout,
+                   Functor const& functor) {
+  std::int32_t const per_task = is_host_execution<Exec> ? layout.nx : 1;
+  for_each_task(exec, label, layout.sites() / per_task, layout.sites(),
+                CellTasks<Functor>{functor, layout.ny, layout.nx, per_task});
+}
+
+/// Where the cells of a level lie, and how they couple.
+template <class Real>
+struct CellGrid {
+  RowLayout layout;
+  CellAxisArrays<Real> axis[3];
+
+  KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t row(std::int32_t y, std::int32_t z) const {
+    return (std::ptrdiff_t(z) * layout.ny + y) * layout.pitch;
+  }
+};
+
+/// out = u + weight (f - (c + b K) u), or f - (c + b K) u where weight is 0.
+template <class Scalar, int RightHandComponents>
+struct RelaxCells {
+  using Real = real_part_t<Scalar>;
+  static constexpr int parts = real_parts<Scalar>;
+
+  CellGrid<Real> grid;
+  Real c;
+  Scalar b, weight;
+  SiteArray<Real, 3 * parts> u;
+  SiteArray<Real, RightHandComponents> f;
+  SiteArray<Real, 3 * parts> out;
+  bool residual;
+
+  KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
+    std::int32_t const last = grid.layout.nx - 1;
+    bool const wraps = grid.layout.periodic[0];
+    std::int32_t begin = cells.begin, end = cells.end;
+    for (int component = 0; component < 3; ++component) {
+      Row const row(*this, cells, component);
+      if (cells.begin == 0) {
+        row.relax(0, wraps ? last : 0, last > 0 ? 1 : 0);
+        begin = 1;
+      }
+      if (cells.end > last && last > 0) {
+        row.relax(last, last - 1, wraps ? 0 : last);
+        end = last;
+      }
+      for (std::int32_t x = begin; x < end; ++x) row.relax(x, x - 1, x + 1);
+    }
+  }
+
+ private:
+  struct Row {
+    KOKKOS_FORCEINLINE_FUNCTION Row(RelaxCells const& all, CellsOfRow const& cells, int component)
+        : c(all.c),
+          b(all.b),
+          weight(all.weight),
+          to_previous_x(all.grid.axis[0].to_previous),
+          to_next_x(all.grid.axis[0].to_next),
+          residual(all.residual) {
+      auto const& layout = all.grid.layout;
+      std::ptrdiff_t const offset = all.grid.row(cells.y, cells.z);
+      for (int part = 0; part < parts; ++part) {
+        u[part] = all.u.data + (component + 3 * part) * all.u.stride + offset;
+        out[part] = all.out.data + (component + 3 * part) * all.out.stride + offset;
+      }
+      for (int part = 0; part < RightHandComponents / 3; ++part)
+        f[part] = all.f.data + (component + 3 * part) * all.f.stride + offset;
+      set(0, cells.y, layout.ny, layout.pitch, layout.periodic[1], all.grid.axis[1]);
+      set(1, cells.z, layout.nz, layout.pitch * layout.ny, layout.periodic[2], all.grid.axis[2]);
+    }
+
+    KOKKOS_FORCEINLINE_FUNCTION void relax(std::int32_t x, std::int32_t before,
+                                           std::int32_t after) const {
+      Real k[parts], r[parts];
+      for (int part = 0; part < parts; ++part) {
+        Real const* const KOKKOS_RESTRICT v = u[part];
+        Real const here = v[x];
+        k[part] = to_previous_x[x] * (here - v[before]) + to_next_x[x] * (here - v[after]) +
+                  couple[0][0] * (here - v[x + way[0][0]]) +
+                  couple[0][1] * (here - v[x + way[0][1]]) +
+                  couple[1][0] * (here - v[x + way[1][0]]) +
+                  couple[1][1] * (here - v[x + way[1][1]]);
+        r[part] = (part < RightHandComponents / 3 ? f[part][x] : Real(0)) - c * here;
+      }
+      multiply_subtract_from(b, k, r);
+      if (residual) {
+        for (int part = 0; part < parts; ++part) out[part][x] = r[part];
+      } else {
+        Real sum[parts];
+        for (int part = 0; part < parts; ++part) sum[part] = u[part][x];
+        multiply_add_to(weight, r, sum);
+        for (int part = 0; part < parts; ++part) out[part][x] = sum[part];
+      }
+    }
+
+   private:
+    KOKKOS_FORCEINLINE_FUNCTION void set(int which, std::int32_t index, std::int32_t extent,
+                                         std::ptrdiff_t stride, bool periodic,
+                                         CellAxisArrays<Real> const& axis) {
+      std::ptrdiff_t const around = periodic ? (extent - 1) * stride : 0;
+      way[which][0] = index > 0 ? -stride : around;
+      way[which][1] = index + 1 < extent ? stride : -around;
+      couple[which][0] = axis.to_previous[index];
+      couple[which][1] = axis.to_next[index];
+    }
+
+    Real c;
+    Scalar b, weight;
+    Real const *to_previous_x, *to_next_x;
+    bool residual;
+    Real const* u[parts];
+    Real const* f[parts] = {};
+    Real* out[parts];
+    std::ptrdiff_t way[2][2];
+    Real couple[2][2];
+  };
+};
+
+/// out = weight f.
+template <class Scalar, int RightHandComponents>
+struct ScaleCells {
+  using Real = real_part_t<Scalar>;
+  static constexpr int parts = real_parts<Scalar>;
+
+  RowLayout layout;
+  Scalar weight;
+  SiteArray<Real, RightHandComponents> f;
+  SiteArray<Real, 3 * parts> out;
+
+  KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
+    std::ptrdiff_t const offset = (std::ptrdiff_t(cells.z) * layout.ny + cells.y) * layout.pitch;
+    for (int component = 0; component < 3; ++component)
+      for (std::int32_t x = cells.begin; x < cells.end; ++x) {
+        Real from[parts] = {}, to[parts] = {};
+        for (int part = 0; part < RightHandComponents / 3; ++part)
+          from[part] = f.data[(component + 3 * part) * f.stride + offset + x];
+        multiply_add_to(weight, from, to);
+        for (int part = 0; part < parts; ++part)
+          out.data[(component + 3 * part) * out.stride + offset + x] = to[part];
+      }
+  }
+};
+
+/// Restriction along one axis: `to` has about half the cells along it.
+template <class Real, int Components>
+struct RestrictCells {
+  RowLayout from_layout, to_layout;
+  int axis;
+  Real const* weights;
+  SiteArray<Real, Components> from, to;
+
+  KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
+    std::ptrdiff_t const to_row =
+        (std::ptrdiff_t(cells.z) * to_layout.ny + cells.y) * to_layout.pitch;
+    std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
+    std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
+    std::int32_t const extent = extents[axis];
+    for (int component = 0; component < Components; ++component) {
+      Real const* const source = from.data + component * from.stride;
+      Real* const target = to.data + component * to.stride + to_row;
+      for (std::int32_t x = cells.begin; x < cells.end; ++x) {
+        std::int32_t const index[3] = {x, cells.y, cells.z};
+        std::ptrdiff_t rest = 0;
+        for (int other = 0; other < 3; ++other)
+          if (other != axis) rest += index[other] * strides[other];
+        Real sum = 0;
+        constexpr auto reach = static_cast<std::int32_t>(CellAxis::reach);
+        for (std::int32_t k = 0; k < reach; ++k) {
+          std::int32_t const at = (2 * index[axis] + k + extent - 1) % extent;
+          sum += weights[index[axis] * reach + k] * source[rest + at * strides[axis]];
+        }
+        target[x] = sum;
+      }
+    }
+  }
+};
+
+/// Interpolation along one axis: `to` has about twice the cells along it. Adds to what is there
+/// where `adds`.
+template <class Real, int Components>
+struct InterpolateCells {
+  RowLayout from_layout, to_layout;
+  int axis;
+  CellAxisArrays<Real> numbers;
+  SiteArray<Real, Components> from, to;
+  bool adds;
+
+  KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
+    std::ptrdiff_t const to_row =
+        (std::ptrdiff_t(cells.z) * to_layout.ny + cells.y) * to_layout.pitch;
+    std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
+    std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
+    std::int32_t const last = extents[axis] - 1;
+    for (int component = 0; component < Components; ++component) {
+      Real const* const source = from.data + component * from.stride;
+      Real* const target = to.data + component * to.stride + to_row;
+      for (std::int32_t x = cells.begin; x < cells.end; ++x) {
+        std::int32_t const index[3] = {x, cells.y, cells.z};
+        std::ptrdiff_t rest = 0;
+        for (int other = 0; other < 3; ++other)
+          if (other != axis) rest += index[other] * strides[other];
+        std::int32_t const fine = index[axis];
+        std::int32_t const own = fine / 2 < last ? fine / 2 : last;
+        Real const share = numbers.share[fine];
+        Real const value = (Real(1) - share) * source[rest + own * strides[axis]] +
+                           share * source[rest + numbers.beside[fine] * strides[axis]];
+        target[x] = adds ? target[x] + value : value;
+      }
+    }
+  }
+};
+
+}  // namespace cayspin::detail
