@@ -2,7 +2,9 @@
 // The kernels of every stepper, isotropy policy, generator, field term and scalar, compiled in both
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
+#include <cayspin/field/dear.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
+#include <cayspin/stepper/multirate.hpp>
 
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
@@ -66,6 +68,8 @@ struct Generators {
   using Prepared =
       EffectiveField<LayerAveragedSlabDemag<MemorySpace>,
                      TimeDependentZeeman<Vec3<double> (*)(double)>, HostField<S, SlabDemagOnHost>>;
+  using DearTerm = Dear<S, HostField<S, SlabDemagOnHost>>;
+  using WithDear = EffectiveField<Exchange, DearTerm>;
 
   std::tuple<LandauLifshitz<Slab>, Orthogonal<LandauLifshitz<Slab>>,
              LandauLifshitz<PerSite, Numbers>, LandauLifshitz<Prepared>,
@@ -73,6 +77,10 @@ struct Generators {
              RigidBodyEnsemble<Real, MemorySpace>>
       generators;
 
+  void use(Multirate<Rkmk4<S>, DearTerm>& stepper, LandauLifshitz<WithDear> const& generator,
+           S& spins) const {
+    stepper.step(Exec(), generator, spins, 0, 0.1);
+  }
   double use(LieEuler<S>& stepper, S& spins, Numbers const& weights) const {
     auto const one = [&](auto const& generator) {
       stepper.step(Exec(), generator, spins, 0, 0.1);

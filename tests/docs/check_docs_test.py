@@ -64,7 +64,7 @@ class CheckDocs(unittest.TestCase):
         self.assertEqual(self.faults(GOOD + few + "\nWith " + "a\n" * 30 + "word.\n"), [])
 
     def test_words(self):
-        for word in ("foretold", "anew", "behind the step", "dear", "numbers end", "be had"):
+        for word in ("foretold", "anew", "behind the step", "dearer", "numbers end", "be had"):
             self.expect(GOOD + f"\nThis is {word} again.\n", f'"{word}": write', 12)
         self.assertEqual(self.faults(GOOD + "\nA scene is refused behind the house: `dear`.\n"), [])
 

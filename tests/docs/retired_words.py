@@ -12,7 +12,7 @@ RETIRED = [
         (r"\bof late\b", "recently"),
         (r"\bas ever\b", "as always"),
         (r"\bamiss\b", "wrong"),
-        (r"\bdear(?:er|est)?\b", "expensive"),
+        (r"\bdear(?:er|est)\b", "more expensive"),
         (r"\b(?:where )?(?:the )?numbers end\b", "at extreme inputs"),
         (r"\bwhere it ends\b", "at the end"),
         (r"\bthe other precision\b", "single or double precision"),

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/field/host_field.hpp>
+#include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+namespace cayspin {
+
+namespace detail {
+
+/// Writes a prepared term's field into an array.
+template <class Term, class Real>
+struct StoreField {
+  Term term;
+  SiteArray<Real, 3> spins;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using AtSite = Stencil<Site, Real>;
+    check_field<Term, AtSite>();
+    site.store(term.field(AtSite(site, spins)), output);
+  }
+};
+
+/// The weighted sum of the first `count` arrays.
+template <class Real>
+struct CombineFields {
+  static constexpr int most = 4;
+  SiteArray<Real, 3> values[most];
+  Real weights[most];
+  int count;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> sum = Value(weights[0]) * site.load(values[0]);
+    for (int i = 1; i < count; ++i)
+      sum = multiply_add(Value(weights[i]), site.load(values[i]), sum);
+    site.store(sum, output);
+  }
+};
+
+/// E of a site over m.H, for a term whose energy says its degree.
+template <class Term>
+double energy_factor_of(Term const& term) {
+  if constexpr (requires { term.energy_factor; }) {
+    return term.energy_factor;
+  } else {
+    static_assert(
+        requires { requires Term::degree == 1 || Term::degree == 2; },
+        "Dear needs a term with a static constexpr int degree: 1 for H independent of the "
+        "spins, 2 for H linear in them.");
+    return Term::degree == 1 ? -1.0 : -0.5;
+  }
+}
+
+/// The weights at x of the polynomial through values at `nodes`.
+inline std::array<double, 4> weights_at(double x, std::span<double const> nodes) {
+  std::array<double, 4> weights{};
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    weights[i] = 1;
+    for (std::size_t j = 0; j < nodes.size(); ++j)
+      if (j != i) weights[i] *= (x - nodes[j]) / (nodes[i] - nodes[j]);
+  }
+  return weights;
+}
+
+}  // namespace detail
+
+/// A field term that costs more than the rest: a demagnetising field by FFTs, for example.
+/// Multirate evaluates it once a step, and lets the other terms see it interpolated in time.
+/// Everywhere else it is the term itself: each look at energies evaluates it once more.
+/// A handle: the copy in a field and the one in a Multirate share their memory.
+///
+/// Term: HostField, or a term with a static `degree`, 1 or 2 (concepts.hpp).
+template <class Spins, class Term>
+class Dear {
+  using Real = typename Spins::value_type;
+  static constexpr std::size_t most = detail::CombineFields<Real>::most;
+  struct State {
+    State(char const* label, Lattice const& lattice) : field(label, lattice) {}
+
+    Spins field;
+    double energy_factor = -0.5;
+    std::int64_t evaluations = 0;
+
+    std::array<Spins, most> values;
+    std::array<double, most> nodes{};
+    std::size_t count = 0;  // 0: the term itself
+    double begin = 0, dt = 0;
+    double at = 0;  // the time of `field`
+    std::int64_t reads = 0;
+  };
+
+ public:
+  using spins_type = Spins;
+
+  /// For spins like these.
+  Dear(Spins const& like, Term term)
+      : term_(std::move(term)), state_(std::make_shared<State>("Dear::field", like.lattice())) {}
+
+  template <class Others>
+  void check_spins(Others const& spins) const {
+    static_assert(std::is_same_v<Others, Spins>,
+                  "Dear was made for spins of another precision or memory space.");
+    require_lattice("cayspin::Dear", state_->field.lattice(), spins.lattice());
+    detail::check_spins(term_, spins);
+  }
+
+  template <class Exec, class Others>
+  detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
+    static_assert(std::is_same_v<Others, Spins>,
+                  "Dear was made for spins of another precision or memory space.");
+    if (state_->count > 0)
+      interpolate(exec, t);
+    else
+      evaluate(exec, spins, t, state_->field);
+    return {state_->field.array(), state_->energy_factor};
+  }
+  /// Throws std::logic_error between evaluations.
+  template <class Exec>
+  detail::StoredField<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
+                                         double) const {
+    if (state_->count > 0)
+      throw std::logic_error("cayspin::Dear: an interpolated field has no rate");
+    return prepare(exec, rates, t);
+  }
+
+  /// Evaluations of the term so far, by all copies.
+  std::int64_t evaluations_done() const { return state_->evaluations; }
+
+  // For Multirate.
+
+  /// Writes the term's field into `output`.
+  template <class Exec>
+  void evaluate(Exec const& exec, Spins const& spins, double t, Spins const& output) const {
+    auto prepared = detail::prepare_term(term_, exec, spins, t);
+    state_->energy_factor = detail::energy_factor_of(prepared);
+    detail::for_each_site<Real>(exec, "cayspin::Dear::evaluate", spins.layout(),
+                                detail::StoreField<decltype(prepared), Real>{
+                                    std::move(prepared), spins.array(), output.output(false)},
+                                spins.layout().own);
+    ++state_->evaluations;
+  }
+
+  /// As long as this lives, the field is the polynomial in (time - begin) / dt through `values` at
+  /// `nodes`, at most 4.
+  class Interpolated {
+   public:
+    Interpolated(Dear const& dear, std::span<Spins const> values, std::span<double const> nodes,
+                 double begin, double dt)
+        : state_(*dear.state_) {
+      std::ranges::copy(values, state_.values.begin());
+      std::ranges::copy(nodes, state_.nodes.begin());
+      state_.begin = begin;
+      state_.dt = dt;
+      state_.at = std::numeric_limits<double>::quiet_NaN();
+      state_.reads = 0;
+      state_.count = nodes.size();
+    }
+    Interpolated(Interpolated const&) = delete;
+    Interpolated& operator=(Interpolated const&) = delete;
+    ~Interpolated() { state_.count = 0; }
+
+    /// Was the field asked for?
+    bool was_read() const { return state_.reads > 0; }
+
+   private:
+    State& state_;
+  };
+
+ private:
+  template <class Exec>
+  void interpolate(Exec const& exec, double t) const {
+    State& state = *state_;
+    ++state.reads;
+    // The end of a substep and the begin of the next one are the same time but for rounding.
+    if (std::abs(t - state.at) <= 1e-12 * std::abs(state.dt)) return;
+    state.at = t;
+    auto const weights =
+        detail::weights_at((t - state.begin) / state.dt, {state.nodes.data(), state.count});
+    detail::CombineFields<Real> combine{
+        {}, {}, static_cast<int>(state.count), state.field.output(false)};
+    for (std::size_t i = 0; i < state.count; ++i) {
+      combine.values[i] = state.values[i].array();
+      combine.weights[i] = static_cast<Real>(weights[i]);
+    }
+    detail::for_each_site<Real>(exec, "cayspin::Dear::interpolate", state.field.layout(), combine,
+                                state.field.layout().own);
+  }
+
+  Term term_;
+  std::shared_ptr<State> state_;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/concepts.hpp>
+#include <cayspin/field/dear.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stepper/field_history.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace cayspin {
+
+struct MultirateOptions {
+  std::int64_t substeps = 1;  ///< of the inner method in each step
+};
+
+/// A one-step method in substeps, between which one dear term of the field (Dear) is interpolated
+/// in time: one evaluation of it a step. Of order Order, if the method has that order.
+///
+/// A step predicts the dear field by the polynomial through its last Order - 1 values, takes its
+/// substeps, evaluates the dear field at their end, and takes them again from the begin, in the
+/// polynomial through that value and the last Order - 1. The value is kept for the next step.
+/// Without the second pass, feedback through the field amplifies short waves at any step. Without
+/// damping, even this pass heats short waves slowly: with D the largest eigenvalue of the dear
+/// field and damping .02, steps up to about .3 / D were stable, and half that without damping.
+///
+/// The first step evaluates the dear field in each stage of its substeps. Steps may change, but
+/// grow by a factor of 2 at most; otherwise the method starts again. Work memory beside the
+/// method's: Order + 1 fields, and one of Dear.
+/// Not in the literature in this form; a relative of the schemes of Günther and Sandu (2016).
+template <class Stepper, class DearTerm, int Order = 3>
+class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
+  using Base = detail::StepperBase<typename Stepper::spins_type>;
+  static_assert(2 <= Order && Order <= 4, "Multirate interpolates to order 2, 3 or 4.");
+  static_assert(
+      !requires(Stepper& inner) { inner.reset(); },
+      "Multirate needs a method that remembers no steps: neither a multistep, an adaptive nor a "
+      "compensated one.");
+
+ public:
+  using Spins = typename Stepper::spins_type;
+  using typename Base::Real;
+  static_assert(std::is_same_v<Spins, typename DearTerm::spins_type>,
+                "Multirate's method and its dear field were made for different spins.");
+  static constexpr int order = std::min(Order, Stepper::order);
+  static constexpr std::size_t past_fields = Order;
+  static constexpr int work_fields = Order + 2 + Stepper::work_fields;
+
+  /// `dear`: the Dear in the field of the generator.
+  /// Throws std::invalid_argument when the number of substeps is below 1.
+  Multirate(Spins const& like, Stepper stepper, DearTerm dear, MultirateOptions const& options = {})
+      : Base("Multirate", like.lattice()),
+        stepper_(std::move(stepper)),
+        dear_(std::move(dear)),
+        substeps_(options.substeps),
+        begin_("Multirate::begin", like.lattice()),
+        past_("Multirate::dear_field", like.lattice()) {
+    if (substeps_ < 1)
+      throw std::invalid_argument("cayspin::Multirate: the number of substeps is below 1");
+    dear_.check_spins(like);
+  }
+
+  /// Evaluations of the generator by the inner method so far.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+  /// Evaluations of the dear field by steps so far: one a step, and in each start one more and
+  /// those of the method's substeps.
+  std::int64_t dear_evaluations_done() const { return dear_evaluations_done_; }
+  std::size_t work_bytes() const {
+    return stepper_.work_bytes() + (past_fields + 2) * begin_.bytes();
+  }
+
+  /// Forgets the steps before, so that the next step is a start. Call it when something else has
+  /// changed the spins or the generator. cayspin::integrate calls it for each run.
+  void reset() {
+    past_.forget();
+    knows_begin_ = false;
+  }
+
+  /// For cayspin::exchange_memory.
+  template <class Visit>
+  void visit_memory(Visit const& visit) {
+    past_.visit_memory(visit);
+    visit("knows_begin", knows_begin_);
+    if (knows_begin_) visit("begin", past_.following());
+    visit("evaluations", evaluations_done_);
+    visit("dear_evaluations", dear_evaluations_done_);
+  }
+
+  /// Advances `spins` from t to t + dt under `generator`. `spins` must be those at the end of the
+  /// step before. A step may exchange the memory of `spins` with the inner method's.
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction, or the
+  /// generator has no such dear field.
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    auto const region = this->begin_step(exec, spins);
+    if (dt == 0) return;
+    auto const evaluations_before = dear_.evaluations_done();
+    if (knows_begin_ && !(0 < dt / past_.last_step() && dt / past_.last_step() <= 2)) reset();
+    if (knows_begin_)
+      go_on(exec, generator, spins, t, dt);
+    else
+      start(exec, generator, spins, t, dt);
+    dear_evaluations_done_ += dear_.evaluations_done() - evaluations_before;
+  }
+
+ private:
+  template <class Exec, class Generator>
+  void start(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    past_.forget();
+    dear_.evaluate(exec, spins, t, past_.following());
+    past_.remember(dt);
+    take_substeps(exec, generator, spins, t, dt);
+    dear_.evaluate(exec, spins, t + dt, past_.following());
+    knows_begin_ = true;
+  }
+
+  template <class Exec, class Generator>
+  void go_on(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    knows_begin_ = false;  // until the step is whole
+    past_.remember(dt);
+    Kokkos::deep_copy(exec, begin_.allocation(), spins.allocation());
+    // At first the value at the end is missing: nodes and values begin with the second.
+    auto nodes = past_.template times<past_fields>(0, dt);
+    std::array<Spins, past_fields> values;
+    std::size_t const known = std::min(past_.known(), past_fields - 1);
+    for (std::size_t i = 0; i <= known; ++i) {
+      nodes[i] += 1;
+      values[i] = i == 0 ? past_.following() : past_[i - 1];
+    }
+    take_substeps_between(exec, generator, spins, t, dt, {values.data() + 1, known},
+                          {nodes.data() + 1, known});
+    dear_.evaluate(exec, spins, t + dt, past_.following());
+    Kokkos::deep_copy(exec, spins.allocation(), begin_.allocation());
+    take_substeps_between(exec, generator, spins, t, dt, {values.data(), known + 1},
+                          {nodes.data(), known + 1});
+    knows_begin_ = true;
+  }
+
+  /// In the polynomial through these values of the dear field.
+  template <class Exec, class Generator>
+  void take_substeps_between(Exec const& exec, Generator const& generator, Spins& spins, double t,
+                             double dt, std::span<Spins const> values,
+                             std::span<double const> nodes) {
+    typename DearTerm::Interpolated const interpolated(dear_, values, nodes, t, dt);
+    take_substeps(exec, generator, spins, t, dt);
+    if (!interpolated.was_read())
+      throw std::invalid_argument(
+          this->label("::step: the generator's field does not have the dear term that this "
+                      "stepper was made with"));
+  }
+
+  template <class Exec, class Generator>
+  void take_substeps(Exec const& exec, Generator const& generator, Spins& spins, double t,
+                     double dt) {
+    double const substep = dt / static_cast<double>(substeps_);
+    std::int64_t before = 0;
+    if constexpr (detail::counts_evaluations<Stepper>) before = stepper_.evaluations_done();
+    if constexpr (requires { stepper_.batch(exec, generator, spins, t, substep, substeps_); }) {
+      if (stepper_.takes_batches(exec, generator, spins))
+        stepper_.batch(exec, generator, spins, t, substep, substeps_);
+      else
+        take_one_by_one(exec, generator, spins, t, substep);
+    } else {
+      take_one_by_one(exec, generator, spins, t, substep);
+    }
+    if constexpr (detail::counts_evaluations<Stepper>)
+      evaluations_done_ += stepper_.evaluations_done() - before;
+    else
+      evaluations_done_ += substeps_ * Stepper::evaluations;
+  }
+  template <class Exec, class Generator>
+  void take_one_by_one(Exec const& exec, Generator const& generator, Spins& spins, double t,
+                       double substep) {
+    for (std::int64_t k = 0; k < substeps_; ++k)
+      stepper_.step(exec, generator, spins, t + static_cast<double>(k) * substep, substep);
+  }
+
+  Stepper stepper_;
+  DearTerm dear_;
+  std::int64_t substeps_;
+  Spins begin_;  // the spins at the begin of a step
+  detail::FieldHistory<Spins, past_fields> past_;
+  bool knows_begin_ = false;  // past_.following() is the dear field at the begin of the next step
+  std::int64_t evaluations_done_ = 0, dear_evaluations_done_ = 0;
+};
+
+}  // namespace cayspin

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Dear fields: orders, stability where one pass fails, and the energy law.
+#include "long_range.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+Lattice const block{{5, 4, 3}, {1, 1.1, 0.9}, {Boundary::periodic, Boundary::open, Boundary::open}};
+
+template <int Order, class Inner>
+double order_of(std::array<int, 4> const& steps, std::int64_t substeps) {
+  Spins const start = random_spins(block, 5);
+  auto const dear = dear_long_range(start, 0.4);
+  auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
+  Spins const exact = run<Rkmk4<Spins>>(generator, start, 1e-3, 1000);
+  std::vector<double> dts, errors;
+  for (int const count : steps) {
+    Spins spins = copy_of(start);
+    auto stepper = multirate<Order, Spins, Inner>(spins, dear, substeps);
+    advance(stepper, generator, spins, 1. / count, count);
+    dts.push_back(1. / count);
+    errors.push_back(largest_distance(spins, exact));
+  }
+  return fitted_order(dts, errors);
+}
+
+TEST(Dear, Orders) {
+  std::array<int, 4> const ladder{20, 40, 80, 160};
+  expect_order("order 2", order_of<2, Rkmk4<Spins>>(ladder, 2), 2, 0.15);
+  expect_order("order 3", order_of<3, Rkmk4<Spins>>(ladder, 2), 3, 0.15);
+  expect_order("order 4", order_of<4, Rkmk4<Spins>>(ladder, 2), 4, 0.15);
+  expect_order("order 3, one substep", order_of<3, Rkmk4<Spins>>(ladder, 1), 3, 0.15);
+  expect_order("order 4 between steps of Heun", order_of<4, LieHeun<Spins>>(ladder, 3), 2, 0.15);
+  static_assert(decltype(multirate<4, Spins, LieHeun<Spins>>(
+                    std::declval<Spins>(), std::declval<DearLongRange<Spins>>(), 1))::order == 2);
+}
+
+TEST(Dear, UnequalStepsKeepTheOrder) {
+  Spins const start = random_spins(block, 5);
+  auto const dear = dear_long_range(start, 0.4);
+  auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
+  Spins const exact = run<Rkmk4<Spins>>(generator, start, 1e-3, 1000);
+  std::vector<double> dts, errors;
+  for (int const pairs : {20, 40, 80, 160}) {
+    Spins spins = copy_of(start);
+    auto stepper = multirate(spins, dear, 2);
+    double t = 0;
+    for (int n = 0; n < 2 * pairs; ++n) {
+      double const dt = (n % 2 == 0 ? 1 : 2) / (3. * pairs);
+      stepper.step(Space{}, generator, spins, t, dt);
+      t += dt;
+    }
+    EXPECT_EQ(stepper.dear_evaluations_done(), 2 * pairs + 1 + 2 * 4);
+    dts.push_back(1. / pairs);
+    errors.push_back(largest_distance(spins, exact));
+  }
+  expect_order("unequal steps", fitted_order(dts, errors), 3, 0.2);
+}
+
+/// Without the second pass: the dear field through its last two values alone.
+template <class Generator>
+void extrapolate(DearLongRange<Spins> const& dear, Generator const& generator, Spins& spins,
+                 double dt, int steps, int substeps) {
+  Space const exec;
+  Rkmk4<Spins> inner(spins);
+  std::array<Spins, 2> values{Spins("now", spins.lattice()), Spins("before", spins.lattice())};
+  std::array<double, 2> const nodes{0, -1};
+  dear.evaluate(exec, spins, 0, values[1]);
+  for (int n = 0; n < steps; ++n) {
+    dear.evaluate(exec, spins, 0, values[0]);
+    {
+      DearLongRange<Spins>::Interpolated const between(dear, values, nodes, n * dt, dt);
+      for (int k = 0; k < substeps; ++k)
+        inner.step(exec, generator, spins, n * dt + k * dt / substeps, dt / substeps);
+    }
+    swap(values[0], values[1]);
+  }
+}
+
+/// The energy after each of `count` looks.
+template <class Advance, class Generator>
+std::vector<double> energies(Generator const& generator, Spins const& start, int count,
+                             Advance const& go_on) {
+  Spins spins = copy_of(start);
+  std::vector<double> found;
+  for (int look = 0; look <= count; ++look) {
+    found.push_back(sample(Space{}, generator, Step{}, spins).energy.value);
+    if (look < count) go_on(spins);
+  }
+  return found;
+}
+
+// Four times the largest stable step of RK4: one pass gains energy, two lose it at every look.
+TEST(Dear, SecondPassKeepsTheEnergyLaw) {
+  Lattice const film{{24, 8, 1}, {1, 1, 1}, {Boundary::open, Boundary::open, Boundary::open}};
+  Spins const start = make_spins(film, [](auto i, auto j, auto) {
+    return Vector{std::cos(0.2 * i), std::sin(0.2 * i + 0.3 * j), 0.4 * std::cos(0.5 * j)};
+  });
+  double const exchange = 10, damping = 0.02;
+  auto const dear = dear_long_range(start, 0.25);
+  auto const generator = with_dear(film, exchange, dear, damping);
+  double const stable =
+      largest_stable_step<Rkmk4<Spins>>(exchange_bound(film, exchange) + 2, damping, true);
+  double const dt = 4 * stable;
+  int const substeps = 5, steps = 100;
+
+  auto stepper = multirate(start, dear, substeps);
+  double t = 0;
+  auto const two_passes = energies(generator, start, 30, [&](Spins& spins) {
+    for (int n = 0; n < steps; ++n, t += dt) stepper.step(Space{}, generator, spins, t, dt);
+  });
+  for (std::size_t i = 1; i < two_passes.size(); ++i)
+    EXPECT_LT(two_passes[i], two_passes[i - 1]) << i;
+  auto const one_pass = energies(generator, start, 30, [&](Spins& spins) {
+    extrapolate(dear, generator, spins, dt, steps, substeps);
+  });
+  auto const rk4 = energies(generator, start, 1, [&](Spins& spins) {
+    Rkmk4<Spins> fine(spins);
+    advance(fine, generator, spins, 1.2 * stable, 500);
+  });
+  std::printf(
+      "    E %.3f -> %.3f (two passes), %.3f (one pass), %.3f (rkmk4, dt 1.2 times stable)\n",
+      two_passes.front(), two_passes.back(), one_pass.back(), rk4.back());
+  EXPECT_GT(one_pass.back(), two_passes.front());
+  EXPECT_GT(rk4.back(), rk4.front());
+
+  // It follows RK4 in steps as long as its substeps, with 1 evaluation in place of 20.
+  Spins spins = copy_of(start);
+  stepper.reset();
+  advance(stepper, generator, spins, dt, 20);
+  Spins const exact = run<Rkmk4<Spins>>(generator, start, stable / 4, 320);
+  double const error = largest_distance(spins, exact);
+  double const of_rk4 =
+      largest_distance(run<Rkmk4<Spins>>(generator, start, dt / substeps, 20 * substeps), exact);
+  std::printf("    after 20 steps: error %.2e, of rkmk4 %.2e\n", error, of_rk4);
+  EXPECT_LT(error, 0.03);
+}
+
+TEST(Dear, KeepsUnitLengthAndEnergyOfLooks) {
+  Spins spins = random_spins(block, 5);
+  LongRange const solver{0.4};
+  auto const dear = dear_long_range(spins, 0.4);
+  auto const generator = with_dear(block, 0.5, dear, 0.1);
+  auto const plain = with_dear(block, 0.5, HostField<Spins, LongRange>(spins, solver), 0.1);
+  auto stepper = multirate(spins, dear, 3);
+  advance(stepper, generator, spins, 0.05, 40);
+  auto const evaluations = dear.evaluations_done();
+  auto const seen = sample(Space{}, generator, Step{}, spins);
+  EXPECT_EQ(dear.evaluations_done(), evaluations + 1);
+  EXPECT_EQ(seen.energy.value, sample(Space{}, plain, Step{}, spins).energy.value);
+  EXPECT_LT(seen.norm_defect, 100 * std::numeric_limits<double>::epsilon());
+}
+
+}  // namespace

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Dear fields: counts, what is kept from step to step, precisions, spaces and wrong calls.
+#include "../support/wrong_call.hpp"
+#include "long_range.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#if defined(KOKKOS_ENABLE_SERIAL) && \
+    (defined(KOKKOS_ENABLE_OPENMP) || defined(KOKKOS_ENABLE_THREADS))
+#include "../backends/equal_bits.hpp"
+#define CAYSPIN_TEST_TWO_HOST_SPACES
+#endif
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+Lattice const block{{5, 4, 3}, {1, 1.1, 0.9}, {Boundary::periodic, Boundary::open, Boundary::open}};
+
+TEST(Dear, CountsEvaluations) {
+  Spins spins = random_spins(block, 3);
+  auto const dear = dear_long_range(spins, 0.4);
+  auto const generator = with_dear(block, 0.5, dear, 0.1);
+  auto stepper = multirate(spins, dear, 3);
+  static_assert(Stepper<decltype(stepper)>);
+  for (int run = 1; run <= 2; ++run) {
+    auto const summary = integrate(Space{}, stepper, generator, spins, Times{0, 0.05, 20});
+    EXPECT_EQ(summary.evaluations, 3 * 4 * (1 + 2 * 19));
+    EXPECT_EQ(stepper.dear_evaluations_done(), run * (19 + 3 * 4 + 2));
+    EXPECT_EQ(dear.evaluations_done(), stepper.dear_evaluations_done());
+  }
+  EXPECT_EQ(stepper.work_bytes(), (5 + Rkmk4<Spins>::work_fields) * spins.bytes());
+  EXPECT_EQ(decltype(stepper)::work_fields, 5 + Rkmk4<Spins>::work_fields);
+}
+
+TEST(Dear, StartsAnew) {
+  Spins const start = random_spins(block, 5);
+  auto const dear = dear_long_range(start, 0.4);
+  auto const generator = with_dear(block, 0.5, dear, 0.1);
+  auto stepper = multirate(start, dear, 2);
+  auto const again = [&] {
+    Spins spins = copy_of(start);
+    advance(stepper, generator, spins, 0.05, 6);
+    return copy_to_host(spins);
+  };
+  auto const fresh = again();
+  EXPECT_NE(again(), fresh);
+  stepper.reset();
+  EXPECT_EQ(again(), fresh);
+
+  // A step that grows too much or turns round is a start; one of length 0 does nothing.
+  Spins spins = copy_of(start);
+  auto const evaluations_of = [&](double dt) {
+    auto const before = stepper.dear_evaluations_done();
+    stepper.step(Space{}, generator, spins, 0, dt);
+    return stepper.dear_evaluations_done() - before;
+  };
+  stepper.reset();
+  EXPECT_EQ(evaluations_of(0.01), 2 + 2 * 4);
+  for (double const dt : {0.02, 0.04, 0.001, 0.002}) EXPECT_EQ(evaluations_of(dt), 1);
+  EXPECT_EQ(evaluations_of(0), 0);
+  EXPECT_EQ(evaluations_of(0.005), 2 + 2 * 4);
+  EXPECT_EQ(evaluations_of(-0.005), 2 + 2 * 4);
+}
+
+template <class Field>
+void expect_same_bits_after_a_break(int steps_before) {
+  Field const start = random_spins<Field>(block, 5);
+  auto const dear = dear_long_range(start, 0.4);
+  auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
+  auto const whole = [&] {
+    Field spins = copy_of(start);
+    auto stepper = multirate<4>(spins, dear, 2);
+    advance(stepper, generator, spins, 0.05, 12);
+    return copy_to_host(spins);
+  }();
+
+  CheckpointInMemory kept;
+  Field spins = copy_of(start);
+  auto first = multirate<4>(spins, dear, 2);
+  advance(first, generator, spins, 0.05, steps_before);
+  exchange_memory(first, kept);
+  kept.close();
+  Field others = copy_of(spins);
+  auto const other_dear = dear_long_range(others, 0.4);
+  auto second = multirate<4>(others, other_dear, 2);
+  exchange_memory(second, kept);
+  advance(second, with_dear(block, 0.5, other_dear, 0.1, 0.6), others, 0.05, 12 - steps_before,
+          steps_before);
+  EXPECT_EQ(copy_to_host(others), whole) << steps_before;
+  EXPECT_EQ(second.dear_evaluations_done(), 2 + 2 * 4 + 11);
+}
+
+TEST(Dear, SameBitsAfterABreak) {
+  for (int const steps : {0, 1, 2, 3, 4, 9}) {
+    expect_same_bits_after_a_break<SpinField<double, Space::memory_space>>(steps);
+    expect_same_bits_after_a_break<SpinField<float, Space::memory_space>>(steps);
+  }
+}
+
+TEST(Dear, SinglePrecision) {
+  using Floats = SpinField<float, Space::memory_space>;
+  auto const end_of = [&]<class Field>(Field spins) {
+    auto const dear = dear_long_range(spins, 0.4);
+    auto stepper = multirate(spins, dear, 2);
+    advance(stepper, with_dear(block, 0.5, dear, 0.1, 0.6), spins, 0.02, 50);
+    return spins;
+  };
+  double const distance =
+      largest_distance(end_of(random_spins(block, 5)), end_of(random_spins<Floats>(block, 5)));
+  expect_below("float beside double, 50 steps", distance, 50 * 2 * 1.2e-7);
+  EXPECT_GT(distance, 1e-8);
+}
+
+#if defined(CAYSPIN_TEST_TWO_HOST_SPACES)
+template <class Exec, class Field>
+std::vector<typename Field::value_type> end_in(Field const& start) {
+  Field spins = copy_of(start);
+  auto const dear = dear_long_range(spins, 0.2);
+  auto const generator = with_dear(start.lattice(), 0.5, dear, 0.1, 0.6);
+  auto stepper = multirate(spins, dear, 2);
+  Exec const exec;
+  for (int n = 0; n < 5; ++n) stepper.step(exec, generator, spins, n * 0.05, 0.05);
+  exec.fence();
+  return copy_to_host(spins);
+}
+TEST(Dear, SameBitsOnHostSpaces) {
+  for (std::size_t const which : {10, 13, 19, 22}) {  // some of many tasks, open and periodic
+    Lattice const lattice = odd_lattices()[which];
+    auto const check = [&]<class Field>(Field const& start) {
+      auto const one = end_in<Kokkos::Serial>(start);
+      ASSERT_NE(one, copy_to_host(start));
+      expect_equal_bits(one, end_in<Threaded>(start), name_of(lattice));
+    };
+    check(random_spins<SpinField<double, Kokkos::HostSpace>>(lattice, 11));
+    check(random_spins<SpinField<float, Kokkos::HostSpace>>(lattice, 11));
+  }
+}
+#endif
+
+/// A term of the library's that is not computed on the host: its own field for kernels.
+TEST(Dear, TakesAnyTermOfKnownDegree) {
+  Spins spins = random_spins(block, 5);
+  SlabDemag const slab{Vector{1, 2, 0}, 0.7};
+  Dear const dear(spins, slab);
+  EffectiveField const field(Exchange{block, 0.5}, dear);
+  EffectiveField const cheap(Exchange{block, 0.5}, slab);
+  double const energy = sample(Space{}, LandauLifshitz{cheap, 0.1}, Step{}, spins).energy.value;
+  EXPECT_NEAR(sample(Space{}, LandauLifshitz{field, 0.1}, Step{}, spins).energy.value, energy,
+              1e-14 * 60);
+  Spins const exact = run<Rkmk4<Spins>>(LandauLifshitz{cheap, 0.1}, spins, 0.01, 100);
+  Multirate stepper(spins, Rkmk4<Spins>(spins), dear, {.substeps = 4});
+  advance(stepper, LandauLifshitz{field, 0.1}, spins, 0.04, 25);
+  double const distance = largest_distance(spins, exact);
+  expect_below("apart from RK4", distance, 1e-4);
+  EXPECT_GT(distance, 1e-9);
+}
+
+TEST(Dear, RefusesWrongCalls) {
+  Spins spins = random_spins(block, 3);
+  Spins elsewhere("other", Lattice::chain(5));
+  auto const dear = dear_long_range(spins, 0.4), other = dear_long_range(spins, 0.4);
+  auto const generator = with_dear(block, 0.5, other, 0.1);
+  auto stepper = multirate(spins, dear, 2);
+  advance(stepper, generator, spins, 0.05, 1);
+  expect_refused({{"no substeps", [&] { multirate(spins, dear, 0); }},
+                  {"another lattice", [&] { multirate(elsewhere, dear, 1); }},
+                  {"another dear term", [&] { advance(stepper, generator, spins, 0.05, 1); }},
+                  {"other spins", [&] { stepper.step(Space{}, generator, elsewhere, 0, 0.1); }}});
+  // The refused step has left no field behind.
+  auto const before = other.evaluations_done();
+  sample(Space{}, generator, Step{}, spins);
+  EXPECT_EQ(other.evaluations_done(), before + 1);
+}
+
+}  // namespace
