@@ -4,6 +4,7 @@
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/text.hpp"
+#include "simulation/thermal.hpp"
 #include "trade/resolved.hpp"
 
 #include <fmt/format.h>
@@ -51,6 +52,9 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
         ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
         "\"energy_unit\": {}, \"reduced\": {{\"stable_dt\": {}, \"dt\": {}}}",
         units.time, units.length, units.field, units.energy, stable_in(1), plan.times.dt);
+  if (is_thermal(scene))
+    fmt::print(", \"temperature\": {}, \"noise_turn\": {}", typed_temperature(scene),
+               plan.noise_turn);
   if (repeated) fmt::print(", \"repeated\": {}", *repeated);
   fmt::print("}}\n");
 }
@@ -74,6 +78,13 @@ std::string stability_text(io::Units const& units, Plan const& plan) {
   return fmt::format("{}; dt is {:.3g} of it{}", both(units, plan.stable_dt, 6),
                      plan.times.dt / plan.stable_dt,
                      plan.times.dt > plan.stable_dt ? ", which is too large" : "");
+}
+
+std::string noise_text(io::Scene const& scene, Plan const& plan) {
+  auto const per_step = scene.system.damping * scene.thermal->temperature * plan.times.dt;
+  return fmt::format("damping x temperature x dt = {:.3g}, turns a spin by {:.3g} radians a step{}",
+                     per_step, plan.noise_turn,
+                     plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
 }
 
 std::string output_text(io::Scene const& scene, Plan const& plan) {
@@ -111,6 +122,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
                             both(scene.units, plan.times.dt, 9),
                             both(scene.units, plan.times.at(plan.times.steps), 9)));
   print("stable dt", stability_text(scene.units, plan));
+  if (is_thermal(scene)) print("noise", noise_text(scene, plan));
   print("cost",
         fmt::format(
             "{} per step, {:.4g} spin updates in all", evaluations_text(plan.variant),

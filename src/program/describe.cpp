@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "simulation/thermal.hpp"
 
 #include <fmt/args.h>
 #include <fmt/format.h>
@@ -96,6 +97,14 @@ std::string slab_text(io::Field const& field) {
                      slab.on_host ? ", computed on the host" : "");
 }
 
+std::string thermal_text(io::Scene const& scene) {
+  auto const& [temperature, seed] = *scene.thermal;
+  auto const typed = fmt::format("{:.6g}", typed_temperature(scene));
+  return fmt::format("{}, seed {}",
+                     scene.units.si ? fmt::format("{} K ({:.6g})", typed, temperature) : typed,
+                     seed);
+}
+
 std::string initial_text(io::Initial const& initial) {
   if (auto const* start = std::get_if<io::UniformStart>(&initial))
     return "uniform " + vector_text(start->direction);
@@ -132,6 +141,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));
   }
+  if (scene.thermal) lines.emplace_back("temperature", thermal_text(scene));
   lines.emplace_back("start", initial_text(scene.initial));
   return lines;
 }

@@ -9,6 +9,7 @@
 #include "simulation/restart.hpp"
 #include "simulation/run_state.hpp"
 #include "simulation/text.hpp"
+#include "simulation/thermal.hpp"
 #include "trade/resolved.hpp"
 #include "watch.hpp"
 
@@ -122,6 +123,8 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   std::optional<ControlledWatch<Real, Space>> controlled;
   if (scene.integrator.energy_control)
     controlled.emplace(watch, simulation.generator, simulation.spins);
+  std::optional<ThermalWatch<Real, Space>> thermal;
+  if (is_thermal(scene)) thermal.emplace(watch, scene, simulation.spins, times.first);
   auto const exchange = [&](Checkpoint& checkpoint, bool& continues) {
     exchange_state(checkpoint, simulation, *method, continues, watch.guard(),
                    controlled ? &controlled->control() : nullptr);
@@ -156,13 +159,15 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), why, kept()));
     });
   };
-  auto [summary, failure] =
-      controlled ? simulation.advance(*method, *controlled) : simulation.advance(*method, watch);
+  auto [summary, failure] = controlled ? simulation.advance(*method, *controlled)
+                            : thermal  ? simulation.advance(*method, *thermal)
+                                       : simulation.advance(*method, watch);
   // The library's own messages, which know nothing of the scene's units.
   if (failure && scene.units.si)
     *failure += fmt::format(" (times in units of {:.6g} s)", scene.units.time);
   if (failure) fail(*failure);
   if (controlled) summary.evaluations += controlled->evaluations();
+  if (thermal) summary.step_seconds += thermal->seconds();
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
   bool const whole = !watch.failure() && !watch.interrupted();
   auto const frames = ranks.together([&]() -> std::int64_t {

@@ -6,6 +6,7 @@
 #include "simulation/guard.hpp"
 #include "simulation/ranks.hpp"
 #include "simulation/run_files.hpp"
+#include "simulation/run_noise.hpp"
 #include "simulation/simulate.hpp"
 
 #include <cayspin/io/run_output.hpp>
@@ -210,6 +211,32 @@ class ControlledWatch : public RunObserver<Space, SpinField<Real, typename Space
  private:
   Watch<Real, Space>& watch_;
   Control control_;
+};
+
+/// A watch, and around it the noise of a temperature.
+template <class Real, class Space>
+class ThermalWatch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+
+ public:
+  /// `first`: the step after which the run begins.
+  ThermalWatch(Watch<Real, Space>& watch, io::Scene const& scene, Spins const& spins,
+               std::int64_t first)
+      : watch_(watch), noise_(scene, spins), first_(first) {}
+
+  bool due(Step const&) const override { return true; }
+
+  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    return noise_(exec, step, first_, spins, watch_.due(step),
+                  [&] { return watch_(exec, step, spins); });
+  }
+
+  double seconds() { return noise_.take_seconds(); }
+
+ private:
+  Watch<Real, Space>& watch_;
+  RunNoise<Spins> noise_;
+  std::int64_t first_;
 };
 
 }  // namespace cayspin::program

@@ -133,6 +133,7 @@ void check_combination(Scene const& scene) {
   auto const& method = *integrator.method;
   check_energy_control(scene);
   check_compensation(scene);
+  detail::check_thermal(scene);
   if (method.is_baseline() || method.automatic) return;
   if (!method.takes(integrator.rotation)) {
     bool const exponential = method.usual_rotation() == Rotation::exponential;

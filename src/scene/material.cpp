@@ -168,6 +168,7 @@ void convert(Scene& scene, Table const& table, auto const& units) {
   scene.system.damping = units.damping();
   convert_field(scene, table, units);
   convert_integrator(scene.integrator, units);
+  if (scene.thermal) scene.thermal->temperature = units.temperature(scene.thermal->temperature);
   if (!std::isnormal(scene.integrator.dt))
     throw scene_error(scene, "integrator.dt",
                       fmt::format("comes to {} units of {} s; accepted: a time in s",

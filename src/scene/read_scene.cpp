@@ -63,14 +63,15 @@ Scene parse_scene(std::string text, std::filesystem::path const& path,
   }
 
   detail::Table const root({&document, "", fmt::format("{}:1", path.string())}, scene);
-  root.accept_only(
-      {"units", "material", "system", "lattice", "field", "initial", "integrator", "output"});
+  root.accept_only({"units", "material", "system", "lattice", "field", "initial", "integrator",
+                    "thermal", "output"});
   scene.units.si = detail::read_is_si(root);
   scene.system = detail::read_system(root);
   scene.lattice = detail::read_lattice(root, scene.system.kind);
   scene.field = detail::read_field(root, scene.system.kind);
   scene.initial = detail::read_initial(root);
   scene.integrator = detail::read_integrator(root, scene.system.kind);
+  scene.thermal = detail::read_thermal(root, scene.system.kind);
   scene.output = detail::read_output(root, scene.integrator.steps);
   if (scene.units.si) detail::convert_to_reduced(root);
   check_combination(scene);

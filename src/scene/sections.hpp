@@ -18,6 +18,9 @@ Lattice read_lattice(Table const& root, SystemKind kind);
 Field read_field(Table const& root, SystemKind kind);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
+std::optional<Thermal> read_thermal(Table const& root, SystemKind kind);
+/// Refuses what does not go with a temperature above 0.
+void check_thermal(Scene const& scene);
 Output read_output(Table const& root, std::int64_t steps);
 
 /// Puts "key.path=VALUE" into the table. Missing tables are created; a whole number in the path is

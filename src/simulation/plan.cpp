@@ -5,6 +5,7 @@
 #include "failure.hpp"
 #include "ranks.hpp"
 #include "text.hpp"
+#include "thermal.hpp"
 
 #include <cayspin/detail/exact_sum.hpp>
 #include <cayspin/detail/row_layout.hpp>
@@ -158,6 +159,16 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
             {},
             0,
             0};
+  if (is_thermal(scene)) {
+    if (plan.variant.remembers)
+      throw io::scene_error(scene, "integrator.method",
+                            "remembers steps, between which the noise of a temperature turns the "
+                            "spins; accepted: a one-step method, such as \"heun\", \"rkmk4\", "
+                            "\"red_black2\"");
+    // Of each component in half a step; two of three move the spin.
+    double const variance = scene.system.damping * scene.thermal->temperature * integrator.dt;
+    plan.noise_turn = 2 * std::sqrt(variance);
+  }
   if (integrator.tolerance) {
     plan.options.steps = {*integrator.tolerance, 0, integrator.min_dt, integrator.max_dt,
                           plan.times.at(integrator.steps)};
@@ -198,6 +209,9 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
   if (!(plan.turn <= most))
     return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,
                        plan.turn);
+  if (plan.noise_turn > Plan::most_noise)
+    return fmt::format("{} lets noise turn spins by {:.3g} radians a step, too many to follow",
+                       text, plan.noise_turn);
   return std::nullopt;
 }
 

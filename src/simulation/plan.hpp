@@ -35,6 +35,9 @@ struct Plan {
   Memory memory;
   std::int64_t frames;
   std::int64_t file_bytes;
+  double noise_turn = 0;  // root mean square of the angle by which noise turns a spin in a step
+
+  static constexpr double most_noise = 0.5;  // radians a step
 };
 
 /// Throws io::SceneError, among others for a lattice that cannot be.

@@ -3,8 +3,10 @@
 
 #include "guard.hpp"
 #include "interrupt_poll.hpp"
+#include "run_noise.hpp"
 #include "run_state.hpp"
 #include "scene_run.hpp"
+#include "thermal.hpp"
 
 #include <cayspin/evaluate.hpp>
 #include <cayspin/observer/energy_control.hpp>
@@ -33,6 +35,7 @@ class SceneRunInSpace final
         guard_(scene, epsilon) {
     if (on_host) threads_ = simulation_.exec.concurrency();
     if (scene.integrator.energy_control) control_.emplace(simulation_.generator, simulation_.spins);
+    if (is_thermal(scene)) noise_.emplace(scene, simulation_.spins);
     if (scene.integrator.until_torque) torque_.emplace(simulation_.generator.precession_alone());
   }
 
@@ -50,6 +53,7 @@ class SceneRunInSpace final
     simulation_.times = {0, plan_.times.dt, target, number_, continues_};
     // What throws may have left the method's memory within a step.
     continues_ = false;
+    if (noise_) noise_->take_seconds();
     Ending ending;
     try {
       ending = simulation_.advance(*method_, *this);
@@ -65,7 +69,7 @@ class SceneRunInSpace final
     evaluations_ += ending.summary.evaluations;
     own_steps_ += ending.summary.own_steps;
     rejected_ += ending.summary.rejected;
-    step_seconds_ += ending.summary.step_seconds;
+    step_seconds_ += ending.summary.step_seconds + (noise_ ? noise_->take_seconds() : 0);
     if (failure_) throw NumbersFailed(scene_.path.string() + ": " + *failure_);
     continues_ = true;
     return ended_;
@@ -74,9 +78,16 @@ class SceneRunInSpace final
   // RunObserver
   bool due(Step const& step) const override {
     seen_ = step.number;
-    return control_ || step.number >= next_look_ || (*interrupt_)();
+    return control_ || noise_ || step.number >= next_look_ || (*interrupt_)();
   }
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    auto const looks = [&] { return between_steps(exec, step, spins); };
+    if (!noise_) return looks();
+    bool const wanted = step.number >= next_look_ || (*interrupt_)();
+    return (*noise_)(exec, step, simulation_.times.first, spins, wanted, looks);
+  }
+
+  Next between_steps(Space const& exec, Step const& step, Spins const& spins) {
     if (step.number >= next_look_ && judge(exec, step, spins) == Next::stop) return Next::stop;
     if (step.last) return Next::proceed;
     if ((*interrupt_)()) {
@@ -135,6 +146,7 @@ class SceneRunInSpace final
     looked_ = -1;
     next_look_ = number_;
     if (control_) control_->reset();
+    if (noise_) noise_->reset();
   }
 
   void exchange(Checkpoint& checkpoint) override {
@@ -197,6 +209,7 @@ class SceneRunInSpace final
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
+  std::optional<RunNoise<Spins>> noise_;
   std::optional<SceneGenerator<Spins>> torque_;
   std::vector<std::pair<std::string, SceneGenerator<Spins>>> terms_;
   std::shared_ptr<Spins> lent_;

@@ -19,90 +19,133 @@ namespace cayspin {
 
 namespace detail {
 
-/// m <- exp(v) m. The components of v are sqrt(3) s, 0 or -sqrt(3) s with the probabilities 1/6,
-/// 2/3 and 1/6: the moments of normal numbers of deviation s up to the fifth, which is all that a
-/// step of weak order 2 knows of them (Kloeden and Platen 1992, Sec. 14.2). So |v| has four values.
+/// m <- exp(v) m. With a probability of 2/5 v is 0, otherwise sqrt(5) s times one of the twelve
+/// corners of the icosahedron. These have the moments of normal numbers of deviation s up to the
+/// fifth, which is all that a step of weak order 2 knows of them (Kloeden and Platen 1992,
+/// Sec. 14.2): the corners are a spherical design of strength 5 (Delsarte, Goethals and Seidel
+/// 1977).
 template <class Real>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
   std::uint64_t seed, draw;
-  bool after, before;                         // which halves
-  std::int64_t first_y, first_z, nx, ny, nz;  // of the part in the whole lattice, and that
-  // The quaternion of exp(v) is cosine[n] + sine[n] e, with e = v / (sqrt(3) s) and n = e.e.
-  Real cosine[4], sine[4];
+  bool after, before;                             // which halves
+  std::int64_t first_y, first_z, blocks, ny, nz;  // of the part in the whole lattice, and that
+  // The quaternion of exp(v) is cosine + w, with +-small, +-large and 0 for the components of w.
+  Real cosine, small, large;
+
+  // A counter has a word for each of four sites, eight counters those of a block.
+  static constexpr std::int64_t counters = 8, block = 4 * counters;
 
   /// s^2: the variance of each component.
   void set_variance(double variance) {
-    for (int n = 0; n < 4; ++n) {
-      double const half_angle = std::sqrt(3 * variance * n) / 2;
-      cosine[n] = static_cast<Real>(std::cos(half_angle));
-      sine[n] = static_cast<Real>(n == 0 ? 0 : std::sin(half_angle) / std::sqrt(n));
-    }
+    double const half_angle = std::sqrt(5 * variance) / 2, golden = (1 + std::sqrt(5.0)) / 2;
+    double const radius = std::hypot(1, golden);
+    cosine = static_cast<Real>(std::cos(half_angle));
+    small = static_cast<Real>(std::sin(half_angle) / radius);
+    large = static_cast<Real>(std::sin(half_angle) * golden / radius);
   }
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
-    auto const number = static_cast<std::uint64_t>((z * ny + y) * nx + site.x());
-    constexpr int lanes = lanes_of<Value>;
-    Real signs[2][3][std::size_t{lanes}];
-    for (int lane = 0; lane < lanes; lane += group<lanes>)
-      draw_signs<group<lanes>>(number + static_cast<std::uint64_t>(lane), lane, signs);
+    auto const of_block = static_cast<std::uint64_t>(((z * ny + y) * blocks + site.x() / block) *
+                                                     counters);
+    auto const random = Turns<lanes_of<Value>>(words(of_block, site));
     Vec3<Value> m = site.load(spins);
-    if (after) m = turned(signs[0], m);
-    if (before) m = turned(signs[1], m);
+    if (after) {
+      // The quaternion's own round-off is the same in each step: left alone, lengths would drift.
+      m = turned(random, 0, m);
+      m = (Value(Real(1.5)) - Value(Real(0.5)) * dot(m, m)) * m;
+    }
+    if (before) m = turned(random, 1, m);
     site.store(m, output);
   }
 
  private:
-  // As many counters as fit a register of the processors that there are.
+  using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
+
+  /// Random numbers of sites side by side. 28 bits of a word are two digits to the base 5, which
+  /// say what is 0; the others are signs.
   template <int Lanes>
-  static constexpr int group = Lanes < 8 ? Lanes : 8;
+  struct Turns {
+    using Numbers = typename LanesOf<Bits, Lanes>::type;
+    Numbers signs[2], zero[2];
 
-  /// -1, 0 or 1 for each half, component and lane: two digits to the base 6 of each random word.
-  template <int Count, std::size_t Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION void draw_signs(std::uint64_t number, int first,
-                                              Real (&signs)[2][3][Lanes]) const {
-    constexpr std::uint64_t low_half = 0xFFFFFFFF;
-    Philox<Count> random(number, draw);
-    random.encrypt(seed);
-    for (int c = 0; c < 3; ++c) {
-      auto const digit = random.word[c] * 6, next = (digit & low_half) * 6;
-      keep_signs<Count>(digit >> 32, signs[0][c] + first);
-      keep_signs<Count>(next >> 32, signs[1][c] + first);
+    KOKKOS_FORCEINLINE_FUNCTION explicit Turns(Numbers const& words)
+        : signs{words, words >> 2} {
+      constexpr Bits fraction = (Bits{1} << 28) - 1;
+      Numbers const number = words >> 4, first = number + (number << 2);
+      Numbers const rest = first & fraction, second = rest + (rest << 2);
+      zero[0] = first >> 28;
+      zero[1] = second >> 28;
     }
-  }
-  template <int Count, class Words>
-  KOKKOS_FORCEINLINE_FUNCTION static void keep_signs(Words const& digits, Real* signs) {
-    if constexpr (Count == 1) {
-      *signs = digits == 0 ? Real(-1) : digits == 5 ? Real(1) : Real(0);
+  };
+
+  /// The words of this site and those beside it.
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION auto words(std::uint64_t of_block, Site const& site) const {
+    constexpr int lanes = lanes_of<typename Site::value_type>;
+    auto const x = static_cast<std::uint64_t>(site.x() % block);
+    if constexpr (lanes == 1) {
+      Philox<1> random(of_block + x % counters, draw);
+      random.encrypt(seed);
+      auto const pair = x < 2 * counters ? 0 : 2;
+      return static_cast<Bits>(x / counters % 2 == 0 ? random.word[pair] : random.word[pair + 1]);
     } else {
-      using Doubles = typename LanesOf<double, Count>::type;
-      Doubles const none{}, up = none + 1.0;
-      Doubles const found = digits == 0 ? -up : (digits == 5 ? up : none);
-      auto const rounded = __builtin_convertvector(found, typename LanesOf<Real, Count>::type);
-      std::memcpy(signs, &rounded, sizeof rounded);
+      if (block_drawn != of_block) draw_block(of_block);
+      typename LanesOf<std::uint32_t, lanes>::type found;
+      std::memcpy(&found, drawn + x, sizeof found);
+      return __builtin_convertvector(found, typename LanesOf<Bits, lanes>::type);
     }
   }
+  KOKKOS_FORCEINLINE_FUNCTION void draw_block(std::uint64_t of_block) const {
+    Philox<counters> random(of_block, draw);
+    random.encrypt(seed);
+    for (int k = 0; k < 4; ++k) {
+      auto const narrow =
+          __builtin_convertvector(random.word[k], typename LanesOf<std::uint32_t, counters>::type);
+      std::memcpy(drawn + k * counters, &narrow, sizeof narrow);
+    }
+    block_drawn = of_block;
+  }
 
-  template <class Value, std::size_t Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Real const (&signs)[3][Lanes],
+  template <class Value, int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Turns<Lanes> const& random, int half,
                                                  Vec3<Value> const& m) const {
-    Vec3<Value> const e{load<Value>(signs[0]), load<Value>(signs[1]), load<Value>(signs[2])};
-    Value const n = dot(e, e);
-    Vec3<Value> const w = of_four(sine, n) * e, c = cross(w, m);
-    return multiply_add(Value(2), multiply_add(of_four(cosine, n), c, cross(w, c)), m);
+    constexpr int top = 8 * sizeof(Bits) - 1;
+    constexpr Bits sign = Bits{1} << top;
+    auto const of_small = Kokkos::bit_cast<Bits>(small) | (random.signs[half] << top);
+    auto const of_large =
+        Kokkos::bit_cast<Bits>(large) | ((random.signs[half] << (top - 1)) & sign);
+    auto const &zero = random.zero[half];
+    auto const x_zero = mask(zero == 0), y_zero = mask(zero == 1), z_zero = mask(zero == 2);
+    Vec3<Value> const w{value<Value>((y_zero & of_large) | (z_zero & of_small)),
+                        value<Value>((z_zero & of_large) | (x_zero & of_small)),
+                        value<Value>((x_zero & of_large) | (y_zero & of_small))};
+    Vec3<Value> const c = cross(w, m);
+    return multiply_add(Value(2), multiply_add(Value(cosine), c, cross(w, c)), m);
   }
 
-  /// The entry of a table for n = 0, 1, 2 or 3.
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Value of_four(Real const (&table)[4], Value const& n) {
-    Value const low = select<Value>(n < Value(Real(0.5)), Value(table[0]), Value(table[1]));
-    Value const high = select<Value>(n < Value(Real(2.5)), Value(table[2]), Value(table[3]));
-    return select<Value>(n < Value(Real(1.5)), low, high);
+  // All bits where a condition holds.
+  KOKKOS_FORCEINLINE_FUNCTION static Bits mask(bool condition) {
+    return condition ? ~Bits{0} : Bits{0};
   }
+  template <class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION static auto mask(Numbers const& conditions) {
+    return conditions;
+  }
+  template <class Value, class Numbers>
+  KOKKOS_FORCEINLINE_FUNCTION static Value value(Numbers const& bits) {
+    Real numbers[std::size_t{lanes_of<Value>}];
+    std::memcpy(numbers, &bits, sizeof numbers);
+    return load<Value>(numbers);
+  }
+
+  // Of the block drawn last: packs of a row follow one another. Not used on devices.
+  mutable std::uint64_t block_drawn = ~std::uint64_t{0};
+  mutable std::uint32_t drawn[block] = {};
 };
 
 }  // namespace detail
@@ -151,6 +194,14 @@ class ThermalNoise {
     turn_between(exec, after ? step : step - 1, after, !after, dt, spins);
   }
 
+  /// The noise after step number `step` and before the next one, in one pass: the bits of two calls
+  /// of turn. Throws as turn does.
+  template <class Exec>
+  void turn_between_steps(Exec const& exec, std::int64_t step, double dt,
+                          Spins const& spins) const {
+    turn_between(exec, step, true, true, dt, spins);
+  }
+
   /// An observer: the second half of each step. The first among the observers, so that the others
   /// see the spins as they are after it.
   auto after_steps(Times const& times) const {
@@ -186,7 +237,7 @@ class ThermalNoise {
     kernel.before = before;
     kernel.first_y = begin[1];
     kernel.first_z = begin[2];
-    kernel.nx = all.shape[0];
+    kernel.blocks = (all.shape[0] + kernel.block - 1) / kernel.block;
     kernel.ny = all.shape[1];
     kernel.nz = all.shape[2];
     kernel.set_variance(u - u * u / 12);

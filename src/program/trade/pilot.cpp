@@ -63,6 +63,10 @@ Pilot::Pilot(io::Scene scene, std::string space)
   if (!(end() > 0))
     throw io::scene_error(scene_, "integrator.steps",
                           "a scene without steps has no errors; accepted: at least one step");
+  if (is_thermal(scene_))
+    throw io::scene_error(scene_, "thermal.temperature",
+                          "trajectories at a temperature are random: there is nothing to compare; "
+                          "accepted: temperature = 0");
 }
 
 double Pilot::end() const {
