@@ -14,8 +14,7 @@ std::optional<Thermal> read_thermal(Table const& root, SystemKind kind) {
   table.accept_only({"temperature", "seed"});
   Thermal thermal;
   thermal.temperature = non_negative_number(table.required("temperature", "a number >= 0"));
-  if (auto const seed = table.find("seed"))
-    thermal.seed = integer(*seed, 0, "a whole number >= 0");
+  if (auto const seed = table.find("seed")) thermal.seed = integer(*seed, 0, "a whole number >= 0");
   return thermal;
 }
 

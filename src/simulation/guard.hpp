@@ -14,8 +14,7 @@ namespace cayspin::simulation {
 
 inline bool energy_must_fall(io::Scene const& scene) {
   return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
-         !is_thermal(scene) &&
-         !io::depends_on_time(scene.field) && scene.integrator.energy_guard &&
+         !is_thermal(scene) && !io::depends_on_time(scene.field) && scene.integrator.energy_guard &&
          scene.integrator.method->keeps_length;
 }
 

@@ -18,9 +18,8 @@ template <class Spins>
 class RunNoise {
  public:
   RunNoise(io::Scene const& scene, Spins const& like)
-      : noise_(
-            like, scene.system.damping,
-            {scene.thermal->temperature, static_cast<std::uint64_t>(scene.thermal->seed)}) {}
+      : noise_(like, scene.system.damping,
+               {scene.thermal->temperature, static_cast<std::uint64_t>(scene.thermal->seed)}) {}
 
   /// After step `step` of a run that goes on from step `first`. Calls look() where that is
   /// `wanted`; the next step is begun unless look() says to stop, or it is the last.

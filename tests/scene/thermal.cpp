@@ -55,8 +55,8 @@ temperature = 300
 // kB T over the energy of a site: mu0 Ms^2 V of a cell, and of atoms J, K, D or mu_s times 1 T.
 TEST(ThermalScene, KelvinAreConvertedByTheEnergyOfASite) {
   Folder const folder;
-  auto const cell = read_text(folder, in_si("Ms = 8e5\nA = 1.3e-11"),
-                              {"lattice.spacing=[4e-9, 5e-9, 3e-9]"});
+  auto const cell =
+      read_text(folder, in_si("Ms = 8e5\nA = 1.3e-11"), {"lattice.spacing=[4e-9, 5e-9, 3e-9]"});
   double const energy = mu0 * 8e5 * 8e5 * 4e-9 * 5e-9 * 3e-9;
   EXPECT_NEAR(cell.thermal->temperature, boltzmann * 300 / energy, 1e-14);
   EXPECT_NEAR(cell.thermal->temperature * cell.units.energy / boltzmann, 300, 1e-10);
@@ -85,18 +85,20 @@ INSTANTIATE_TEST_SUITE_P(
                    ":33: thermal.temperature: ", "is a string"},
         WrongScene{"missing", "temperature = 0.5\n", "", ":32: thermal.temperature: ", "missing"},
         WrongScene{"seed", "seed = 3", "seed = -1", ":34: thermal.seed: ", "whole number >= 0"},
-        WrongScene{"broken_seed", "seed = 3", "seed = 0.5", ":34: thermal.seed: ",
-                   "whole number >= 0"},
+        WrongScene{"broken_seed", "seed = 3", "seed = 0.5",
+                   ":34: thermal.seed: ", "whole number >= 0"},
         WrongScene{"unknown", "seed = 3", "sed = 3", ":34: thermal.sed: ", "did you mean \"seed\""},
-        WrongScene{"no_damping", "damping = 0.05", "damping = 0", ":33: thermal.temperature: ",
-                   "needs damping"},
+        WrongScene{"no_damping", "damping = 0.05", "damping = 0",
+                   ":33: thermal.temperature: ", "needs damping"},
         WrongScene{"adaptive", "method = \"rkmk4\"", "method = \"tsit5\"\ntolerance = 1e-4",
                    ":22: integrator.method: ", "chooses its steps"},
-        WrongScene{"automatic", "method = \"rkmk4\"\ngenerator = \"default\"\nisotropy = "
+        WrongScene{"automatic",
+                   "method = \"rkmk4\"\ngenerator = \"default\"\nisotropy = "
                    "\"zero\"\nrotation = \"cayley\"",
-                   "method = \"auto\"\nerror = 1e-4", ":22: integrator.method: ",
-                   "chooses its steps"},
-        WrongScene{"drifting", "method = \"rkmk4\"\ngenerator = \"default\"\nisotropy = "
+                   "method = \"auto\"\nerror = 1e-4",
+                   ":22: integrator.method: ", "chooses its steps"},
+        WrongScene{"drifting",
+                   "method = \"rkmk4\"\ngenerator = \"default\"\nisotropy = "
                    "\"zero\"\nrotation = \"cayley\"",
                    "method = \"classical_rk4\"", ":22: integrator.method: ", "|m| = 1"},
         WrongScene{"compensated", "dt = 0.01", "dt = 0.01\ncompensated = true",

@@ -103,8 +103,8 @@ TYPED_TEST(Thermal, TurnsAreThoseOfTheIcosahedronsCorners) {
     double chi_square = 0;
     for (std::size_t a = 0; a < 13; ++a)
       for (std::size_t b = 0; b < 13; ++b) {
-        double const expected = static_cast<double>(sites) * (a == 0 ? 0.4 : 0.05) *
-                                (b == 0 ? 0.4 : 0.05);
+        double const expected =
+            static_cast<double>(sites) * (a == 0 ? 0.4 : 0.05) * (b == 0 ? 0.4 : 0.05);
         chi_square += std::pow(found[13 * a + b] - expected, 2) / expected;
       }
     EXPECT_NEAR(chi_square, 168, 5 * std::sqrt(2 * 168.0)) << apart;

@@ -50,8 +50,8 @@ struct TurnAtRandom {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
-    auto const of_block = static_cast<std::uint64_t>(((z * ny + y) * blocks + site.x() / block) *
-                                                     counters);
+    auto const of_block =
+        static_cast<std::uint64_t>(((z * ny + y) * blocks + site.x() / block) * counters);
     auto const random = Turns<lanes_of<Value>>(words(of_block, site));
     Vec3<Value> m = site.load(spins);
     if (after) {
@@ -73,8 +73,7 @@ struct TurnAtRandom {
     using Numbers = typename LanesOf<Bits, Lanes>::type;
     Numbers signs[2], zero[2];
 
-    KOKKOS_FORCEINLINE_FUNCTION explicit Turns(Numbers const& words)
-        : signs{words, words >> 2} {
+    KOKKOS_FORCEINLINE_FUNCTION explicit Turns(Numbers const& words) : signs{words, words >> 2} {
       constexpr Bits fraction = (Bits{1} << 28) - 1;
       Numbers const number = words >> 4, first = number + (number << 2);
       Numbers const rest = first & fraction, second = rest + (rest << 2);
@@ -119,7 +118,7 @@ struct TurnAtRandom {
     auto const of_small = Kokkos::bit_cast<Bits>(small) | (random.signs[half] << top);
     auto const of_large =
         Kokkos::bit_cast<Bits>(large) | ((random.signs[half] << (top - 1)) & sign);
-    auto const &zero = random.zero[half];
+    auto const& zero = random.zero[half];
     auto const x_zero = mask(zero == 0), y_zero = mask(zero == 1), z_zero = mask(zero == 2);
     Vec3<Value> const w{value<Value>((y_zero & of_large) | (z_zero & of_small)),
                         value<Value>((z_zero & of_large) | (x_zero & of_small)),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "pilot.hpp"
 
+#include "simulation/thermal.hpp"
+
 #include <Kokkos_Timer.hpp>
 
 #include <algorithm>

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// [thermal]: the same bits however a run is cut and watched, what `check` says, and Boltzmann's law
+// of atoms in kelvin. Seeds are fixed; statistical limits are five standard errors.
+#include "si_scene.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace cayspin::program::test {
+namespace {
+
+class Thermal : public SiScene {
+ protected:
+  static std::string warm_scene() {
+    return R"toml([system]
+kind = "llg"
+damping = 0.3
+[lattice]
+shape = [37, 4, 3]
+boundary = ["periodic", "periodic", "open"]
+[field]
+exchange = 1.0
+anisotropy = { constant = 0.5, axis = [1, 2, 3] }
+applied = ["0.3*cos(7*t)", 0.1, 0.2]
+[initial]
+random = { seed = 3 }
+[integrator]
+method = "heun"
+dt = 0.02
+steps = 25
+[thermal]
+temperature = 0.7
+seed = 12
+[output]
+every = 10
+)toml";
+  }
+
+  std::vector<double> end_of(std::string const& file, Arguments const& more) const {
+    Arguments all{"run", write("scene.toml", warm_scene()), "--quiet", "--overwrite", "--output",
+                  file};
+    all.insert(all.end(), more.begin(), more.end());
+    auto const outcome = start(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors, "");
+    return last_spins(file);
+  }
+
+  void expect_refused(Arguments arguments, std::string const& part) const {
+    arguments.insert(arguments.begin() + 1, write("scene.toml", warm_scene()));
+    auto const outcome = start(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, part));
+  }
+};
+
+TEST_F(Thermal, BitsDependOnSeedAndTemperatureAlone) {
+  for (std::string const precision : {"double", "single"}) {
+    auto const with = [&](Arguments more) {
+      more.insert(more.end(), {"--precision", precision});
+      return more;
+    };
+    auto const whole = end_of("whole.h5", with({}));
+    for (Arguments const& other : std::vector<Arguments>{
+             {"--threads", "1"},
+             {"--space", "openmp", "--threads", "2"},
+             {"--space", has_serial ? "serial" : "openmp"},
+             {"--set", "output.every=1"},
+             {"--set", "output.scalars_every=3"},
+             {"--set", "output.checkpoint_every='4 steps'"}})
+      EXPECT_EQ(end_of("other.h5", with(other)), whole) << other[1];
+    for (std::string const set : {"thermal.seed=13", "thermal.temperature=0.70001"})
+      EXPECT_NE(end_of("other.h5", with({"--set", set})), whole) << set;
+  }
+}
+
+TEST_F(Thermal, GoesOnAfterAnyStep) {
+  for (std::string const precision : {"double", "single"}) {
+    auto const whole = end_of("whole.h5", {"--precision", precision});
+    for (int const cut : {1, 2, 12, 24}) {
+      auto const at = "integrator.steps=" + std::to_string(cut);
+      end_of("first.h5", {"--precision", precision, "--set", at});
+      EXPECT_FALSE(std::filesystem::exists(in_folder("first.checkpoint.h5")));
+      EXPECT_EQ(end_of("second.h5", {"--precision", precision, "--restart", "first.h5"}), whole)
+          << cut;
+    }
+  }
+}
+
+TEST_F(Thermal, EveryOneStepMethodGoesAndKeepsLengths) {
+  for (std::string const method :
+       {"euler", "implicit_euler", "rkmk4", "rkmk64", "rkmk8", "cf4", "implicit_midpoint",
+        "projected_heun", "red_black2", "red_black4"}) {
+    end_of("out.h5", {"--set", "integrator.method='" + method + "'", "--set",
+                      "lattice.shape=[36,4,3]"});
+    auto const defects = read_dataset("out.h5", "/norm_defect").values;
+    EXPECT_LT(defects.back(), 1e-14) << method;
+  }
+}
+
+// At temperature 0 there is no pass of noise.
+TEST_F(Thermal, TemperatureZeroIsNoTemperature) {
+  EXPECT_EQ(end_of("zero.h5", {"--set", "thermal.temperature=0"}),
+            end_of("none.h5", {"--set", "thermal={temperature=0,seed=4}"}));
+  auto cold = warm_scene();
+  cold.erase(cold.find("[thermal]"), cold.find("[output]") - cold.find("[thermal]"));
+  write("scene.toml", cold);
+  auto const outcome = start({"run", in_folder("scene.toml"), "--quiet", "--output", "cold.h5"});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(last_spins("zero.h5"), last_spins("cold.h5"));
+}
+
+// From rest spins take up energy; that a number is not finite stops a run as ever.
+TEST_F(Thermal, TheGuardLetsEnergyRise) {
+  Arguments const from_rest{"--set", "initial={uniform=[0,0,1]}", "--set", "field={exchange=1.0}"};
+  end_of("out.h5", from_rest);
+  auto const energies = read_dataset("out.h5", "/energy").values;
+  EXPECT_GT(energies.back(), energies.front() + 10);
+  auto const outcome =
+      start({"run", write("scene.toml", warm_scene()), "--quiet", "--output", "failing.h5", "--set",
+             "integrator.dt=0.125", "--set", "integrator.steps=7", "--set",
+             "field.applied=[0,0,'1/(t-0.25)']"});
+  EXPECT_EQ(outcome.status, 3) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "the last good frame is "));
+}
+
+TEST_F(Thermal, IsCheckedAndDescribed) {
+  auto const scene = write("scene.toml", warm_scene());
+  auto outcome = start({"check", scene});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.output, "temperature 0.7, seed 12\n"));
+  EXPECT_TRUE(contains(outcome.output,
+                       "noise       damping x temperature x dt = 0.0042, turns a spin by 0.13 "
+                       "radians a step\n"));
+  outcome = start({"check", scene, "--json"});
+  auto const json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json["temperature"], 0.7);
+  EXPECT_NEAR(json["noise_turn"], 2 * std::sqrt(0.0042), 1e-15);
+  outcome = start({"check", scene, "--set", "thermal.temperature=70"});
+  EXPECT_TRUE(contains(outcome.output, "turns a spin by 1.3 radians a step, which is too large\n"));
+  outcome = start({"run", scene, "--quiet", "--output", "out.h5", "--set",
+                   "thermal.temperature=70"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "integrator.dt: 0.02 lets noise turn spins by 1.3 radians"));
+}
+
+TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
+  for (std::string const method : {"ab2", "fx3", "fx4"})
+    expect_refused({"check", "--set", "integrator.method='" + method + "'"},
+                   "integrator.method: remembers steps");
+  expect_refused({"check", "--set", "integrator.method='euler'", "--set",
+                  "integrator.isotropy='finite_difference_backward'"},
+                 "integrator.method: remembers steps");
+  expect_refused({"trade"}, "thermal.temperature: trajectories at a temperature are random");
+  expect_refused({"advise", "--error", "1e-4"}, "thermal.temperature: trajectories");
+}
+
+// m_z of atoms in a field B: Langevin's function of mu_s B / (kB T), here 2. Then an anisotropy K
+// alone: <m_z^2> over Boltzmann's weights exp(K m_z^2 / (kB T)). Gilbert's damping and Landau's and
+// Lifshitz's differ in time, not in the law.
+TEST_F(Thermal, AtomsInKelvinFollowBoltzmann) {
+  double const kelvin = 5, moment = 2 * units::bohr_magneton;
+  double const tesla = 2 * units::boltzmann * kelvin / moment;
+  double const K = 3 * units::boltzmann * kelvin;
+  auto const scene = [&](std::string const& form, std::string const& material,
+                         std::string const& field) {
+    return text("units = \"SI\"\n[material]\nmu_s = { bohr_magnetons = 2.0 }\nalpha = 1\n"
+                "damping_form = \"",
+                form, "\"\n", material, "\n[system]\nkind = \"llg\"\n[lattice]\nshape = [128, 128]",
+                "\nspacing = 3e-10\n[field]\n", field,
+                "\n[initial]\nrandom = { seed = 5 }\n[integrator]\nmethod = \"heun\"\n"
+                "dt = 2e-14\nend = 2e-11\n[thermal]\ntemperature = ",
+                kelvin, "\n[output]\nfile = \"out.h5\"\n");
+  };
+  constexpr double sites = 128 * 128;
+  for (std::string const form : {"gilbert", "landau_lifshitz"}) {
+    auto outcome = start({"run", write("scene.toml", scene(form, "", text("applied = [0, 0, ", tesla, "]"))),
+                          "--quiet", "--overwrite"});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    double const x = 2, langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
+    EXPECT_NEAR(read_dataset("out.h5", "/magnetization").values.back(), langevin,
+                5 * std::sqrt((square - langevin * langevin) / sites) + 1e-3);
+
+    outcome = start({"run", write("scene.toml", scene(form, text("K = ", K, "\naxis = [0, 0, 1]"), "")),
+                     "--quiet", "--overwrite"});
+    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    double weights = 0, squares = 0, fourths = 0;
+    for (int i = 0; i < 1000; ++i) {
+      double const z = (i + 0.5) / 1000, weight = std::exp(3 * z * z);
+      weights += weight;
+      squares += weight * z * z;
+      fourths += weight * z * z * z * z;
+    }
+    double const expected = squares / weights;
+    auto const spins = last_spins("out.h5");
+    double found = 0;
+    for (std::size_t i = 2; i < spins.size(); i += 3) found += spins[i] * spins[i] / sites;
+    EXPECT_NEAR(found, expected,
+                5 * std::sqrt((fourths / weights - expected * expected) / sites) + 1e-3);
+  }
+}
+
+// A film of cells: the bits of the same in reduced units, kelvin by the energy of a cell.
+TEST_F(Thermal, KelvinAreTheReducedTemperatureOfTheScene) {
+  auto const u = units();
+  auto const in_si = film("method = \"heun\"\ndt = 1e-14\nsteps = 40", "[0, 0, 0]") +
+                     "[thermal]\ntemperature = 300\nseed = 2\n";
+  auto const reduced =
+      reduced_film(text("method = \"heun\"\ndt = ", u.time(1e-14), "\nsteps = 40"), "[0, 0, 0]") +
+      text("[thermal]\nseed = 2\ntemperature = ", u.temperature(300), "\n");
+  for (auto const& scene : {in_si, reduced}) {
+    auto const outcome = start({"run", write("scene.toml", scene), "--quiet"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  }
+  EXPECT_LT(distance(last_spins("si.h5"), last_spins("reduced.h5")), 1e-11);
+  auto const outcome = start({"check", write("scene.toml", in_si)});
+  EXPECT_TRUE(contains(outcome.output, "temperature 300 K (0.08583"));
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Runs at a temperature have the same bits on any space, in pieces, however they are looked at, and
+// after a restart, by every one-step method.
+#include "random_run.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/scene_run.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <vector>
+
+namespace cayspin::simulation::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::int64_t setting(char const* name, std::int64_t usual) {
+  char const* const asked = std::getenv(name);
+  return asked ? std::atoll(asked) : usual;
+}
+
+#if defined(CAYSPIN_WITHOUT_SERIAL)
+std::string const spaces[] = {"openmp", "openmp"};
+#else
+std::string const spaces[] = {"serial", "openmp"};
+#endif
+
+class ThermalRuns : public testing::Test {
+ protected:
+  ThermalRuns() { fs::create_directories(folder_); }
+  ~ThermalRuns() override { fs::remove_all(folder_); }
+
+  static std::vector<double> spins_of(SceneRun& run) { return packed<double>(run.spins().vectors); }
+
+  /// The same run in other ways. False when the scene has no meaning.
+  bool holds(std::string const& text, Precision precision, RandomRun& random) const {
+    std::optional<io::Scene> scene;
+    std::unique_ptr<SceneRun> whole;
+    auto const steps = RandomRun::steps, cut = 1 + random.below(steps - 1);
+    auto const first_space = random.below(2);
+    auto const open = [&](std::int64_t space, std::optional<fs::path> const& restart = {}) {
+      return SceneRun::open(
+          *scene, {.precision = precision, .space = spaces[space], .restart = restart});
+    };
+    try {
+      scene = io::parse_scene(text, "scene.toml");
+      whole = open(first_space);
+      whole->advance(steps, {.period = steps});
+    } catch (io::SceneError const&) {
+      return false;
+    } catch (NumbersFailed const&) {
+      return false;
+    }
+    SCOPED_TRACE(text + std::string(to_string(precision)) + " precision, cut after " +
+                 std::to_string(cut));
+    auto const expected = spins_of(*whole);
+
+    auto const cut_run = open(1 - first_space);
+    cut_run->advance(cut, {.period = 1 + random.below(7)});
+    cut_run->save(file_);
+    auto const restarted = open(first_space, file_);
+    EXPECT_EQ(restarted->steps(), cut);
+    for (auto const* const run : {&cut_run, &restarted}) {
+      (*run)->advance(steps - cut, {.period = 1 + random.below(7)});
+      EXPECT_EQ(spins_of(**run), expected);
+    }
+    auto const one_by_one = open(first_space);
+    for (std::int64_t step = 0; step < steps; ++step) one_by_one->advance(1);
+    EXPECT_EQ(spins_of(*one_by_one), expected);
+    EXPECT_LT(one_by_one->sample().norm_defect,
+              precision == Precision::double_precision ? 1e-13 : 1e-4);
+    return true;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("thermal_{}", ::getpid());
+  fs::path file_ = folder_ / "run.checkpoint.h5";
+};
+
+TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
+  auto const wanted = setting("CAYSPIN_THERMAL_SCENES", 40);
+  auto const seed = static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1));
+  std::int64_t scenes = 0;
+  std::set<std::string_view> methods;
+  for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
+    RandomRun random(seed, draw);
+    auto const& variant = variants()[(7 * static_cast<std::size_t>(draw)) % variants().size()];
+    auto const text = random.scene(variant) +
+                      fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
+                                  random.one_in(2) ? 0.6 : 0.05, random.below(1000));
+    auto const precision =
+        random.one_in(2) ? Precision::single_precision : Precision::double_precision;
+    if (!holds(text, precision, random)) continue;
+    ++scenes;
+    methods.insert(variant.method->word);
+  }
+  std::printf("    %lld scenes of %zu methods\n", static_cast<long long>(scenes), methods.size());
+  EXPECT_EQ(scenes, wanted);
+  EXPECT_GE(methods.size(), 12U);
+}
+
+// A program's field that throws once: the step is taken again, with the noise that it had.
+TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
+  constexpr std::string_view text = R"(
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [9]
+[field]
+exchange = 1.0
+[initial]
+random = { seed = 4 }
+[integrator]
+method = "heun"
+dt = 0.02
+steps = 40
+[thermal]
+temperature = 0.5
+)";
+  auto const run_of = [&](int failing_call) {
+    auto scene = io::parse_scene(std::string(text), "scene.toml");
+    auto const calls_left = std::make_shared<int>(-1);
+    scene.field.own.uniform = [calls_left](double) {
+      if ((*calls_left)-- == 0) throw std::runtime_error("once");
+      return std::array<double, 3>{0.1, 0.2, 0.3};
+    };
+    auto run = SceneRun::open(scene, {});
+    *calls_left = failing_call;
+    return run;
+  };
+  auto const whole = run_of(-1);
+  whole->advance(9);
+  for (int const failing_call : {3, 6, 9}) {
+    auto const run = run_of(failing_call);
+    while (run->steps() < 9) {
+      try {
+        run->advance(9 - run->steps(), {.period = 1000});
+      } catch (std::runtime_error const& error) {
+        EXPECT_STREQ(error.what(), "once");
+      }
+    }
+    EXPECT_EQ(spins_of(*run), spins_of(*whole)) << failing_call;
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::simulation::test
