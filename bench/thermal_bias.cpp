@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What steps of length dt add to averages at a temperature: cayspin's noise around its steps beside
-// three schemes of other programs, written here anew. One line per scheme, damping and dt: the
+// three schemes of other programs, written here again. One line per scheme, damping and dt: the
 // error of <m_z> in a field of 2 T (Langevin), of <m_z^2> of a uniaxial spin with K = 3 T, and of
 // <m.m'> of neighbours on a chain with J = 3 T (Fisher 1964), each with its standard error.
 //   bench_thermal_bias [sites] [time]
@@ -175,7 +175,8 @@ Estimate theirs(Run const& run) {
   double const lambda = run.damping;
   double const deviation =
       std::sqrt(2 * lambda * System::temperature / (1 + lambda * lambda) / run.dt);
-  Vectors m(sites, {0, 0, 1}), noise(sites), first(sites), guess(sites), between(sites), next(sites);
+  Vectors m(sites, {0, 0, 1}), noise(sites), first(sites), guess(sites), between(sites),
+      next(sites);
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal(0, deviation);
   auto const rate = [&](Vectors const& of, std::size_t i) {

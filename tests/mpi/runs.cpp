@@ -242,6 +242,33 @@ TEST_F(OnRanks, GoOnFromFilesOfOtherRanks) {
   }
 }
 
+// The noise of a site is that of its place in the whole lattice, also where a run goes on.
+TEST_F(OnRanks, HaveTheNoiseOfOneRank) {
+  auto const scene = write("scene.toml", film("[35, 8, 13]", "method = \"rkmk4\""));
+  for (auto const& [method, precision] : {std::pair{"heun", "single"}, std::pair{"rkmk4", "double"},
+                                          std::pair{"red_black2", "double"}}) {
+    SCOPED_TRACE(method);
+    Arguments const same{"--precision", precision,
+                         "--set",       "thermal={temperature=0.5,seed=3}",
+                         "--set",       fmt::format("integrator.method='{}'", method)};
+    auto const with = [&](Arguments more) {
+      more.insert(more.end(), same.begin(), same.end());
+      return more;
+    };
+    ASSERT_EQ(start(run_of(scene, "one.h5", same)).status, 0);
+    for (auto const& [ranks, cut] :
+         {std::pair{2, "2,1"}, std::pair{3, "1,3"}, std::pair{4, "2,2"}}) {
+      auto const outcome = start_on(ranks, run_of(scene, "many.h5", with({"--ranks", cut})));
+      ASSERT_EQ(outcome.status, 0) << outcome.errors;
+      expect_same("one.h5", "many.h5");
+    }
+    ASSERT_EQ(start_on(3, run_of(scene, "begin.h5", with({"--set", "integrator.steps=13"}))).status,
+              0);
+    ASSERT_EQ(start_on(2, run_of(scene, "end.h5", with({"--restart", "begin.h5"}))).status, 0);
+    EXPECT_EQ(last_spins("end.h5"), last_spins("one.h5"));
+  }
+}
+
 TEST_F(OnRanks, AreRefusedInOneLine) {
   auto const scene = write("scene.toml", film("[7, 9, 13]", "method = \"rkmk4\""));
   auto const refused = [&](Arguments const& more, std::string const& part) {

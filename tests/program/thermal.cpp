@@ -63,13 +63,13 @@ TEST_F(Thermal, BitsDependOnSeedAndTemperatureAlone) {
       return more;
     };
     auto const whole = end_of("whole.h5", with({}));
-    for (Arguments const& other : std::vector<Arguments>{
-             {"--threads", "1"},
-             {"--space", "openmp", "--threads", "2"},
-             {"--space", has_serial ? "serial" : "openmp"},
-             {"--set", "output.every=1"},
-             {"--set", "output.scalars_every=3"},
-             {"--set", "output.checkpoint_every='4 steps'"}})
+    for (Arguments const& other :
+         std::vector<Arguments>{{"--threads", "1"},
+                                {"--space", "openmp", "--threads", "2"},
+                                {"--space", has_serial ? "serial" : "openmp"},
+                                {"--set", "output.every=1"},
+                                {"--set", "output.scalars_every=3"},
+                                {"--set", "output.checkpoint_every='4 steps'"}})
       EXPECT_EQ(end_of("other.h5", with(other)), whole) << other[1];
     for (std::string const set : {"thermal.seed=13", "thermal.temperature=0.70001"})
       EXPECT_NE(end_of("other.h5", with({"--set", set})), whole) << set;
@@ -93,8 +93,8 @@ TEST_F(Thermal, EveryOneStepMethodGoesAndKeepsLengths) {
   for (std::string const method :
        {"euler", "implicit_euler", "rkmk4", "rkmk64", "rkmk8", "cf4", "implicit_midpoint",
         "projected_heun", "red_black2", "red_black4"}) {
-    end_of("out.h5", {"--set", "integrator.method='" + method + "'", "--set",
-                      "lattice.shape=[36,4,3]"});
+    end_of("out.h5",
+           {"--set", "integrator.method='" + method + "'", "--set", "lattice.shape=[36,4,3]"});
     auto const defects = read_dataset("out.h5", "/norm_defect").values;
     EXPECT_LT(defects.back(), 1e-14) << method;
   }
@@ -118,10 +118,9 @@ TEST_F(Thermal, TheGuardLetsEnergyRise) {
   end_of("out.h5", from_rest);
   auto const energies = read_dataset("out.h5", "/energy").values;
   EXPECT_GT(energies.back(), energies.front() + 10);
-  auto const outcome =
-      start({"run", write("scene.toml", warm_scene()), "--quiet", "--output", "failing.h5", "--set",
-             "integrator.dt=0.125", "--set", "integrator.steps=7", "--set",
-             "field.applied=[0,0,'1/(t-0.25)']"});
+  auto const outcome = start({"run", write("scene.toml", warm_scene()), "--quiet", "--output",
+                              "failing.h5", "--set", "integrator.dt=0.125", "--set",
+                              "integrator.steps=7", "--set", "field.applied=[0,0,'1/(t-0.25)']"});
   EXPECT_EQ(outcome.status, 3) << outcome.errors;
   EXPECT_TRUE(contains(outcome.errors, "the last good frame is "));
 }
@@ -140,8 +139,8 @@ TEST_F(Thermal, IsCheckedAndDescribed) {
   EXPECT_NEAR(json["noise_turn"], 2 * std::sqrt(0.0042), 1e-15);
   outcome = start({"check", scene, "--set", "thermal.temperature=70"});
   EXPECT_TRUE(contains(outcome.output, "turns a spin by 1.3 radians a step, which is too large\n"));
-  outcome = start({"run", scene, "--quiet", "--output", "out.h5", "--set",
-                   "thermal.temperature=70"});
+  outcome =
+      start({"run", scene, "--quiet", "--output", "out.h5", "--set", "thermal.temperature=70"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
   EXPECT_TRUE(contains(outcome.errors, "integrator.dt: 0.02 lets noise turn spins by 1.3 radians"));
@@ -167,25 +166,28 @@ TEST_F(Thermal, AtomsInKelvinFollowBoltzmann) {
   double const K = 3 * units::boltzmann * kelvin;
   auto const scene = [&](std::string const& form, std::string const& material,
                          std::string const& field) {
-    return text("units = \"SI\"\n[material]\nmu_s = { bohr_magnetons = 2.0 }\nalpha = 1\n"
-                "damping_form = \"",
-                form, "\"\n", material, "\n[system]\nkind = \"llg\"\n[lattice]\nshape = [128, 128]",
-                "\nspacing = 3e-10\n[field]\n", field,
-                "\n[initial]\nrandom = { seed = 5 }\n[integrator]\nmethod = \"heun\"\n"
-                "dt = 2e-14\nend = 2e-11\n[thermal]\ntemperature = ",
-                kelvin, "\n[output]\nfile = \"out.h5\"\n");
+    return text(
+        "units = \"SI\"\n[material]\nmu_s = { bohr_magnetons = 2.0 }\nalpha = 1\n"
+        "damping_form = \"",
+        form, "\"\n", material, "\n[system]\nkind = \"llg\"\n[lattice]\nshape = [128, 128]",
+        "\nspacing = 3e-10\n[field]\n", field,
+        "\n[initial]\nrandom = { seed = 5 }\n[integrator]\nmethod = \"heun\"\n"
+        "dt = 2e-14\nend = 2e-11\n[thermal]\ntemperature = ",
+        kelvin, "\n[output]\nfile = \"out.h5\"\n");
   };
   constexpr double sites = 128 * 128;
   for (std::string const form : {"gilbert", "landau_lifshitz"}) {
-    auto outcome = start({"run", write("scene.toml", scene(form, "", text("applied = [0, 0, ", tesla, "]"))),
-                          "--quiet", "--overwrite"});
+    auto outcome =
+        start({"run", write("scene.toml", scene(form, "", text("applied = [0, 0, ", tesla, "]"))),
+               "--quiet", "--overwrite"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     double const x = 2, langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
     EXPECT_NEAR(read_dataset("out.h5", "/magnetization").values.back(), langevin,
                 5 * std::sqrt((square - langevin * langevin) / sites) + 1e-3);
 
-    outcome = start({"run", write("scene.toml", scene(form, text("K = ", K, "\naxis = [0, 0, 1]"), "")),
-                     "--quiet", "--overwrite"});
+    outcome =
+        start({"run", write("scene.toml", scene(form, text("K = ", K, "\naxis = [0, 0, 1]"), "")),
+               "--quiet", "--overwrite"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
     double weights = 0, squares = 0, fourths = 0;
     for (int i = 0; i < 1000; ++i) {

@@ -51,6 +51,21 @@ class Bits(PackageTest):
         with self.assertRaisesRegex(cayspin.CayspinError, "missing.h5"):
             cayspin.Simulation(of, restart="missing.h5")
 
+    def test_noise_of_a_temperature(self):
+        for precision in ("double", "single"):
+            of = scene(thermal={"temperature": 0.4, "seed": 5})
+            whole, pieces = (cayspin.Simulation(of, precision) for _ in range(2))
+            whole.step(40)
+            for steps in (1, 2, 7, 30):
+                pieces.step(steps)
+                pieces.energy()
+            ran = self.run_program(of, "--precision", precision)["spins"][-1]
+            np.testing.assert_array_equal(whole.spins, ran)
+            np.testing.assert_array_equal(pieces.spins, ran)
+            other = cayspin.Simulation(scene(thermal={"temperature": 0.4, "seed": 6}), precision)
+            other.step(40)
+            self.assertGreater(np.abs(other.spins - ran).max(), 0.1)
+
     def test_run_leaves_a_checkpoint(self):
         of = scene(integrator={"method": "ab2"}, output={"checkpoint_every": "7 steps"})
         whole, first = cayspin.Simulation(of), cayspin.Simulation(of)

@@ -44,8 +44,8 @@ class ThermalRuns : public testing::Test {
     auto const steps = RandomRun::steps, cut = 1 + random.below(steps - 1);
     auto const first_space = random.below(2);
     auto const open = [&](std::int64_t space, std::optional<fs::path> const& restart = {}) {
-      return SceneRun::open(
-          *scene, {.precision = precision, .space = spaces[space], .restart = restart});
+      return SceneRun::open(*scene,
+                            {.precision = precision, .space = spaces[space], .restart = restart});
     };
     try {
       scene = io::parse_scene(text, "scene.toml");
@@ -89,9 +89,9 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
     RandomRun random(seed, draw);
     auto const& variant = variants()[(7 * static_cast<std::size_t>(draw)) % variants().size()];
-    auto const text = random.scene(variant) +
-                      fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
-                                  random.one_in(2) ? 0.6 : 0.05, random.below(1000));
+    auto const text =
+        random.scene(variant) + fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
+                                            random.one_in(2) ? 0.6 : 0.05, random.below(1000));
     auto const precision =
         random.one_in(2) ? Precision::single_precision : Precision::double_precision;
     if (!holds(text, precision, random)) continue;

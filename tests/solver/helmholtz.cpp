@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Approximations to (c + b K)^-1, beside K applied site by site in double.
-#include <cayspin/solver/helmholtz.hpp>
-
 #include "../support/backends.hpp"
+
+#include <cayspin/solver/helmholtz.hpp>
 
 #include <algorithm>
 #include <complex>
@@ -239,18 +239,18 @@ TYPED_TEST(Helmholtz, BitsAreThoseOfSerial) {
   if constexpr (!detail::is_host_execution<typename TypeParam::Exec>) {
     GTEST_SKIP() << "devices round otherwise";
   } else {
-  auto problems = grids();
-  for (Problem const& problem : lines()) problems.push_back(problem);
-  problems.push_back({"many rows", Lattice::square(65, 70), {80, 80, 0}});
-  for (Problem const& problem : problems) {
-    SCOPED_TRACE(problem.name);
-    typename TestFixture::template Solver<Real> solver("Helmholtz", problem.lattice,
-                                                       problem.couplings);
-    auto const right = TestFixture::random_numbers(problem, false, 5);
-    EXPECT_EQ(TestFixture::solved(solver, problem, 1, Real(2), right),
-              TestFixture::template solved<Real>(solver, problem, 1, Real(2), right,
-                                                 Kokkos::Serial()));
-  }
+    auto problems = grids();
+    for (Problem const& problem : lines()) problems.push_back(problem);
+    problems.push_back({"many rows", Lattice::square(65, 70), {80, 80, 0}});
+    for (Problem const& problem : problems) {
+      SCOPED_TRACE(problem.name);
+      typename TestFixture::template Solver<Real> solver("Helmholtz", problem.lattice,
+                                                         problem.couplings);
+      auto const right = TestFixture::random_numbers(problem, false, 5);
+      EXPECT_EQ(
+          TestFixture::solved(solver, problem, 1, Real(2), right),
+          TestFixture::template solved<Real>(solver, problem, 1, Real(2), right, Kokkos::Serial()));
+    }
   }
 }
 #endif

@@ -23,8 +23,8 @@ namespace cayspin::detail {
 /// a complex vector has six components, the real parts first.
 /// Where one axis alone couples, z is the solution. Otherwise it is one multigrid cycle V(2, 2) on
 /// cell-centred grids, which leaves a fifth to a half of the residual where b K is not negative. A
-/// cycle is a linear map, symmetric and positive definite for real b >= 0 and c > 0. Its bits do not
-/// depend on threads or host spaces.
+/// cycle is a linear map, symmetric and positive definite for real b >= 0 and c > 0. Its bits do
+/// not depend on threads or host spaces.
 template <class Scalar, class MemorySpace>
 class Helmholtz {
  public:
@@ -33,8 +33,9 @@ class Helmholtz {
   using Field = SiteField<Real, components, MemorySpace>;
 
   Helmholtz() = default;
-  /// `couplings`: J of each axis, A / spacing^2 for exchange; those that are not positive, and those
-  /// of axes without neighbours, are left out. Throws std::invalid_argument for a part of a lattice.
+  /// `couplings`: J of each axis, A / spacing^2 for exchange; those that are not positive, and
+  /// those of axes without neighbours, are left out. Throws std::invalid_argument for a part of a
+  /// lattice.
   Helmholtz(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : scale_label_("cayspin::" + name + "::scale"),
         relax_label_("cayspin::" + name + "::relax"),
@@ -130,8 +131,8 @@ class Helmholtz {
              std::size_t number) {
     Level const& level = levels_[number];
     Field const& other = level.other;
-    if (level.coarsened.empty()) return scale(exec, level, Scalar(static_cast<Real>(1 / c)), right,
-                                              solution);
+    if (level.coarsened.empty())
+      return scale(exec, level, Scalar(static_cast<Real>(1 / c)), right, solution);
     if (level.largest * magnitude(b) <= c) {
       auto const weight = weights<3>(c, b, 0, level.largest);
       scale(exec, level, weight[0], right, solution);
@@ -161,9 +162,9 @@ class Helmholtz {
   void scale(Exec const& exec, Level const& level, Scalar weight,
              SiteField<Real, RightHandComponents, MemorySpace> const& right,
              Field const& out) const {
-    for_each_cell(exec, scale_label_, level.layout,
-                  ScaleCells<Scalar, RightHandComponents>{level.layout, weight, right.array(),
-                                                          out.array()});
+    for_each_cell(
+        exec, scale_label_, level.layout,
+        ScaleCells<Scalar, RightHandComponents>{level.layout, weight, right.array(), out.array()});
   }
   template <class Exec, int RightHandComponents>
   void relax(Exec const& exec, Level const& level, double c, Scalar b, Scalar weight,

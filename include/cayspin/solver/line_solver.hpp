@@ -34,9 +34,7 @@ struct SolveLines {
   SiteArray<Real, RightHandComponents> r;
   SiteArray<Real, 3 * parts> z;
 
-  std::int32_t bundles() const {
-    return axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle;
-  }
+  std::int32_t bundles() const { return axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle; }
   std::int64_t tasks() const {
     return axis == 0   ? layout.rows()
            : axis == 1 ? std::int64_t(layout.nz) * bundles()
@@ -49,8 +47,8 @@ struct SolveLines {
     std::ptrdiff_t const strides[3] = {1, layout.pitch, plane};
     std::int64_t const line = task / across;
     auto const x = static_cast<std::int32_t>(task % across) * bundle;
-    std::ptrdiff_t const begin = axis == 0 ? line * layout.pitch
-                                           : x + line * (axis == 1 ? plane : layout.pitch);
+    std::ptrdiff_t const begin =
+        axis == 0 ? line * layout.pitch : x + line * (axis == 1 ? plane : layout.pitch);
     std::int32_t const extents[3] = {layout.nx, layout.ny, layout.nz};
     std::int32_t const width = axis == 0 ? 1 : Kokkos::min(bundle, layout.nx - x);
     for (int component = 0; component < 3; ++component)
@@ -111,8 +109,8 @@ struct SolveLines {
   }
 };
 
-/// z = (c + b K)^-1 r where one axis alone couples: tridiagonal lines, on a periodic axis by Sherman
-/// and Morrison. Factors are kept for the last few pairs (c, b).
+/// z = (c + b K)^-1 r where one axis alone couples: tridiagonal lines, on a periodic axis by
+/// Sherman and Morrison. Factors are kept for the last few pairs (c, b).
 template <class Scalar, class MemorySpace>
 class LineSolver {
   using Real = real_part_t<Scalar>;
@@ -128,7 +126,8 @@ class LineSolver {
     // A periodic axis of two sites has its bond twice.
     coupling_ = layout.periodic[axis] && count_ == 2 ? 2 * coupling : coupling;
     for (Kept& kept : kept_)
-      kept.factors = Kokkos::View<Scalar*, MemorySpace>("cayspin::" + name + "::factors", 3 * count_);
+      kept.factors =
+          Kokkos::View<Scalar*, MemorySpace>("cayspin::" + name + "::factors", 3 * count_);
   }
 
   template <class Exec, int RightHandComponents>

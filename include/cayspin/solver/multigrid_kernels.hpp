@@ -111,11 +111,10 @@ struct RelaxCells {
       for (int part = 0; part < parts; ++part) {
         Real const* const KOKKOS_RESTRICT v = u[part];
         Real const here = v[x];
-        k[part] = to_previous_x[x] * (here - v[before]) + to_next_x[x] * (here - v[after]) +
-                  couple[0][0] * (here - v[x + way[0][0]]) +
-                  couple[0][1] * (here - v[x + way[0][1]]) +
-                  couple[1][0] * (here - v[x + way[1][0]]) +
-                  couple[1][1] * (here - v[x + way[1][1]]);
+        k[part] =
+            to_previous_x[x] * (here - v[before]) + to_next_x[x] * (here - v[after]) +
+            couple[0][0] * (here - v[x + way[0][0]]) + couple[0][1] * (here - v[x + way[0][1]]) +
+            couple[1][0] * (here - v[x + way[1][0]]) + couple[1][1] * (here - v[x + way[1][1]]);
         r[part] = (part < RightHandComponents / 3 ? f[part][x] : Real(0)) - c * here;
       }
       multiply_subtract_from(b, k, r);
