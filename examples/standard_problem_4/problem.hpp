@@ -51,6 +51,19 @@ class StandardProblem4 {
     return cayspin::magnetization(exec_, spins_);
   }
 
+  /// What a program needs to go on by itself: the film, its S state, its equation of motion.
+  cayspin::Lattice const& film() const { return film_; }
+  std::vector<double> const& at_rest() const { return at_rest_; }
+  auto const& demag() const { return demag_; }
+  static double nanosecond() { return nanosecond_of(alpha); }
+  template <class Demag>
+  auto generator(Demag const& demag, Vector const& millitesla) const {
+    return cayspin::LandauLifshitz(
+        cayspin::EffectiveField(cayspin::Exchange(film_, exchange), demag,
+                                cayspin::Zeeman{(1e-3 / (mu0 * saturation)) * millitesla}),
+        alpha);
+  }
+
   struct Reversal {
     Vector m;             // after a nanosecond
     double crossing = 0;  // the first time at which <m_x> is zero, in ns
@@ -58,9 +71,7 @@ class StandardProblem4 {
   /// From the S state in a field, given in mT.
   Reversal reverse(Vector const& millitesla, int steps) {
     cayspin::copy_from_host(at_rest_, spins_);
-    cayspin::EffectiveField const field(cayspin::Exchange(film_, exchange), demag_,
-                                        cayspin::Zeeman{(1e-3 / (mu0 * saturation)) * millitesla});
-    cayspin::LandauLifshitz const generator(field, alpha);
+    auto const of_film = generator(demag_, millitesla);
     cayspin::Rkmk4 stepper(spins_);
     Reversal reversal;
     double before = 1;
@@ -71,8 +82,7 @@ class StandardProblem4 {
         reversal.crossing = (step.time - step.dt * now / (now - before)) / nanosecond_of(alpha);
       before = now;
     };
-    cayspin::integrate(exec_, stepper, generator, spins_, {0, nanosecond_of(alpha) / steps, steps},
-                       watch);
+    cayspin::integrate(exec_, stepper, of_film, spins_, {0, nanosecond() / steps, steps}, watch);
     return reversal;
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace cayspin::program {
@@ -21,19 +23,31 @@ double bytes_per_site(Plan const& plan) {
 }
 
 /// What a step repeats on the ranks that are asked for.
-std::optional<double> repeated_on(CheckOptions const& options, Plan const& plan) {
+std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& scene,
+                                  Plan const& plan) {
   if (!options.ranks) return std::nullopt;
-  int const ghosts = plan.variant.ghosts;
+  int const ghosts = has_dear_field(scene) ? 0 : plan.variant.ghosts;
   if (ghosts == 0)
     throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
                                  *options.ranks));
   return repeated_share(plan.lattice, ghosts, read_parts(*options.ranks, plan.lattice, ghosts));
 }
 
+int order(io::Scene const& scene, Variant const& variant) {
+  return has_dear_field(scene) ? std::min(variant.order, order_of_dear) : variant.order;
+}
+
+// Two passes through the substeps of the method.
+std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& variant) {
+  if (!variant.evaluations || !has_dear_field(scene)) return variant.evaluations;
+  return 2 * scene.integrator.substeps * *variant.evaluations;
+}
+
 void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
                 std::optional<double> const& repeated) {
   auto const& memory = plan.memory;
   auto const& units = scene.units;
+  auto const per_step = evaluations(scene, plan.variant);
   auto const stable_in = [&](double unit) {
     return has_stable_dt(plan) ? fmt::format("{}", plan.stable_dt * unit) : "null";
   };
@@ -44,9 +58,8 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
       "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"",
       stable_in(units.time), plan.times.dt * units.time, plan.times.steps, plan.lattice.sites(),
       bytes_per_site(plan), memory.spins, memory.work, memory.field, memory.files, memory.total(),
-      plan.variant.evaluations ? fmt::format("{}", *plan.variant.evaluations) : "null",
-      plan.variant.order, plan.frames, plan.file_bytes, plan.variant.method->word,
-      to_string(precision));
+      per_step ? fmt::format("{}", *per_step) : "null", order(scene, plan.variant), plan.frames,
+      plan.file_bytes, plan.variant.method->word, to_string(precision));
   if (units.si)
     fmt::print(
         ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
@@ -65,11 +78,14 @@ std::string both(io::Units const& units, double time, int digits) {
   return units.si ? fmt::format("{} ({:.{}g})", text, time, digits) : text;
 }
 
-std::string evaluations_text(Variant const& variant) {
-  if (variant.method->adaptive) return "as many evaluations as the tolerance takes";
-  if (!variant.evaluations) return "as many evaluations as the iteration takes";
-  if (variant.evaluations == 1) return "1 evaluation";
-  return fmt::format("{} evaluations", *variant.evaluations);
+std::string evaluations_text(io::Scene const& scene, Variant const& variant) {
+  if (has_dear_field(scene))
+    return fmt::format("1 evaluation of the dear field and {} of the others",
+                       *evaluations(scene, variant));
+  if (variant.method->adaptive) return "as many evaluations of the field as the tolerance takes";
+  if (!variant.evaluations) return "as many evaluations of the field as the iteration takes";
+  if (variant.evaluations == 1) return "1 evaluation of the field";
+  return fmt::format("{} evaluations of the field", *variant.evaluations);
 }
 
 std::string stability_text(io::Units const& units, Plan const& plan) {
@@ -116,8 +132,8 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
     fmt::print("{:<11} {}\n", name, text);
   };
   auto const& memory = plan.memory;
-  print("method", fmt::format("{}, order {}, {} of the field per step", describe_method(scene),
-                              plan.variant.order, evaluations_text(plan.variant)));
+  print("method", fmt::format("{}, order {}, {} per step", describe_method(scene),
+                              order(scene, plan.variant), evaluations_text(scene, plan.variant)));
   print("time", fmt::format("{} steps of {}, to t = {}", plan.times.steps,
                             both(scene.units, plan.times.dt, 9),
                             both(scene.units, plan.times.at(plan.times.steps), 9)));
@@ -125,7 +141,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   if (is_thermal(scene)) print("noise", noise_text(scene, plan));
   print("cost",
         fmt::format(
-            "{} per step, {:.4g} spin updates in all", evaluations_text(plan.variant),
+            "{} per step, {:.4g} spin updates in all", evaluations_text(scene, plan.variant),
             static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites())));
   print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, method {}, fields "
                               "{}; with {} of buffers on the host {}",
@@ -153,7 +169,7 @@ int check(CheckOptions const& options) {
     scene = trade::with_method(scene, space, options.precision);
   }
   auto const plan = make_plan(scene, options.precision);
-  auto const repeated = repeated_on(options, plan);
+  auto const repeated = repeated_on(options, scene, plan);
   if (is_start_checked(plan)) check_start(scene);
   if (options.json)
     print_json(scene, plan, options.precision, repeated);

@@ -94,7 +94,9 @@ std::string slab_text(io::Field const& field) {
   return fmt::format("H = -{:.6g} {} n, n = {}, {}{}", field.mu0 * slab.strength,
                      slab.average_layer ? "<m.n>" : "(m.n)", vector_text(slab.normal),
                      slab.average_layer ? "averaged over each layer" : "site by site",
-                     slab.on_host ? ", computed on the host" : "");
+                     slab.dear      ? ", dear: computed on the host once a step"
+                     : slab.on_host ? ", computed on the host"
+                                    : "");
 }
 
 std::string thermal_text(io::Scene const& scene) {
@@ -149,6 +151,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
 std::string describe_method(io::Scene const& scene) {
   auto const& integrator = scene.integrator;
   std::string text(integrator.method->word);
+  if (integrator.substeps > 1) text += fmt::format(" in {} substeps", integrator.substeps);
   if (integrator.method->is_baseline()) return text;
   text += fmt::format(", {} generator, {} rotation", io::to_string(integrator.generator),
                       io::to_string(integrator.rotation));

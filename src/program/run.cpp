@@ -49,6 +49,8 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
   std::string const accepted = "runs on one rank alone; accepted: one rank, ";
   if (plan.variant.ghosts == 0)
     throw io::scene_error(scene, "integrator.method", accepted + "or another method");
+  if (has_dear_field(scene))
+    throw io::scene_error(scene, "field.slab_demag.dear", accepted + "or no such key");
   auto const& slab = scene.field.slab_demag;
   if (slab && slab->average_layer && (slab->on_host || slab->normal[0] != 0 || !on_host))
     throw io::scene_error(scene, "field.slab_demag.average",
@@ -100,7 +102,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   Simulation<Real, Space> simulation(scene, plan.lattice, times, ranks.together([&] {
     return start_of(scene, plan.lattice, restart);
   }));
-  auto const method = plan.variant.open(&simulation, plan.options);
+  auto const method = open_method(scene, plan, &simulation);
 
   auto const path = output_file(scene, options);
   auto const checkpoint_path = io::checkpoint_beside(path);

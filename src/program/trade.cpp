@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/text.hpp"
@@ -198,11 +199,21 @@ void print_text(AdviseOptions const& options, io::Units const& units, Advised co
                duration_text(advised.others[i].seconds));
 }
 
+io::Scene scene_to_try(std::filesystem::path const& path,
+                       std::vector<std::string> const& overrides) {
+  auto const scene = io::read_scene(path, overrides);
+  io::check_files(scene);
+  if (has_dear_field(scene) || scene.integrator.substeps > 1)
+    throw io::scene_error(scene,
+                          has_dear_field(scene) ? "field.slab_demag.dear" : "integrator.substeps",
+                          "methods are compared without dear fields; accepted: no such key");
+  return scene;
+}
+
 }  // namespace
 
 int trade_off(TradeOptions const& options) {
-  auto const scene = io::read_scene(options.scene, options.overrides);
-  io::check_files(scene);
+  auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);
@@ -236,8 +247,7 @@ int trade_off(TradeOptions const& options) {
 }
 
 int advise_on(AdviseOptions const& options) {
-  auto const scene = io::read_scene(options.scene, options.overrides);
-  io::check_files(scene);
+  auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);

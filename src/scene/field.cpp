@@ -92,13 +92,19 @@ bool option(Table const& table, std::string_view name, std::string_view only) {
 
 SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  table.accept_only({"normal", "strength", "average", "where"});
+  table.accept_only({"normal", "strength", "average", "where", "dear"});
   SlabDemagnetization slab;
   auto const normal = table.required("normal", "three numbers");
   slab.normal = direction(normal);
   if (auto const strength = table.find("strength")) slab.strength = number(*strength);
   slab.average_layer = option(table, "average", "layer");
   slab.on_host = option(table, "where", "host");
+  if (auto const dear = table.find("dear")) {
+    slab.dear = boolean(*dear);
+    if (slab.dear && !slab.average_layer && !slab.on_host)
+      dear->fail("site by site the field is of each spin alone, and cheap",
+                 "average = \"layer\" or where = \"host\" beside it, or no such key");
+  }
   if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2) {
     normal.fail("average = \"layer\" needs a normal along an axis",
                 "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");

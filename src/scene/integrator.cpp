@@ -149,7 +149,7 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table = root.table("integrator", "a table [integrator]");
   table.accept_only(with_flags<Integrator>(
       {"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end", "steps",
-       "tolerance", "min_dt", "max_dt", "error", "until_torque"},
+       "substeps", "tolerance", "min_dt", "max_dt", "error", "until_torque"},
       "until_torque"));
   Integrator integrator;
   integrator.method = read_method(table);
@@ -161,6 +161,8 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   if (!std::isfinite(static_cast<double>(integrator.steps) * integrator.dt)) {
     table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");
   }
+  if (auto const item = table.find("substeps"))
+    integrator.substeps = integer(*item, 1, "a whole number >= 1");
   read_flags(table, integrator);
   if (auto const item = table.find("until_torque")) {
     if (kind == SystemKind::rigid_body) {

@@ -2,6 +2,7 @@
 #include "plan.hpp"
 
 #include "applied_field.hpp"
+#include "dear_method.hpp"
 #include "failure.hpp"
 #include "ranks.hpp"
 #include "text.hpp"
@@ -101,10 +102,14 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field), precision);
   if (scene.field.own.nonlocal) memory.field += memory.spins;
   if (auto const& slab = scene.field.slab_demag) {
-    if (slab->on_host) memory.field += memory.spins;
+    if (slab->on_host || slab->dear) memory.field += memory.spins;
     // Means, and of parts that share layers their exact sums.
     std::int64_t const words = lattice.part == nullptr ? 1 : 1 + cayspin::detail::ExactSum::words;
     if (slab->average_layer) memory.field += 8 * words * std::ranges::max(whole(lattice).shape);
+  }
+  if (has_dear_field(scene)) {
+    memory.work += work_fields_of_dear * memory.spins;
+    memory.field += memory.spins;
   }
   // A rank reads its sites by some planes at once, but OVF whole. The first one writes.
   auto const& all = whole(lattice);
@@ -180,10 +185,12 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
                             fmt::format("{:.3g} is beyond {} precision; accepted: at least {:.3g}",
                                         *integrator.tolerance, to_string(precision), least));
   }
+  require_dear_field_fits(scene, plan.variant);
+  auto const substeps = static_cast<double>(integrator.substeps);
   if (scene.system.kind == io::SystemKind::llg)
-    plan.stable_dt =
-        plan.variant.stable_step(field_bound(scene, lattice, plan.times), scene.system.damping,
-                                 scene.system.precession, plan.options);
+    plan.stable_dt = substeps * plan.variant.stable_step(field_bound(scene, lattice, plan.times),
+                                                         scene.system.damping,
+                                                         scene.system.precession, plan.options);
   bool const in_double = precision == Precision::double_precision;
   plan.memory = in_double ? memory_of<double>(scene, lattice, plan.variant, precision, 0)
                           : memory_of<float>(scene, lattice, plan.variant, precision, 0);
@@ -192,7 +199,7 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   std::int64_t const sample_bytes = 8 * 7;
   plan.file_bytes = plan.frames * (lattice.sites() * 3 * (in_double ? 8 : 4) + sample_bytes) +
                     count(scene.output.scalars_every) * sample_bytes;
-  plan.turn = integrator.dt * largest_rate(scene, lattice, plan.times);
+  plan.turn = integrator.dt / substeps * largest_rate(scene, lattice, plan.times);
   return plan;
 }
 

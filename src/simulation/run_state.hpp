@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "dear_method.hpp"
 #include "guard.hpp"
 #include "plan.hpp"
 #include "simulate.hpp"
@@ -13,7 +14,7 @@ namespace cayspin::simulation {
 /// Does a run of this plan need more than its spins to go on with the same bits?
 inline bool remembers(io::Scene const& scene, Plan const& plan) {
   return plan.variant.remembers || scene.integrator.energy_control ||
-         scene.integrator.until_torque.has_value();
+         scene.integrator.until_torque.has_value() || has_dear_field(scene);
 }
 
 /// Stores or restores all that a run needs to go on from a step with the same bits. `continues`:

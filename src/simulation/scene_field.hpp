@@ -5,6 +5,7 @@
 #include "host_solver.hpp"
 #include "lattice_terms.hpp"
 
+#include <cayspin/field/dear.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -165,21 +166,33 @@ class SceneField {
   using Real = typename Spins::value_type;
 
  public:
-  SceneField(io::Field const& field, Lattice const& lattice)
+  using OnHost = HostField<Spins, HostSolver>;
+  using DearTerm = Dear<Spins, OnHost>;
+
+  /// `has_dear`: is what the host computes dear?
+  SceneField(io::Field const& field, Lattice const& lattice, bool has_dear)
       : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field) {
     for (auto const& term : field.anisotropies) quadratic_.add(term.constant, term.axis);
     if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);
     if (field.own.nonlocal) stored_.emplace(lattice, HostSolver(field.own.nonlocal));
+    if (has_dear) {
+      dear_.emplace(lattice, *stored_);
+      stored_.reset();
+    }
   }
+
+  /// None where no term is dear.
+  std::optional<DearTerm> const& dear() const { return dear_; }
 
   /// Throws NumbersFailed when an applied field is not finite at t.
   template <class Exec>
   SceneFieldNow<Real> prepare(Exec const& exec, Spins const& spins, double t) const {
     auto now = prepare_local(exec, spins, t);
     now.has_layers = layers_.has_value();
-    now.has_stored = stored_.has_value();
+    now.has_stored = stored_ || dear_;
     if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
+    if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
     return now;
   }
   /// Looks at no spin: without the terms that do.
@@ -197,7 +210,7 @@ class SceneField {
   }
   template <class Exec, class Any>
   bool needs_time_alone(Exec const&, Any const&) const {
-    return !layers_ && !stored_;
+    return !layers_ && !stored_ && !dear_;
   }
 
   /// The same for rates of spins, the applied field's own rate in place of the field.
@@ -215,7 +228,7 @@ class SceneField {
   void add(io::SlabDemagnetization const& slab, double mu0, Lattice const& lattice) {
     Vec3<double> const normal{slab.normal[0], slab.normal[1], slab.normal[2]};
     double const strength = mu0 * slab.strength;
-    if (slab.on_host) {
+    if (slab.on_host || slab.dear) {
       stored_.emplace(lattice, HostSolver(SlabDemagOnHost(normal, strength, slab.average_layer)));
     } else if (slab.average_layer) {
       layers_.emplace(lattice, normal.x != 0 ? 0 : normal.y != 0 ? 1 : 2, strength);
@@ -228,7 +241,8 @@ class SceneField {
   QuadraticTerms quadratic_;
   AppliedField applied_;
   std::optional<LayerAveragedSlabDemag<typename Spins::memory_space>> layers_;
-  std::optional<HostField<Spins, HostSolver>> stored_;
+  std::optional<OnHost> stored_;
+  std::optional<DearTerm> dear_;
 };
 
 }  // namespace cayspin::simulation

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_generator.hpp"
 
+#include "dear_method.hpp"
 #include "space.hpp"
 
 #include <cayspin/io/scene.hpp>
@@ -15,7 +16,8 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                                       std::vector<SymmetricTensor> const& inverse_inertia)
-    : llg_(SceneField<Spins>(scene.field, lattice), scene.system.damping, scene.system.precession),
+    : llg_(SceneField<Spins>(scene.field, lattice, has_dear_field(scene)), scene.system.damping,
+           scene.system.precession),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
       bodies_(inverse_inertia, lattice) {}

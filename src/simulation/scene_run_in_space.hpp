@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "dear_method.hpp"
 #include "guard.hpp"
 #include "interrupt_poll.hpp"
 #include "run_noise.hpp"
@@ -31,7 +32,7 @@ class SceneRunInSpace final
                   std::string const& space, std::vector<double> const& start)
       : SceneRun(scene, plan, precision, space),
         simulation_(scene, plan.lattice, plan.times, start),
-        method_(plan.variant.open(&simulation_, plan.options)),
+        method_(open_method(scene, plan, &simulation_)),
         guard_(scene, epsilon) {
     if (on_host) threads_ = simulation_.exec.concurrency();
     if (scene.integrator.energy_control) control_.emplace(simulation_.generator, simulation_.spins);

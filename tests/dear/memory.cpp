@@ -3,8 +3,10 @@
 #include "../support/wrong_call.hpp"
 #include "long_range.hpp"
 
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #if defined(KOKKOS_ENABLE_SERIAL) && \
     (defined(KOKKOS_ENABLE_OPENMP) || defined(KOKKOS_ENABLE_THREADS))
@@ -156,6 +158,77 @@ TEST(Dear, TakesAnyTermOfKnownDegree) {
   double const distance = largest_distance(spins, exact);
   expect_below("apart from RK4", distance, 1e-4);
   EXPECT_GT(distance, 1e-9);
+}
+
+/// Throws from a time on.
+struct Failing : LongRange {
+  double from = 0;
+
+  template <class HostSpins>
+  void operator()(HostSpins const& spins, HostSpins const& field, double t) const {
+    if (t >= from) throw std::runtime_error("from here on");
+    LongRange::operator()(spins, field, t);
+  }
+};
+
+// In the first step, at its end, and at the end of the third.
+TEST(Dear, LeavesTheSpinsOfAStepThatFails) {
+  Spins const start = random_spins(block, 5);
+  for (double const from : {0.07, 0.1, 0.25}) {
+    Spins spins = copy_of(start);
+    Dear const dear(spins, HostField<Spins, Failing>(spins, Failing{{0.4}, from}));
+    auto const generator = with_dear(block, 0.5, dear, 0.1);
+    Multirate stepper(spins, Rkmk4<Spins>(spins), dear, {.substeps = 2});
+    std::vector<double> before;
+    int whole = 0;
+    for (bool failed = false; !failed; whole += !failed) {
+      before = copy_to_host(spins);
+      try {
+        stepper.step(Space{}, generator, spins, 0.1 * whole, 0.1);
+      } catch (std::runtime_error const&) {
+        failed = true;
+      }
+    }
+    EXPECT_EQ(whole, from < 0.2 ? 0 : 2);
+    EXPECT_EQ(copy_to_host(spins), before);
+    auto const evaluations = dear.evaluations_done();
+    stepper.step(Space{}, generator, spins, -1, 0.1);
+    EXPECT_EQ(dear.evaluations_done() - evaluations, 2 + 2 * 4);
+  }
+}
+
+template <class Field>
+void expect_unit_spins_at_any_step() {
+  double const eps = std::numeric_limits<typename Field::value_type>::epsilon();
+  for (double const dt : {5e-324, 1e-300, 1e-12, 1., 10.}) {
+    Field const start = random_spins<Field>(block, 5);
+    Field spins = copy_of(start);
+    auto const dear = dear_long_range(spins, 0.4);
+    auto stepper = multirate(spins, dear, 3);
+    auto const generator = with_dear(block, 0.5, dear, 0.1);
+    for (double const t : {0., 1., 1e20}) stepper.step(Space{}, generator, spins, t, dt);
+    auto const seen = sample(Space{}, generator, Step{}, spins);
+    EXPECT_LT(seen.norm_defect, 100 * eps) << dt;
+    EXPECT_TRUE(std::isfinite(seen.energy.value)) << dt;
+    EXPECT_EQ(stepper.dear_evaluations_done(), 2 + 3 * 4 + 2) << dt;
+    if (dt < 1e-200) {
+      EXPECT_LT(largest_distance(spins, start), 20 * eps) << dt;
+    }
+  }
+}
+TEST(Dear, KeepsUnitSpinsAtAnyStep) {
+  expect_unit_spins_at_any_step<SpinField<double, Space::memory_space>>();
+  expect_unit_spins_at_any_step<SpinField<float, Space::memory_space>>();
+}
+
+TEST(Dear, RestsWhereNothingTurns) {
+  Spins spins("spins", block);  // all along z
+  auto const start = copy_to_host(spins);
+  auto const dear = dear_long_range(spins, 0);
+  LandauLifshitz const generator(EffectiveField(Exchange{block, 0.5}, dear), 0.1);
+  auto stepper = multirate(spins, dear, 3);
+  advance(stepper, generator, spins, 0.1, 10);
+  EXPECT_EQ(copy_to_host(spins), start);
 }
 
 TEST(Dear, RefusesWrongCalls) {

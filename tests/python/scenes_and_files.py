@@ -98,6 +98,30 @@ class OwnFields(PackageTest):
         np.testing.assert_allclose(sims[0].spins, sims[1].spins, rtol=0, atol=40 * 64 * 2.0**-52)
         self.assertAlmostEqual(sims[0].energies()["nonlocal"], sims[1].energies()["slab_demag"])
 
+    def test_a_nonlocal_field_is_dear_between_substeps(self):
+        calls = []
+
+        def slab(spins, t):
+            calls.append(t)
+            if t > 0.37:
+                raise ZeroDivisionError("at half past")
+            return -1.2 * spins.mean(axis=(1, 2), keepdims=True) * [0, 0, 1] + 0 * spins
+
+        sim = cayspin.Simulation(scene(
+            field={"slab_demag": None, "nonlocal": slab},
+            integrator={"method": "rkmk4", "dt": 0.05, "substeps": 3, "steps": None}))
+        sim.step(1)
+        calls.clear()
+        sim.step(5)
+        np.testing.assert_allclose(calls, [0.1, 0.15, 0.2, 0.25, 0.3])
+        sim.step(1)
+        before = np.array(sim.spins)
+        self.assert_refused(ZeroDivisionError, "at half past", sim.step, 1)
+        self.assertEqual(sim.steps, 7)
+        np.testing.assert_array_equal(sim.spins, before)
+        self.assert_refused(cayspin.CayspinError, "no term of the field is dear",
+                            lambda: cayspin.Simulation(scene(integrator={"substeps": 3})))
+
     def test_what_a_function_raises_and_returns(self):
         def failing(t):
             if t > 0.5:

@@ -108,6 +108,16 @@ TEST(Scene, DemagnetizationStrengthDefaultsToOne) {
   EXPECT_EQ(slab->strength, 1);
   EXPECT_TRUE(slab->average_layer);
   EXPECT_TRUE(slab->on_host);
+  EXPECT_FALSE(slab->dear);
+}
+
+TEST(Scene, DearFieldsAndSubsteps) {
+  Folder const folder;
+  auto const text = replaced(llg_scene, "strength = 2", "where = \"host\", dear = true");
+  auto const scene = read_text(folder, text, {"integrator.substeps=4"});
+  EXPECT_TRUE(scene.field.slab_demag->dear);
+  EXPECT_EQ(scene.integrator.substeps, 4);
+  EXPECT_EQ(read_text(folder, text).integrator.substeps, 1);
 }
 
 TEST(Scene, WholeNumbersServeAsNumbers) {

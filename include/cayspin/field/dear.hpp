@@ -113,9 +113,10 @@ class Dear {
  public:
   using spins_type = Spins;
 
+  Dear(Lattice const& lattice, Term term)
+      : term_(std::move(term)), state_(std::make_shared<State>("Dear::field", lattice)) {}
   /// For spins like these.
-  Dear(Spins const& like, Term term)
-      : term_(std::move(term)), state_(std::make_shared<State>("Dear::field", like.lattice())) {}
+  Dear(Spins const& like, Term term) : Dear(like.lattice(), std::move(term)) {}
 
   template <class Others>
   void check_spins(Others const& spins) const {

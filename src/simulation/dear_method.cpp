@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "dear_method.hpp"
+
+#include "thermal.hpp"
+
+#include <cayspin/exchange_memory.hpp>
+#include <cayspin/stepper/multirate.hpp>
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace cayspin::simulation {
+namespace {
+
+/// Sees nothing: between substeps nobody looks.
+template <class Simulation>
+class NobodyLooks final
+    : public RunObserver<typename Simulation::Exec, typename Simulation::Spins> {
+  using Exec = typename Simulation::Exec;
+  using Spins = typename Simulation::Spins;
+  bool due(Step const&) const override { return false; }
+  Next operator()(Exec const&, Step const&, Spins const&) override { return Next::proceed; }
+};
+
+/// The scene's method as a stepper that takes any number of substeps in one call.
+template <class Simulation>
+class MethodOfScene {
+ public:
+  using spins_type = typename Simulation::Spins;
+  static constexpr int order = order_of_dear, work_fields = 0;
+
+  MethodOfScene(Simulation& simulation, std::unique_ptr<OpenMethod> method)
+      : simulation_(simulation), method_(std::move(method)) {}
+
+  std::int64_t evaluations_done() const { return evaluations_; }
+  std::size_t work_bytes() const { return 0; }
+
+  template <class Exec, class Generator>
+  void step(Exec const& exec, Generator const& generator, spins_type& spins, double t, double dt) {
+    batch(exec, generator, spins, t, dt, 1);
+  }
+  template <class Exec, class Generator>
+  bool takes_batches(Exec const&, Generator const&, spins_type const&) const {
+    return true;
+  }
+  // Those of the simulation, all of them.
+  template <class Exec, class Generator>
+  void batch(Exec const&, Generator const&, spins_type&, double t, double dt, std::int64_t count) {
+    NobodyLooks<Simulation> nobody;
+    simulation_.times = {t, dt, count};
+    simulation_.observer = &nobody;
+    evaluations_ += method_->advance().evaluations;
+  }
+
+ private:
+  Simulation& simulation_;
+  std::unique_ptr<OpenMethod> method_;
+  std::int64_t evaluations_ = 0;
+};
+
+template <class Simulation>
+class DearMethod final : public OpenMethod {
+  using Inner = MethodOfScene<Simulation>;
+  using Field = SceneField<typename Simulation::Spins>;
+
+ public:
+  DearMethod(Simulation& simulation, std::unique_ptr<OpenMethod> method, std::int64_t substeps)
+      : simulation_(simulation),
+        stepper_(simulation.spins, Inner(simulation, std::move(method)),
+                 *simulation.generator.landau_lifshitz().field().dear(), {.substeps = substeps}) {}
+
+  Summary advance() override {
+    // Substeps are integrated over times of their own.
+    auto const times = simulation_.times;
+    return integrate(simulation_.exec, stepper_, simulation_.generator, simulation_.spins, times,
+                     *simulation_.observer);
+  }
+  void exchange_memory(Checkpoint& checkpoint) override {
+    cayspin::exchange_memory(stepper_, checkpoint, "method.");
+  }
+
+ private:
+  Simulation& simulation_;
+  Multirate<Inner, typename Field::DearTerm> stepper_;
+};
+
+[[noreturn]] void refuse(io::Scene const& scene, char const* key, std::string const& wrong,
+                         char const* accepted) {
+  throw io::scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
+}
+
+}  // namespace
+
+bool has_dear_field(io::Scene const& scene) {
+  auto const& slab = scene.field.slab_demag;
+  return (slab && slab->dear) || (scene.field.own.nonlocal && scene.integrator.substeps > 1);
+}
+
+void require_dear_field_fits(io::Scene const& scene, Variant const& variant) {
+  auto const& integrator = scene.integrator;
+  auto const& method = *integrator.method;
+  if (!has_dear_field(scene)) {
+    if (integrator.substeps > 1)
+      refuse(scene, "integrator.substeps", "no term of the field is dear",
+             "1, or slab_demag.dear = true, or a program's own nonlocal field");
+    return;
+  }
+  if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->dear)
+    refuse(scene, "field.slab_demag.dear", "the program's own field is the dear one",
+           "no such key");
+  bool const sees_each_stage = method.differentiates_field ||
+                               integrator.isotropy == io::Isotropy::energy ||
+                               integrator.isotropy == io::Isotropy::analytic ||
+                               integrator.isotropy == io::Isotropy::finite_difference;
+  if (!method.has_equal_steps() || variant.remembers || !variant.evaluations || sees_each_stage)
+    refuse(scene, "integrator.method",
+           fmt::format("\"{}\" takes no dear field: it chooses or remembers steps, iterates, or "
+                       "differentiates the field",
+                       method.word),
+           "an explicit one-step method without a sigma of the field");
+  if (integrator.energy_control)
+    refuse(scene, "integrator.energy_control", "does not go with a dear field", "no such key");
+  if (is_thermal(scene))
+    refuse(scene, "thermal.temperature", "noise does not go with a dear field",
+           "0, or no such table");
+}
+
+std::unique_ptr<OpenMethod> open_method(io::Scene const& scene, Plan const& plan,
+                                        AnySimulation simulation) {
+  auto method = plan.variant.open(simulation, plan.options);
+  if (!has_dear_field(scene)) return method;
+  return std::visit(
+      [&]<class Simulation>(Simulation* of_types) -> std::unique_ptr<OpenMethod> {
+        return std::make_unique<DearMethod<Simulation>>(*of_types, std::move(method),
+                                                        scene.integrator.substeps);
+      },
+      simulation);
+}
+
+}  // namespace cayspin::simulation

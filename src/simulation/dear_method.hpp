@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "plan.hpp"
+#include "variant.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <cstdint>
+#include <memory>
+
+namespace cayspin::simulation {
+
+/// Is a term of the scene's field dear? slab_demag.dear says so, and a program's own nonlocal field
+/// is where there are substeps.
+bool has_dear_field(io::Scene const& scene);
+
+/// Throws io::SceneError for substeps without a dear field, and for a dear field with what has to
+/// see it at each stage, or remembers the stages of steps before.
+void require_dear_field_fits(io::Scene const& scene, Variant const& variant);
+
+/// The order in time of its interpolation.
+constexpr int order_of_dear = 3;
+/// Fields of three numbers per site that the method keeps for a dear field.
+constexpr std::int64_t work_fields_of_dear = 4;
+
+/// The method of the plan, in substeps between evaluations of a dear field where there is one.
+std::unique_ptr<OpenMethod> open_method(io::Scene const& scene, Plan const& plan,
+                                        AnySimulation simulation);
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Dear fields of scenes: orders, counts, the bits of runs with a break, and what is refused.
+#include "simulation/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cayspin::simulation::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+io::Scene film(std::string const& integrator,
+               std::vector<std::string> const& overrides = {"field.slab_demag.dear=true"}) {
+  return io::parse_scene(R"toml(
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [8, 6]
+boundary = ["periodic", "open"]
+[field]
+exchange = 0.5
+anisotropy = { constant = 0.4, axis = [1, 2, 3] }
+applied = ["0.3*cos(2*t)", 0, 0.2]
+slab_demag = { normal = [1, 0, 0], strength = 0.8, average = "layer", where = "host" }
+[initial]
+random = { seed = 5 }
+[integrator]
+)toml" + integrator,
+                         "scene.toml", overrides);
+}
+
+std::vector<double> end_of(io::Scene const& scene, std::int64_t steps,
+                           RunSettings const& settings = {}) {
+  auto const run = SceneRun::open(scene, settings);
+  run->advance(steps);
+  return packed<double>(run->spins().vectors);
+}
+
+double largest_distance(std::vector<double> const& a, std::vector<double> const& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+TEST(DearFields, OfScenesHaveOrderThree) {
+  auto const exact = end_of(film("method='rkmk4'\ndt=0.0005\nsteps=2000", {}), 2000);
+  for (char const* const method : {"rkmk4", "projected_rk4", "cf4", "rkmk64", "rkmk5"}) {
+    double errors[2];
+    for (int i = 0; i < 2; ++i) {
+      int const steps = 40 << i;
+      errors[i] =
+          largest_distance(end_of(film("method='" + std::string(method) +
+                                       "'\nsubsteps=2\nend=1\ndt=" + std::to_string(1. / steps)),
+                                  steps),
+                           exact);
+    }
+    std::printf("    %-14s error %.1e, order %.2f\n", method, errors[1],
+                std::log2(errors[0] / errors[1]));
+    EXPECT_NEAR(std::log2(errors[0] / errors[1]), 3, 0.3) << method;
+  }
+}
+
+/// A field of the program that counts how often it is asked for.
+io::Scene with_own_field(std::string const& integrator, std::shared_ptr<int> const& calls) {
+  auto scene = film(integrator, {"field={exchange=0.5}"});
+  scene.field.own.nonlocal = [calls](io::HostVectors const& spins, io::HostVectors const& field,
+                                     double) {
+    ++*calls;
+    auto const* const m = static_cast<double const*>(spins.data);
+    auto* const h = static_cast<double*>(field.data);
+    auto const& [nz, ny, nx] = spins.shape;
+    for (std::int64_t j = 0; j < ny; ++j)
+      for (std::int64_t i = 0; i < nx; ++i)
+        for (std::int64_t c = 0; c < 3; ++c) {
+          auto const at = [&](auto const& strides, std::int64_t x) {
+            return j * strides[1] + x * strides[2] + c * strides[3];
+          };
+          h[at(field.strides, i)] =
+              -0.3 * (m[at(spins.strides, (i + 3) % nx)] + m[at(spins.strides, (i + nx - 3) % nx)]);
+        }
+  };
+  return scene;
+}
+
+TEST(DearFields, OfAProgramAreEvaluatedOnceAStep) {
+  auto const calls = std::make_shared<int>(0);
+  auto const run =
+      SceneRun::open(with_own_field("method='rkmk4'\nsubsteps=3\ndt=0.1\nsteps=100", calls), {});
+  run->advance(1);
+  int const looks = 1;  // of the guard, at the start
+  EXPECT_EQ(*calls, looks + 2 + 3 * 4);
+  *calls = 0;
+  run->advance(20);
+  EXPECT_EQ(*calls, 20);
+  EXPECT_EQ(run->evaluations(), 3 * 4 * (1 + 2 * 20));
+  run->sample();
+  EXPECT_EQ(*calls, 21);
+  auto const energies = run->energies();
+  EXPECT_EQ(*calls, 22);
+  EXPECT_NEAR(run->sample().energy.value, energies[0].second + energies[1].second, 1e-12);
+
+  // Without substeps the field is asked for at each stage.
+  *calls = 0;
+  SceneRun::open(with_own_field("method='rkmk4'\ndt=0.1\nsteps=100", calls), {})->advance(20);
+  EXPECT_EQ(*calls, looks + 20 * 4);
+}
+
+TEST(DearFields, GoOnWithTheSameBits) {
+  auto const file = fs::path(testing::TempDir()) / ("dear_" + std::to_string(::getpid()) + ".h5");
+  auto const scene = film("method='rkmk4'\nsubsteps=3\ndt=0.05\nsteps=20");
+  for (auto const precision : {Precision::double_precision, Precision::single_precision})
+    for (int const cut : {1, 2, 3, 11}) {
+      auto const whole = SceneRun::open(scene, {.precision = precision});
+      whole->advance(20);
+      auto const first = SceneRun::open(scene, {.precision = precision});
+      for (int step = 0; step < cut; ++step) first->advance(1);
+      EXPECT_TRUE(first->remembers());
+      first->save(file);
+      auto const second = SceneRun::open(scene, {.precision = precision, .restart = file});
+      second->advance(20 - cut);
+      EXPECT_EQ(packed<double>(second->spins().vectors), packed<double>(whole->spins().vectors));
+      EXPECT_EQ(first->evaluations() + second->evaluations(), whole->evaluations());
+    }
+  fs::remove(file);
+}
+
+#if !defined(CAYSPIN_WITHOUT_SERIAL)
+TEST(DearFields, HaveTheSameBitsOnEachSpace) {
+  auto const scene = film("method='cf4'\nsubsteps=3\ndt=0.05\nsteps=20");
+  EXPECT_EQ(end_of(scene, 20, {.space = "serial"}), end_of(scene, 20, {.space = "openmp"}));
+}
+#endif
+
+TEST(DearFields, AreRefusedInOneLine) {
+  struct Wrong {
+    std::string integrator;
+    std::vector<std::string> overrides;
+    std::string message;
+  };
+  std::string const rkmk4 = "method='rkmk4'\ndt=0.1\nsteps=9\n",
+                    dear = "field.slab_demag.dear=true";
+  std::string const takes_none = "takes no dear field";
+  std::vector<Wrong> wrong{
+      {rkmk4 + "substeps=2", {}, "integrator.substeps: no term of the field is dear"},
+      {rkmk4 + "substeps=2\nenergy_control=true",
+       {dear, "system.damping=0", "field.applied=[0,0,1]"},
+       "integrator.energy_control: does not go with a dear field"},
+      {rkmk4,
+       {dear, "thermal={temperature=0.1}", "integrator.dt=0.001"},
+       "thermal.temperature: noise does not go with a dear field"},
+      {"method='euler'\nisotropy='analytic'\ndt=0.1\nsteps=9", {dear}, takes_none},
+      {"method='tsit5'\ntolerance=1e-4\nend=1", {dear}, takes_none},
+      {"method='series4'\ndt=0.1\nsteps=9", {dear, "field.applied=[0,0,1]"}, takes_none},
+      {rkmk4 + "compensated=true", {dear}, takes_none}};
+  for (char const* const method : {"ab2", "fx3", "fx4", "implicit_euler", "implicit_midpoint"})
+    wrong.push_back({"method='" + std::string(method) + "'\ndt=0.1\nsteps=9", {dear}, takes_none});
+  for (auto const& [integrator, overrides, message] : wrong) {
+    auto const scene = film(integrator, overrides);
+    try {
+      make_plan(scene, Precision::double_precision);
+      ADD_FAILURE() << integrator << ": taken";
+    } catch (io::SceneError const& error) {
+      std::string const text = error.what();
+      EXPECT_NE(text.find(message), std::string::npos) << text;
+      EXPECT_NE(text.find("; accepted: "), std::string::npos) << text;
+      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    }
+  }
+  // Two dear fields.
+  auto scene = with_own_field(rkmk4 + "substeps=2", std::make_shared<int>(0));
+  scene.field.slab_demag = io::SlabDemagnetization{.average_layer = true, .dear = true};
+  EXPECT_THROW(make_plan(scene, Precision::double_precision), io::SceneError);
+}
+
+TEST(DearFields, AreInThePlan) {
+  auto const cheap =
+      make_plan(film("method='rkmk4'\ndt=0.1\nsteps=9", {}), Precision::double_precision);
+  auto const dear =
+      make_plan(film("method='rkmk4'\nsubsteps=4\ndt=0.1\nsteps=9"), Precision::double_precision);
+  EXPECT_DOUBLE_EQ(dear.stable_dt, 4 * cheap.stable_dt);
+  EXPECT_DOUBLE_EQ(4 * dear.turn, cheap.turn);
+  EXPECT_EQ(dear.memory.work, cheap.memory.work + 4 * cheap.memory.spins);
+  EXPECT_EQ(dear.memory.field, cheap.memory.field + cheap.memory.spins);
+}
+
+}  // namespace
+}  // namespace cayspin::simulation::test
