@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/minimizer/trial.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string>
+
+// The last steps s and changes y of the gradient, from which L-BFGS approximates the inverse of the
+// Hessian (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are
+// projected to the present tangent planes where they are used. All inner products of an iteration
+// come from two passes, and the recursion goes over numbers alone.
+namespace cayspin::detail {
+
+inline constexpr std::size_t pairs_kept = 4;
+
+/// Arrays of the pairs, oldest first. Behind the last one stand others, which `count` leaves out.
+template <class Real>
+using PairArrays = SiteArray<Real, 3>[pairs_kept];
+
+/// s_i.g, and s_i.y_j for i < j; then the energy of the last step in the exchange.
+template <class Real>
+struct ProductsOfPairs {
+  static constexpr int pairs = static_cast<int>(pairs_kept);
+  static constexpr int count_of_values = pairs + pairs * (pairs - 1) / 2 + 1;
+  static constexpr int of(int i, int j) { return pairs + j * (j - 1) / 2 + i; }
+
+  SiteArray<Real, 3> spins, gradient;
+  PairArrays<Real> steps, changes;
+  int count;
+  double couplings[3];
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    for (int i = 0; i < count_of_values; ++i) values[i] = Value(0.0);
+    Vec3<Value> const m = site.load(spins), g = site.load(gradient);
+    for (int j = 0; j < count; ++j) {
+      values[j] = dot(Vec3<Value>(site.load(steps[j])), g);
+      Vec3<Value> const change = tangent(m, Vec3<Value>(site.load(changes[j])));
+      for (int i = 0; i < j; ++i)
+        values[of(i, j)] = dot(Vec3<Value>(site.load(steps[i])), change);
+    }
+    if (count == 0) return;
+    Stencil<Site, Real> const last(site, steps[count - 1]);
+    values[count_of_values - 1] = bonds<0>(last) + bonds<1>(last) + bonds<2>(last);
+  }
+
+ private:
+  template <int Axis, class AnyStencil>
+  KOKKOS_FORCEINLINE_FUNCTION auto bonds(AnyStencil const& stencil) const {
+    using Value = typename AnyStencil::value_type;
+    auto const back = stencil.template previous<Axis>() - stencil.center();
+    auto const on = stencil.template next<Axis>() - stencil.center();
+    return as_value<Value>(0.5 * couplings[Axis]) * Value(dot(back, back) + dot(on, on));
+  }
+};
+
+/// q = the tangent part of g - sum of weights y
+template <class Real>
+struct WithoutChanges {
+  SiteArray<Real, 3> spins, gradient;
+  PairArrays<Real> changes;
+  Real weights[pairs_kept];
+  int count;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> q = site.load(gradient);
+    for (int i = 0; i < count; ++i)
+      q = multiply_add(Value(-weights[i]), Vec3<Value>(site.load(changes[i])), q);
+    site.store(tangent(Vec3<Value>(site.load(spins)), q), output);
+  }
+};
+
+/// y_i.z of the tangent part of z
+template <class Real>
+struct ProductsWithChanges {
+  static constexpr int pairs = static_cast<int>(pairs_kept);
+  SiteArray<Real, 3> spins, vectors;
+  PairArrays<Real> changes;
+  int count;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Vec3<Value> const z = tangent(Vec3<Value>(site.load(spins)), Vec3<Value>(site.load(vectors)));
+    for (int i = 0; i < pairs; ++i)
+      values[i] = i < count ? dot(Vec3<Value>(site.load(changes[i])), z) : Value(0.0);
+  }
+};
+
+/// d = -(scale z + sum of weights s), tangent and zero where spins do not move; g.d and max |d|^2.
+template <class Real>
+struct DirectionWithSteps {
+  SiteArray<Real, 3> spins, gradient, vectors;
+  SiteArray<Real, 1> moves;
+  PairArrays<Real> steps;
+  double scale, weights[pairs_kept];
+  int count;
+  SiteArray<Real, 3> direction;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Vec3<Value> sum = Value(scale) * Vec3<Value>(site.load(vectors));
+    for (int i = 0; i < count; ++i)
+      sum = multiply_add(Value(weights[i]), Vec3<Value>(site.load(steps[i])), sum);
+    Vec3<Value> const d =
+        Value(-Value(site.load(moves))) * tangent(Vec3<Value>(site.load(spins)), sum);
+    values[0] = dot(Vec3<Value>(site.load(gradient)), d);
+    values[1] = dot(d, d);
+    store_narrowed(d, site, direction);
+  }
+};
+
+/// The pairs, oldest first.
+template <class Spins>
+class Pairs {
+  using Real = typename Spins::value_type;
+
+ public:
+  Pairs(std::string const& name, Lattice const& lattice)
+      : steps_(numbered_fields<Spins, pairs_kept + 1>(name + "::step", lattice)),
+        changes_(numbered_fields<Spins, pairs_kept + 1>(name + "::change", lattice)) {}
+
+  std::size_t bytes() const { return (pairs_kept + 1) * (steps_[0].bytes() + changes_[0].bytes()); }
+
+  /// Room for a pair that may be kept or not.
+  Spins const& next_step() const { return steps_[count_]; }
+  Spins const& next_change() const { return changes_[count_]; }
+
+  std::size_t count() const { return count_; }
+  void forget() { count_ = 0; }
+  /// Keeps what is in next_step and next_change, of that product.
+  void keep(double product) {
+    products_[count_] = product;
+    if (count_ < pairs_kept) {
+      ++count_;
+      return;
+    }
+    std::rotate(steps_.begin(), steps_.begin() + 1, steps_.end());
+    std::rotate(changes_.begin(), changes_.begin() + 1, changes_.end());
+    std::rotate(products_.begin(), products_.begin() + 1, products_.end());
+  }
+
+  /// Step `i`, and the product s.y of its pair.
+  double product(std::size_t i) const { return products_[i]; }
+  Spins const& step(std::size_t i) const { return steps_[i]; }
+  Spins const& change(std::size_t i) const { return changes_[i]; }
+
+  void arrays(PairArrays<Real>& steps, PairArrays<Real>& changes) const {
+    for (std::size_t i = 0; i < pairs_kept; ++i) {
+      steps[i] = steps_[i].array();
+      changes[i] = changes_[i].array();
+    }
+  }
+
+ private:
+  std::array<Spins, pairs_kept + 1> steps_, changes_;
+  std::array<double, pairs_kept + 1> products_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace cayspin::detail
