@@ -66,14 +66,16 @@ struct MinimizeOptions {
 /// from the field itself, so terms of one's own, vacancies and coefficients of sites need nothing
 /// more. c follows the curvature along the last step. A state where the torque vanishes is left
 /// again when the Hessian has a negative eigenvalue there.
-/// Energies fall from iteration to iteration, up to round-off. Memory: 18 fields of three numbers
-/// per site, one of one number, and the grids of the multigrid.
+/// Energies fall from iteration to iteration, up to round-off.
 template <class Spins>
 class Minimizer {
   using Real = typename Spins::value_type;
   using Memory = typename Spins::memory_space;
 
  public:
+  /// Fields of three numbers per site that it allocates, the grids of the multigrid included.
+  static constexpr int work_fields = 20;
+
   /// Throws std::invalid_argument for a part of a lattice.
   explicit Minimizer(Spins const& like)
       : search_{named("trial", like), named("gradient", like), named("new_gradient", like),
@@ -176,7 +178,11 @@ class Minimizer {
     return std::nullopt;
   }
 
-  double round_off(Energy const& energy) const { return 16 * epsilon * energy.magnitude; }
+  /// Of spins whose components are rounded independently.
+  double round_off(Energy const& energy) const {
+    auto const sites = static_cast<double>(moves_.lattice().sites());
+    return 8 * epsilon * energy.magnitude / std::sqrt(sites);
+  }
 
   /// One step; false when no step goes down.
   template <class Exec, class Field>
@@ -342,8 +348,10 @@ class Minimizer {
     detail::CurvatureArrays<Spins> arrays{
         search_.direction, pairs_.step(0),   pairs_.step(1),   pairs_.step(2), pairs_.change(0),
         pairs_.change(1),  search_.trial,    pairs_.change(2), preconditioned_};
+    // Along what is flatter, a turn by a radian does not bring the torque above its bound.
+    double const flat = std::max(options.torque, 64 * epsilon * strongest_field_);
     auto const found = detail::find_lowest_curvature(
-        exec, field, options.time, spins, moves_, 64 * epsilon * strongest_field_, arrays,
+        exec, field, options.time, spins, moves_, flat, arrays,
         [&](Spins const& from, Spins const& to) { precondition(exec, from, to); });
     so_far_.evaluations += found.evaluations;
     so_far_.curvature = found.value;

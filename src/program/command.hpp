@@ -40,6 +40,16 @@ struct SweepOptions : SceneOptions {
   bool overwrite = false, quiet = false;
 };
 
+struct RelaxOptions : SceneOptions {
+  Precision precision = Precision::double_precision;
+  std::optional<std::filesystem::path> output;
+  std::optional<std::string> space;
+  std::optional<int> threads, device;
+  double torque = 1e-6;
+  std::int64_t evaluations = 100000;  // at each field
+  bool overwrite = false, quiet = false;
+};
+
 struct WatchOptions {
   std::filesystem::path file;
   bool once = false;
@@ -88,6 +98,7 @@ std::string describe_method(io::Scene const& scene);
 
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options, Ranks& ranks);
+int relax(RelaxOptions const& options);
 int sweep_over(SweepOptions const& options);
 int watch(WatchOptions const& options);
 int check(CheckOptions const& options);

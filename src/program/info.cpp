@@ -54,6 +54,10 @@ int info(std::filesystem::path const& file) {
   fmt::print("{:<12} {}\n", "units", describe_units(header.units));
   if (info.frames > 0) print_frame("first frame", info, 0);
   if (info.frames > 1) print_frame("last frame", info, static_cast<std::size_t>(info.frames) - 1);
+  if (info.cost.relaxed)
+    fmt::print("{:<12} {}, max |m x H| = {:.3g}{}\n", "at rest",
+               info.cost.relaxed->converged ? "yes" : "no", info.cost.relaxed->torque,
+               header.units.si ? " T" : "");
   fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
              duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
   fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);

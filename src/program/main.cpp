@@ -77,6 +77,23 @@ int perform(int argc, char** argv) {
       ->add_flag_callback("--report-progress", [&] { run_options.listener = Listener::program; })
       ->group("");  // what `sweep` starts its runs with
 
+  RelaxOptions relax_options;
+  auto* relax_command = app.add_subcommand(
+      "relax", "Find the state of rest of a scene, or one for each of its fields (HDF5)");
+  add_scene_options(*relax_command, relax_options, "double (default) or single");
+  relax_command->add_option("--output", relax_options.output, "The file; wins over output.file");
+  relax_command->add_option("--torque", relax_options.torque, "Largest |m x H| (default: 1e-6)")
+      ->check(CLI::PositiveNumber);
+  relax_command
+      ->add_option("--evaluations", relax_options.evaluations,
+                   "Most evaluations of a field (default: 100000)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  relax_command->add_flag("--overwrite", relax_options.overwrite, "Replace a file that exists");
+  add_space_options(*relax_command, relax_options);
+  relax_command->add_option("--device", relax_options.device, "Number of the device")
+      ->check(CLI::Range(0, 65536));
+  relax_command->add_flag("--quiet", relax_options.quiet, "No progress");
+
   SweepOptions sweep_options;
   auto* sweep_command = app.add_subcommand(
       "sweep", "Run a scene with all combinations of some keys' values, into one file (HDF5)");
@@ -178,6 +195,7 @@ int perform(int argc, char** argv) {
     if (argc > 1 && argv[1] == command) become_sibling("cayspin-" + command, argv);
   if (auto const status = ranks->together([&] { return parse(app, argc, argv); })) return *status;
   if (*run_command) return run(run_options, *ranks);
+  if (*relax_command) return relax(relax_options);
   if (*sweep_command) return sweep_over(sweep_options);
   if (*watch_command) return watch(watch_options);
   if (*check_command) return check(check_options);

@@ -80,6 +80,20 @@ AppliedComponent read_applied_component(Item const& item) {
   return text;
 }
 
+// Three components, or a list of fields of three numbers each.
+void read_applied(Item const& item, Field& field) {
+  auto const* const array = item.node->as_array();
+  if (array != nullptr && !array->empty() && array->front().is_array()) {
+    constexpr auto any = std::numeric_limits<std::size_t>::max();
+    for (auto const& entry : entries(item, 1, any, "three numbers, or a list of such fields"))
+      field.applied_in_turn.push_back(triple(entry));
+    return;
+  }
+  auto const three = entries(item, 3, 3, "three numbers or expressions in t");
+  field.applied.emplace();
+  std::ranges::transform(three, field.applied->begin(), read_applied_component);
+}
+
 // Whether the scene's one word stands there.
 bool option(Table const& table, std::string_view name, std::string_view only) {
   auto const item = table.find(name);
@@ -139,11 +153,7 @@ Field read_field(Table const& root, SystemKind kind) {
   if (auto const item = table.find("anisotropy")) {
     field.anisotropies = read_anisotropies(*item, root.scene());
   }
-  if (auto const item = table.find("applied")) {
-    auto const three = entries(*item, 3, 3, "three numbers or expressions in t");
-    field.applied.emplace();
-    std::ranges::transform(three, field.applied->begin(), read_applied_component);
-  }
+  if (auto const item = table.find("applied")) read_applied(*item, field);
   if (auto const item = table.find("slab_demag")) {
     field.slab_demag = read_slab_demag(*item, root.scene());
   }

@@ -138,6 +138,8 @@ void convert_field(Scene& scene, Table const& table, auto const& units) {
   if (has_normal) field.dmi = {units.dmi(*material.dmi), normal};
   if (field.slab_demag)
     field.slab_demag->strength = units.demagnetization(field.slab_demag->strength);
+  for (auto& in_turn : field.applied_in_turn)
+    for (double& component : in_turn) component = units.applied(component);
   scene.applied_in_tesla = field.applied;
   if (!field.applied) return;
   for (auto& component : *field.applied) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
 
+#include <cayspin/io/relax.hpp>
+
 #include <fmt/format.h>
 
 #include <array>
@@ -45,11 +47,37 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-}  // namespace
+enum class Purpose { run, relax };
 
-Scene parse_scene(std::string text, std::filesystem::path const& path,
-                  std::vector<std::string> const& overrides,
-                  std::shared_ptr<std::vector<double> const> given_spins) {
+// For a scene to relax, [integrator] is read where it is there.
+Integrator read_integrator_for(Purpose purpose, detail::Table const& root, SystemKind kind) {
+  if (purpose == Purpose::run || root.contains("integrator"))
+    return detail::read_integrator(root, kind);
+  Integrator none;
+  none.method = methods().front();
+  none.dt = 1;
+  return none;
+}
+
+void check_purpose(Purpose purpose, Scene const& scene) {
+  if (purpose == Purpose::run) {
+    if (!scene.field.applied_in_turn.empty())
+      throw scene_error(scene, "field.applied",
+                        "a list of fields is for cayspin relax; accepted: three numbers or "
+                        "expressions in t");
+    return;
+  }
+  if (scene.system.kind != SystemKind::llg)
+    throw scene_error(scene, "system.kind",
+                      "rigid bodies have no state of rest; accepted: \"llg\"");
+  if (depends_on_time(scene.field))
+    throw scene_error(scene, "field.applied",
+                      "depends on t, and a state of rest does not; accepted: numbers");
+}
+
+Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path const& path,
+                      std::vector<std::string> const& overrides,
+                      std::shared_ptr<std::vector<double> const> given_spins) {
   Scene scene;
   scene.path = path;
   scene.given_spins = std::move(given_spins);
@@ -70,12 +98,26 @@ Scene parse_scene(std::string text, std::filesystem::path const& path,
   scene.lattice = detail::read_lattice(root, scene.system.kind);
   scene.field = detail::read_field(root, scene.system.kind);
   scene.initial = detail::read_initial(root);
-  scene.integrator = detail::read_integrator(root, scene.system.kind);
+  scene.integrator = read_integrator_for(purpose, root, scene.system.kind);
   scene.thermal = detail::read_thermal(root, scene.system.kind);
   scene.output = detail::read_output(root, scene.integrator.steps);
   if (scene.units.si) detail::convert_to_reduced(root);
-  check_combination(scene);
+  if (purpose == Purpose::run || root.contains("integrator")) check_combination(scene);
+  check_purpose(purpose, scene);
   return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string text, std::filesystem::path const& path,
+                  std::vector<std::string> const& overrides,
+                  std::shared_ptr<std::vector<double> const> given_spins) {
+  return parse_scene_for(Purpose::run, std::move(text), path, overrides, std::move(given_spins));
+}
+
+Scene read_scene_to_relax(std::filesystem::path const& path,
+                          std::vector<std::string> const& overrides) {
+  return parse_scene_for(Purpose::relax, read_text(path), path, overrides, {});
 }
 
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides,

@@ -47,6 +47,10 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   write_units(attributes, header.units);
   attributes.create("text_checksum", std::bit_cast<std::int64_t>(text_checksum(header)));
   attributes.create("evaluations", std::int64_t{0});
+  if (header.relaxes) {
+    attributes.create("torque", 0.0);
+    attributes.create("converged", std::int64_t{0});
+  }
   attributes.create("wall_seconds", 0.0);
   attributes.create("step_seconds", 0.0);
   attributes.create("complete", std::int64_t{0});
@@ -125,6 +129,10 @@ class TrajectoryFile::Implementation {
     attributes.replace("evaluations", cost.evaluations);
     attributes.replace("wall_seconds", cost.wall_seconds);
     attributes.replace("step_seconds", cost.step_seconds);
+    if (cost.relaxed) {
+      attributes.replace("torque", cost.relaxed->torque);
+      attributes.replace("converged", std::int64_t{cost.relaxed->converged});
+    }
     flush();
     if (complete) {
       attributes.replace("complete", std::int64_t{1});

@@ -63,6 +63,8 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   info.cost.evaluations = attributes.read_integer("evaluations");
   info.cost.wall_seconds = attributes.read_real("wall_seconds");
   info.cost.step_seconds = attributes.read_real("step_seconds");
+  if (attributes.has("converged"))
+    info.cost.relaxed = {attributes.read_real("torque"), attributes.read_integer("converged") == 1};
   info.complete = attributes.read_integer("complete") == 1;
   auto const spins = open_dataset(file, "spins", 5, path);
   auto const extents = dataset_extents(spins.get(), path);

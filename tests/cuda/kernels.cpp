@@ -3,6 +3,7 @@
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/dear.hpp>
+#include <cayspin/minimize.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
@@ -86,6 +87,7 @@ struct Generators {
       stepper.step(Exec(), generator, spins, 0, 0.1);
       return energy(Exec(), generator, spins).value + largest_rate(Exec(), generator, spins);
     };
+    minimize(Exec(), std::get<0>(generators).field(), spins);
     using Half = typename ThermalNoise<S>::Half;
     ThermalNoise<S>(spins, 0.1, {.temperature = 1}).turn(Exec(), 1, Half::before, 0.1, spins);
     return std::apply([&](auto const&... generator) { return (one(generator) + ...); },

@@ -25,6 +25,7 @@ LIBRARY = [
     ("steppers", ["stepper/"]),
     ("time", ["exchange_memory.hpp", "integrate.hpp"]),
     ("observers", ["observer/"]),
+    ("minimisers", ["minimizer/", "minimize.hpp"]),
     ("everything", ["cayspin.hpp"]),
     ("ranks", ["mpi/"]),
     ("scenes and files", ["io/"]),

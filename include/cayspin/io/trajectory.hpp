@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct TrajectoryHeader {
   int threads = 1;
   std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz
   Units units;                                 ///< of the times and energies in the file
+  bool relaxes = false;                        ///< it ends with RunCost::relaxed
 };
 
 /// How /spins lies in the file.
@@ -58,11 +60,18 @@ struct Scalars {
   std::array<double, 3> magnetization{};  ///< mean of m over the sites
 };
 
+/// What `cayspin relax` came to.
+struct Relaxed {
+  double torque = 0;       ///< the largest max |m x H| of its frames: reduced, or mu0 H in T
+  bool converged = false;  ///< each frame a minimum, to the bound on the torque
+};
+
 /// What a run cost, known once it has ended.
 struct RunCost {
   std::int64_t evaluations = 0;  ///< evaluations of the generator over all sites
   double wall_seconds = 0;       ///< the whole run
   double step_seconds = 0;       ///< stepping alone: no observers, no writing
+  std::optional<Relaxed> relaxed = {};
 };
 
 /// Writes one run. The file is readable after every write_frame, also by a reader that finds the

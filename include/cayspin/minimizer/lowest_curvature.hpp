@@ -142,8 +142,13 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
   found.value = product(x, hx)[0];
   double old_decrease = 0;
   for (int step = 0; step < most_steps; ++step) {
-    found.is_negative = found.value < -tolerance;
-    if (found.is_negative) break;
+    if (found.value < -tolerance) {
+      // Once more from the field: round-off of the steps so far is left behind.
+      auto const [along, square] = product(x, hx);
+      found.value = along / square;
+      found.is_negative = found.value < -tolerance;
+      if (found.is_negative) break;
+    }
     // w, preconditioned, of the residual r; and r.w, by which the quotient is about to fall.
     double const r_old_w = [&] {
       combine(exec, 1, hx, -found.value, x, shifted);

@@ -142,7 +142,8 @@ FieldStrengths probe(Exec const& exec, Field const& field, double time, Spins co
     auto const opposed = alternating(axis);
     rests = opposed[2];
     double const coupling = (parallel[0] - opposed[0]) / (4 * bonds);
-    found.couplings[i] = std::isfinite(coupling) ? std::max(coupling, 0.0) : 0;
+    bool const is_noise = !(4 * bonds * coupling > 1e-5 * std::abs(parallel[0]));
+    found.couplings[i] = is_noise || !std::isfinite(coupling) ? 0 : coupling;
   }
   if (rests > 0) look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], spins.output(false)});
   return found;

@@ -33,12 +33,12 @@ struct TurnTowards {
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    Vec3<Value> const m = site.load(spins);
-    Vec3<Value> const turned =
-        Cayley::rotate(cross(m, Vec3<Value>(Value(step) * site.load(direction))), m);
+    Vec3<Value> const m = site.load(spins), d = site.load(direction);
+    Vec3<Value> const turned = Cayley::rotate(cross(m, Vec3<Value>(Value(step) * d)), m);
     // A Newton step towards |m| = 1: round-off does not add up.
     Value const half_excess = Value(Real(0.5)) * (Value(1) - dot(turned, turned));
-    site.store(multiply_add(half_excess, turned, turned), output);
+    site.store(select<Value>(dot(d, d) == Value(0), m, multiply_add(half_excess, turned, turned)),
+               output);
   }
 };
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "cayspin_git_commit.hpp"
+#include "command.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/run_files.hpp"
+#include "simulation/scene_field.hpp"
+#include "simulation/space.hpp"
+#include "simulation/text.hpp"
+
+#include <cayspin/io/relax.hpp>
+#include <cayspin/io/run_output.hpp>
+#include <cayspin/minimize.hpp>
+#include <cayspin/observer/record.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cayspin::program {
+namespace {
+
+// One field for each state that is asked for.
+std::vector<io::Field> fields_in_turn(io::Scene const& scene) {
+  if (scene.field.applied_in_turn.empty()) return {scene.field};
+  std::vector<io::Field> fields;
+  for (auto const& [x, y, z] : scene.field.applied_in_turn) {
+    fields.push_back(scene.field);
+    fields.back().applied = {x, y, z};
+  }
+  return fields;
+}
+
+std::filesystem::path output_file(io::Scene const& scene, RelaxOptions const& options) {
+  if (options.output) return *options.output;
+  if (scene.output.file) return *scene.output.file;
+  throw io::scene_error(scene, "output.file",
+                        "no file to write to; accepted: this key, or --output FILE.h5");
+}
+
+template <class Real, class Space>
+class Relaxation {
+  using Spins = SpinField<Real, typename Space::memory_space>;
+
+ public:
+  Relaxation(io::Scene const& scene, Lattice const& lattice, RelaxOptions const& options)
+      : scene_(scene), options_(options), spins_("spins", lattice), minimizer_(spins_) {
+    copy_from_host(io::initial_spins(scene), spins_);
+    int const threads = cayspin::detail::is_host_execution<Space> ? exec_.concurrency() : 1;
+    auto header =
+        run_header(scene, options.precision, space_name<Space>(), threads, CAYSPIN_GIT_COMMIT);
+    header.relaxes = true;
+    file_.emplace(output_file(scene, options), header,
+                  run_output_options(scene, options.overwrite));
+  }
+
+  int run() {
+    auto const fields = fields_in_turn(scene_);
+    for (auto const& field : fields) {
+      auto const found = relax_in(SceneField<Spins>(field, spins_.lattice()));
+      cost_.evaluations += found.evaluations;
+      cost_.relaxed->torque =
+          std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
+      bool const interrupted = found.end == MinimizeEnd::interrupted;
+      if (found.end != MinimizeEnd::converged && failures_++ == 0) first_failure_ = found.end;
+      if (!options_.quiet) report(fields.size(), found);
+      if (interrupted) break;
+      ++states_;
+    }
+    cost_.wall_seconds = clock_.seconds();
+    cost_.relaxed->converged = failures_ == 0;
+    bool const interrupted = states_ < static_cast<std::int64_t>(fields.size());
+    interrupted ? file_->close(cost_) : file_->finish(cost_);
+    if (failures_ == 0) return Status::done;
+    fmt::print(stderr, "{}: {} of {} states not converged, the first for: {}\n",
+               scene_.path.string(), failures_, fields.size(), to_string(first_failure_));
+    return interrupted ? Status::interrupted : Status::numbers_failed;
+  }
+
+ private:
+  Minimum relax_in(SceneField<Spins> const& field) {
+    Kokkos::Timer const clock;
+    Minimum found;
+    try {
+      found = minimizer_.minimize(
+          exec_, field, spins_,
+          {.torque = options_.torque / scene_.units.field,
+           .evaluations = options_.evaluations,
+           .observer = [](Minimum const&) {
+             return interrupt_requested() ? Next::stop : Next::proceed;
+           }});
+    } catch (std::invalid_argument const&) {
+      throw NumbersFailed(fmt::format("{}: the field of the start, or its energy, is not finite",
+                                      scene_.path.string()));
+    }
+    cost_.step_seconds += clock.seconds();
+    Step const step{states_, static_cast<double>(states_), 1, true};
+    last_ = sample(exec_, field, step, spins_);
+    auto const scalars = as_scalars(last_, scene_.units);
+    auto const numbers = copy_to_host(spins_);
+    std::ranges::copy(numbers, file_->template frame<Real>());
+    file_->write_scalars(step.number, step.time, scalars);
+    file_->write_frame(step.number, step.time, scalars);
+    return found;
+  }
+
+  void report(std::size_t count, Minimum const& found) const {
+    auto const& m = last_.magnetization;
+    fmt::print("{} of {}: {} after {} evaluations, max |m x H| = {:.3g}{}, energy {}, <m> = "
+               "({:.6g}, {:.6g}, {:.6g})\n",
+               states_ + 1, count, to_string(found.end), found.evaluations,
+               found.torque * scene_.units.field, scene_.units.si ? " T" : "",
+               energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
+  }
+
+  io::Scene const& scene_;
+  RelaxOptions const& options_;
+  Space exec_;
+  Spins spins_;
+  Minimizer<Spins> minimizer_;
+  std::optional<io::RunOutput> file_;
+  io::RunCost cost_{.relaxed = io::Relaxed{}};
+  Kokkos::Timer clock_;
+  Sample last_;
+  std::int64_t states_ = 0, failures_ = 0;
+  MinimizeEnd first_failure_ = MinimizeEnd::converged;
+};
+
+}  // namespace
+
+int relax(RelaxOptions const& options) {
+  auto const scene = io::read_scene_to_relax(options.scene, options.overrides);
+  output_file(scene, options);
+  io::check_files(scene);
+  auto const space = chosen_space(options.space);
+  KokkosSession const kokkos(space, options.threads, options.device);
+  auto plan = make_plan(scene, options.precision);
+  plan.memory.work = plan.memory.spins * Minimizer<SpinField<double>>::work_fields;
+  require_memory(scene, plan);
+  catch_signals();
+  return in_space(space, options.precision, [&]<class Real, class Space>() {
+    return Relaxation<Real, Space>(scene, plan.lattice, options).run();
+  });
+}
+
+}  // namespace cayspin::program

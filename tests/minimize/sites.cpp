@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Vacant sites stay as they are, coefficients of sites need nothing more, and wrong calls.
+#include "../support/coefficients.hpp"
+#include "../support/wrong_call.hpp"
+#include "films.hpp"
+
+namespace cayspin::test {
+namespace {
+
+template <class Backend>
+class Sites : public ::testing::Test {
+ protected:
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec exec;
+};
+TYPED_TEST_SUITE(Sites, Backends, BackendName);
+
+TYPED_TEST(Sites, VacantOnesStay) {
+  using Spins = typename TestFixture::Spins;
+  auto const lattice = Lattice::cubic(21, 9, 4);
+  auto const start = random_directions(lattice.sites(), 5);
+  auto const vacant = [](std::int64_t site) { return site % 7 == 2 || site % 11 == 0; };
+  auto spins = spins_of<Spins>(lattice, start);
+  auto const before = numbers_of(spins);
+  FieldWithVacancies const field(
+      EffectiveField(Exchange(lattice, 20), UniaxialAnisotropy(0.4, {1, 1, 0})),
+      numbers_on<Spins>(lattice, [&](std::int64_t site) { return vacant(site) ? 0 : 1; }));
+  auto const found = minimize(this->exec, field, spins, {.torque = 1e-4});
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  auto const after = numbers_of(spins);
+  for (std::int64_t site = 0; site < lattice.sites(); ++site)
+    for (int c = 0; c < 3; ++c)
+      if (vacant(site)) EXPECT_EQ(after[3 * site + c], before[3 * site + c]) << site;
+  LandauLifshitz const generator(field, 0);
+  EXPECT_LT(largest_rate(this->exec, generator, spins), 1.2e-4);
+}
+
+TYPED_TEST(Sites, WithExchangeAndAnisotropyOfTheirOwn) {
+  using Spins = typename TestFixture::Spins;
+  auto const lattice = Lattice::square(30, 23);
+  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 6));
+  EffectiveField const field(
+      SiteDependentExchange(random_numbers_on<Spins>(lattice, 20, 200, 3)),
+      UniaxialAnisotropy(0.4, {0, 0, 1}));
+  auto const found = minimize(this->exec, field, spins, {.torque = 1e-4});
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  EXPECT_NEAR(found.energy.value, -0.2 * 30 * 23, 1e-3);
+  EXPECT_LE(found.evaluations, 90);
+}
+
+TYPED_TEST(Sites, WrongCalls) {
+  using Spins = typename TestFixture::Spins;
+  auto const lattice = Lattice::square(8, 4);
+  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 1));
+  auto other = spins_of<Spins>(Lattice::square(4, 8), random_directions(lattice.sites(), 1));
+  Minimizer minimizer(spins);
+  auto const field = film(lattice, 1);
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  expect_refused({
+      {"torque 0", [&] { minimize(this->exec, field, spins, {.torque = 0}); }},
+      {"torque nan", [&] { minimize(this->exec, field, spins, {.torque = nan}); }},
+      {"evaluations", [&] { minimize(this->exec, field, spins, {.evaluations = 0}); }},
+      {"other spins", [&] { minimizer.minimize(this->exec, field, other); }},
+      {"other field", [&] { minimize(this->exec, field, other); }},
+      {"not finite", [&] { minimize(this->exec, Zeeman{{nan, 0, 0}}, spins); }},
+  });
+}
+
+}  // namespace
+}  // namespace cayspin::test
