@@ -32,10 +32,14 @@ enum class MinimizeEnd {
 
 constexpr std::string_view to_string(MinimizeEnd end) {
   switch (end) {
-    case MinimizeEnd::converged: return "converged";
-    case MinimizeEnd::stagnated: return "stagnated";
-    case MinimizeEnd::evaluation_limit: return "evaluation limit";
-    case MinimizeEnd::interrupted: return "interrupted";
+    case MinimizeEnd::converged:
+      return "converged";
+    case MinimizeEnd::stagnated:
+      return "stagnated";
+    case MinimizeEnd::evaluation_limit:
+      return "evaluation limit";
+    case MinimizeEnd::interrupted:
+      return "interrupted";
   }
   return "";
 }
@@ -128,8 +132,8 @@ class Minimizer {
     auto const found = detail::probe(exec, field, options.time, search_.trial, moves_);
     so_far_.evaluations += found.evaluations;
     couplings_ = options.preconditioned ? found.couplings : std::array<double, 3>{};
-    strongest_field_ = found.rest + 4 * (found.couplings[0] + found.couplings[1] +
-                                         found.couplings[2]);
+    strongest_field_ =
+        found.rest + 4 * (found.couplings[0] + found.couplings[1] + found.couplings[2]);
     exchange_.emplace("Minimizer::exchange", spins.lattice(), couplings_);
     first_shift_ = found.rest > 0 ? found.rest : strongest_field_ > 0 ? 1e-3 * strongest_field_ : 1;
     shift_ = first_shift_;
@@ -186,8 +190,7 @@ class Minimizer {
 
   /// One step; false when no step goes down.
   template <class Exec, class Field>
-  bool iterate(Exec const& exec, Field const& field, Spins& spins,
-               MinimizeOptions const& options) {
+  bool iterate(Exec const& exec, Field const& field, Spins& spins, MinimizeOptions const& options) {
     for (bool const with_pairs : {true, false}) {
       if (!with_pairs) {
         if (pairs_.count() == 0) return false;
@@ -272,8 +275,7 @@ class Minimizer {
     double const scale = count > 0 ? scale_of_preconditioner(exec, spins, products) : 1;
     precondition(exec, changes_left_, preconditioned_);
     std::array<double, detail::pairs_kept> along{};
-    if (count > 0)
-      along = products_with_changes(exec, spins, preconditioned_, products);
+    if (count > 0) along = products_with_changes(exec, spins, preconditioned_, products);
     for (int i = 0; i < count; ++i) {
       double beta = scale * along[index(i)];
       for (int j = 0; j < i; ++j) beta += weights[index(j)] * at(Products::of(j, i));
@@ -343,11 +345,11 @@ class Minimizer {
   /// At a state of rest: turns the spins out of a saddle, or says what the state is.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> leave_saddle(Exec const& exec, Field const& field, Spins& spins,
-                    MinimizeOptions const& options) {
+                                          MinimizeOptions const& options) {
     pairs_.forget();
-    detail::CurvatureArrays<Spins> arrays{
-        search_.direction, pairs_.step(0),   pairs_.step(1),   pairs_.step(2), pairs_.change(0),
-        pairs_.change(1),  search_.trial,    pairs_.change(2), preconditioned_};
+    detail::CurvatureArrays<Spins> arrays{search_.direction, pairs_.step(0),   pairs_.step(1),
+                                          pairs_.step(2),    pairs_.change(0), pairs_.change(1),
+                                          search_.trial,     pairs_.change(2), preconditioned_};
     // Along what is flatter, a turn by a radian does not bring the torque above its bound.
     double const flat = std::max(options.torque, 64 * epsilon * strongest_field_);
     auto const found = detail::find_lowest_curvature(

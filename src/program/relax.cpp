@@ -63,8 +63,7 @@ class Relaxation {
     for (auto const& field : fields) {
       auto const found = relax_in(SceneField<Spins>(field, spins_.lattice()));
       cost_.evaluations += found.evaluations;
-      cost_.relaxed->torque =
-          std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
+      cost_.relaxed->torque = std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
       bool const interrupted = found.end == MinimizeEnd::interrupted;
       if (found.end != MinimizeEnd::converged && failures_++ == 0) first_failure_ = found.end;
       if (!options_.quiet) report(fields.size(), found);
@@ -86,13 +85,12 @@ class Relaxation {
     Kokkos::Timer const clock;
     Minimum found;
     try {
-      found = minimizer_.minimize(
-          exec_, field, spins_,
-          {.torque = options_.torque / scene_.units.field,
-           .evaluations = options_.evaluations,
-           .observer = [](Minimum const&) {
-             return interrupt_requested() ? Next::stop : Next::proceed;
-           }});
+      found = minimizer_.minimize(exec_, field, spins_,
+                                  {.torque = options_.torque / scene_.units.field,
+                                   .evaluations = options_.evaluations,
+                                   .observer = [](Minimum const&) {
+                                     return interrupt_requested() ? Next::stop : Next::proceed;
+                                   }});
     } catch (std::invalid_argument const&) {
       throw NumbersFailed(fmt::format("{}: the field of the start, or its energy, is not finite",
                                       scene_.path.string()));
@@ -110,11 +108,12 @@ class Relaxation {
 
   void report(std::size_t count, Minimum const& found) const {
     auto const& m = last_.magnetization;
-    fmt::print("{} of {}: {} after {} evaluations, max |m x H| = {:.3g}{}, energy {}, <m> = "
-               "({:.6g}, {:.6g}, {:.6g})\n",
-               states_ + 1, count, to_string(found.end), found.evaluations,
-               found.torque * scene_.units.field, scene_.units.si ? " T" : "",
-               energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
+    fmt::print(
+        "{} of {}: {} after {} evaluations, max |m x H| = {:.3g}{}, energy {}, <m> = "
+        "({:.6g}, {:.6g}, {:.6g})\n",
+        states_ + 1, count, to_string(found.end), found.evaluations,
+        found.torque * scene_.units.field, scene_.units.si ? " T" : "",
+        energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
   }
 
   io::Scene const& scene_;

@@ -24,8 +24,8 @@ TYPED_TEST(Exact, StonerWohlfarth) {
   for (double const degrees : {5.0, 20.0, 45.0, 70.0}) {
     double const psi = degrees * std::numbers::pi / 180;
     double const switching =
-        strength * std::pow(std::pow(std::cos(psi), 2.0 / 3) + std::pow(std::sin(psi), 2.0 / 3),
-                            -1.5);
+        strength *
+        std::pow(std::pow(std::cos(psi), 2.0 / 3) + std::pow(std::sin(psi), 2.0 / 3), -1.5);
     auto spins = spins_of<typename TestFixture::Spins>(Lattice::chain(1), {0, 0, 1});
     Minimizer minimizer(spins);
     double switched = 0;

@@ -35,8 +35,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
       EXPECT_EQ(found.end, MinimizeEnd::converged) << exchange << " " << i;
       EXPECT_LT(found.torque, 1e-6) << exchange << " " << i;
       EXPECT_LE(found.evaluations, most) << exchange << " " << i;
-      EXPECT_LT(norm_defect(this->exec, this->spins),
-                4 * epsilon<typename TypeParam::Real>);
+      EXPECT_LT(norm_defect(this->exec, this->spins), 4 * epsilon<typename TypeParam::Real>);
       // The torque, by code that the minimiser has no part in.
       LandauLifshitz const generator(film(this->spins.lattice(), exchange), 0);
       EXPECT_LT(largest_rate(this->exec, generator, this->spins), 1.1e-6);
@@ -67,12 +66,10 @@ TYPED_TEST(Films, EndEarly) {
   EXPECT_LT(limited.evaluations, 40);
   EXPECT_GT(limited.torque, 1e-6);
   int calls = 0;
-  auto const stopped = this->relax(
-      50, start,
-      {.observer = [&](Minimum const& so_far) {
-        EXPECT_EQ(so_far.iterations, ++calls);
-        return calls == 5 ? Next::stop : Next::proceed;
-      }});
+  auto const stopped = this->relax(50, start, {.observer = [&](Minimum const& so_far) {
+                                     EXPECT_EQ(so_far.iterations, ++calls);
+                                     return calls == 5 ? Next::stop : Next::proceed;
+                                   }});
   EXPECT_EQ(stopped.end, MinimizeEnd::interrupted);
   EXPECT_EQ(stopped.iterations, 5);
 }

@@ -98,14 +98,14 @@ TEST(RandomScenes, EndInMinima) {
         spins_of<Host>(scene.lattice, random_directions(scene.lattice.sites(), seed + 5000));
     double last = energy(exec, scene.field(), spins).value;
     double const field = 12 * std::abs(scene.exchange) + 4;
-    auto const found = minimize(
-        exec, scene.field(), spins,
-        {.torque = 1e-9 * field, .observer = [&](Minimum const& now) {
-           EXPECT_LE(now.energy.value, last + 16 * epsilon<double> * now.energy.magnitude)
-               << "seed " << seed << ", iteration " << now.iterations;
-           last = now.energy.value;
-           return Next::proceed;
-         }});
+    auto const found =
+        minimize(exec, scene.field(), spins,
+                 {.torque = 1e-9 * field, .observer = [&](Minimum const& now) {
+                    EXPECT_LE(now.energy.value, last + 16 * epsilon<double> * now.energy.magnitude)
+                        << "seed " << seed << ", iteration " << now.iterations;
+                    last = now.energy.value;
+                    return Next::proceed;
+                  }});
     auto const m = numbers_of(spins);
     EXPECT_LT(norm_defect(exec, spins), 4 * epsilon<double>) << seed;
     if (found.end != MinimizeEnd::converged) continue;

@@ -39,9 +39,8 @@ TYPED_TEST(Sites, WithExchangeAndAnisotropyOfTheirOwn) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::square(30, 23);
   auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 6));
-  EffectiveField const field(
-      SiteDependentExchange(random_numbers_on<Spins>(lattice, 20, 200, 3)),
-      UniaxialAnisotropy(0.4, {0, 0, 1}));
+  EffectiveField const field(SiteDependentExchange(random_numbers_on<Spins>(lattice, 20, 200, 3)),
+                             UniaxialAnisotropy(0.4, {0, 0, 1}));
   auto const found = minimize(this->exec, field, spins, {.torque = 1e-4});
   EXPECT_EQ(found.end, MinimizeEnd::converged);
   EXPECT_NEAR(found.energy.value, -0.2 * 30 * 23, 1e-3);
@@ -62,7 +61,10 @@ TYPED_TEST(Sites, WrongCalls) {
       {"evaluations", [&] { minimize(this->exec, field, spins, {.evaluations = 0}); }},
       {"other spins", [&] { minimizer.minimize(this->exec, field, other); }},
       {"other field", [&] { minimize(this->exec, field, other); }},
-      {"not finite", [&] { minimize(this->exec, Zeeman{{nan, 0, 0}}, spins); }},
+      {"not finite",
+       [&] {
+         minimize(this->exec, Zeeman{{nan, 0, 0}}, spins);
+       }},
   });
 }
 

@@ -113,7 +113,9 @@ TEST_F(Relax, RefusesInOneLine) {
            {scene, {"--set", "field.applied=[\"t\", 0, 0]"}, "field.applied: depends on t"},
            {scene, {"--set", "field.applied=[[1, 0]]"}, "field.applied"},
            {scene, {"--set", "field.applied=[[1, 0, 0], 2]"}, "field.applied"},
-           {scene, {"--set", "system={ kind = \"rigid_body\", inertia = [1, 2, 3] }"}, "lattice.shape"},
+           {scene,
+            {"--set", "system={ kind = \"rigid_body\", inertia = [1, 2, 3] }"},
+            "lattice.shape"},
            {scene, {"--set", "integrator.dt=-1"}, "integrator"},
            {scene, {"--torque", "0"}, "--torque"}}) {
     auto const outcome = relax(text, more);

@@ -39,8 +39,7 @@ struct ProductsOfPairs {
     for (int j = 0; j < count; ++j) {
       values[j] = dot(Vec3<Value>(site.load(steps[j])), g);
       Vec3<Value> const change = tangent(m, Vec3<Value>(site.load(changes[j])));
-      for (int i = 0; i < j; ++i)
-        values[of(i, j)] = dot(Vec3<Value>(site.load(steps[i])), change);
+      for (int i = 0; i < j; ++i) values[of(i, j)] = dot(Vec3<Value>(site.load(steps[i])), change);
     }
     if (count == 0) return;
     Stencil<Site, Real> const last(site, steps[count - 1]);

@@ -63,7 +63,8 @@ struct RandomSigns {
         static_cast<std::uint64_t>((std::int64_t(site.z()) * ny + site.y()) * nx + site.x());
     for (int lane = 0; lane < lanes; ++lane) {
       std::uint64_t const bits = mixed(first + static_cast<std::uint64_t>(lane));
-      for (int c = 0; c < 3; ++c) signs[c][lane] = Real((bits >> (20 + c)) & 1U ? 0.57735027 : -0.57735027);
+      for (int c = 0; c < 3; ++c)
+        signs[c][lane] = Real((bits >> (20 + c)) & 1U ? 0.57735027 : -0.57735027);
     }
     Vec3<Value> const v{load<Value>(signs[0]), load<Value>(signs[1]), load<Value>(signs[2])};
     site.store(v, output);
@@ -110,9 +111,9 @@ struct FieldStrengths {
 /// Evaluates the field for parallel spins and for spins that alternate along each axis. `spins` is
 /// overwritten. `moves` becomes 1 where there was a field, and stays where there was none.
 template <class Exec, class Field, class Spins>
-FieldStrengths probe(Exec const& exec, Field const& field, double time, Spins const& spins,
-                     ScalarField<typename Spins::value_type, typename Spins::memory_space> const&
-                         moves) {
+FieldStrengths probe(
+    Exec const& exec, Field const& field, double time, Spins const& spins,
+    ScalarField<typename Spins::value_type, typename Spins::memory_space> const& moves) {
   using Real = typename Spins::value_type;
   auto const& lattice = spins.lattice();
   FieldStrengths found;
@@ -120,9 +121,9 @@ FieldStrengths probe(Exec const& exec, Field const& field, double time, Spins co
     for_each_site<Real>(exec, "cayspin::minimize::pattern", spins.layout(), pattern);
     auto prepared = prepare_term(field, exec, spins, time);
     ++found.evaluations;
-    return reduce_sites<SumsThenMaxima<2>, 3>(exec, "cayspin::minimize::probe", spins.layout(),
-                                              FieldAlongSpins<decltype(prepared), Real>{
-                                                  std::move(prepared), spins.array(),
+    return reduce_sites<SumsThenMaxima<2>, 3>(
+        exec, "cayspin::minimize::probe", spins.layout(),
+        FieldAlongSpins<decltype(prepared), Real>{std::move(prepared), spins.array(),
                                                   moves.array()});
   };
   auto const alternating = [&](int axis) {

@@ -79,9 +79,9 @@ struct LookAtTrial {
 /// What is known of a point.
 struct PointOnPath {
   Energy energy;
-  double slope = 0;                         // dE/da
+  double slope = 0;                                          // dE/da
   double curvature = 0, step_square = 0, change_square = 0;  // of the pair
-  double torque = 0;                        // max |m x H|
+  double torque = 0;                                         // max |m x H|
 
   bool is_finite() const { return std::isfinite(energy.value) && std::isfinite(torque); }
 };
@@ -93,8 +93,8 @@ struct SearchArrays {
 
 /// Turns `spins` by `step` into `search.trial` and looks at it.
 template <class Exec, class Field, class Spins>
-PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins const& spins, double step,
-                       SearchArrays<Spins> const& search, Spins const& moved,
+PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins const& spins,
+                       double step, SearchArrays<Spins> const& search, Spins const& moved,
                        Spins const& changed) {
   using Real = typename Spins::value_type;
   for_each_site<Real>(exec, "cayspin::minimize::turn", spins.layout(),
@@ -107,8 +107,12 @@ PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins 
       Look{std::move(prepared), spins.array(), search.direction.array(), search.gradient.array(),
            static_cast<double>(static_cast<Real>(step)), search.trial.array(),
            search.new_gradient.array(), moved.array(), changed.array()});
-  return {{v[Look::energy], v[Look::magnitude]}, v[Look::slope],       v[Look::curvature],
-          v[Look::step_square],                  v[Look::change_square], std::sqrt(v[Look::torque])};
+  return {{v[Look::energy], v[Look::magnitude]},
+          v[Look::slope],
+          v[Look::curvature],
+          v[Look::step_square],
+          v[Look::change_square],
+          std::sqrt(v[Look::torque])};
 }
 
 }  // namespace cayspin::detail
