@@ -61,7 +61,7 @@ class Relaxation {
   int run() {
     auto const fields = fields_in_turn(scene_);
     for (auto const& field : fields) {
-      auto const found = relax_in(SceneField<Spins>(field, spins_.lattice()));
+      auto const found = relax_in(SceneField<Spins>(field, spins_.lattice(), false));
       cost_.evaluations += found.evaluations;
       cost_.relaxed->torque = std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
       bool const interrupted = found.end == MinimizeEnd::interrupted;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // One mistake for each CAYSPIN_TEST_MISTAKE; the compiler must answer with the library's sentence.
 #include <cayspin/cayspin.hpp>
+#include <cayspin/field/dear.hpp>
+#include <cayspin/stepper/multirate.hpp>
 
 using namespace cayspin;
 
@@ -144,5 +146,10 @@ inline void refused() {
 #elif CAYSPIN_TEST_MISTAKE == 31
   RungeKutta<Spins, tableau::Heun, update::Stereographic, isotropy::Analytic>("chart", spins)
       .step(exec, body, spins, 0, 0.1);
+#elif CAYSPIN_TEST_MISTAKE == 32
+  Dear const dear(spins, SlabDemag({1, 0, 0}));
+  Multirate multirate(spins, LieAdamsBashforth2<Spins>(spins), dear);
+#elif CAYSPIN_TEST_MISTAKE == 33
+  with(Dear(spins, Term()));
 #endif
 }
