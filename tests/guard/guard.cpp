@@ -105,6 +105,12 @@ TEST(Guard, EnergiesAreHeldWhereDampingLetsThemOnlyFall) {
       "[system]\nkind = \"rigid_body\"\ninertia = [1, 2, 3]\n[lattice]\nshape = [4]\n[initial]\n"
       "uniform = [1, 0, 0]\n[integrator]\nmethod = \"rkmk4\"\ndt = 0.125\nsteps = 8\n",
       "scene.toml")));
+  // At a temperature it may rise.
+  auto warm = scene(0.5);
+  warm.thermal = io::Thermal{0.1, 0};
+  EXPECT_FALSE(energy_must_fall(warm));
+  warm.thermal->temperature = 0;
+  EXPECT_TRUE(energy_must_fall(warm));
   Guard undamped(scene(0), std::numeric_limits<double>::epsilon());
   EXPECT_FALSE(undamped.judge(at(0), {0, 1}, 0));
   EXPECT_FALSE(undamped.judge(at(1), {1, 1}, 0));

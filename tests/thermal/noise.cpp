@@ -185,6 +185,37 @@ TYPED_TEST(Thermal, AUniaxialSpinFollowsBoltzmann) {
   EXPECT_NEAR(found / sites, expected, 5 * error + 5e-4);
 }
 
+// E = -(m_x^2 + 2 m_z^2) / 2: hard, medium and easy axis. <m_x^2> and <m_z^2> by the middle of
+// cells over the sphere.
+TYPED_TEST(Thermal, ABiaxialSpinFollowsBoltzmann) {
+  double const temperature = 0.4;
+  EffectiveField const field(UniaxialAnisotropy(1, {1, 0, 0}), UniaxialAnisotropy(2, {0, 0, 1}));
+  std::array<double, 2> expected{}, fourths{};
+  double weights = 0;
+  constexpr int cells = 400;
+  for (int i = 0; i < cells; ++i)
+    for (int j = 0; j < cells; ++j) {
+      double const z = (i + 0.5) / cells, angle = std::acos(-1) / 2 * (j + 0.5) / cells;
+      double const x = std::sqrt(1 - z * z) * std::cos(angle);
+      double const weight = std::exp((x * x / 2 + z * z) / temperature);
+      weights += weight;
+      for (auto const& [axis, value] : {std::pair{0U, x}, std::pair{1U, z}}) {
+        expected[axis] += weight * value * value;
+        fourths[axis] += weight * std::pow(value, 4);
+      }
+    }
+  auto const numbers = numbers_of(this->at_rest(field, temperature, 0.05, 300));
+  auto const sites = static_cast<double>(numbers.size() / 3);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    double found = 0;
+    for (std::size_t i = 2 * axis; i < numbers.size(); i += 3)
+      found += numbers[i] * numbers[i] / sites;
+    double const mean = expected[axis] / weights;
+    EXPECT_NEAR(found, mean, 5 * std::sqrt((fourths[axis] / weights - mean * mean) / sites) + 1e-3)
+        << axis;
+  }
+}
+
 // A turn's own round-off is the same in each step: without care, 1e5 of them add up to 400 epsilon.
 TYPED_TEST(Thermal, LengthsDoNotDrift) {
   using Spins = typename TypeParam::Spins;
@@ -225,6 +256,39 @@ TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   EXPECT_EQ(run({{0, 5}, {5, 5}, {5, 12}}, 9, true), whole);
   EXPECT_NE(run({{0, 12}}, 10), whole);
   EXPECT_NE(run({{0, 12}}, 9 + (1ULL << 40U)), whole);
+}
+
+// Devices work on one site at a time: each draws the words that packs of sites share.
+template <class Real>
+class ThermalSites : public ::testing::Test {};
+TYPED_TEST_SUITE(ThermalSites, Precisions, PrecisionName);
+
+TYPED_TEST(ThermalSites, TurnOneByOneAsInPacks) {
+  using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
+  auto const lattice = Lattice::cubic(77, 5, 3);
+  auto const start = random_directions(lattice.sites(), 3);
+  auto const packs = spins_of<Spins>(lattice, start), sites = spins_of<Spins>(lattice, start);
+  detail::TurnAtRandom<TypeParam> kernel{};
+  kernel.seed = 0x123456789abcdefULL;
+  kernel.draw = 1ULL << 40U;
+  kernel.after = kernel.before = true;
+  kernel.blocks = 3;
+  kernel.ny = 5;
+  kernel.nz = 3;
+  kernel.set_variance(0.2);
+  auto const on = [&](Spins const& spins) {
+    kernel.spins = spins.array();
+    kernel.output = spins.output(false);
+    return kernel;
+  };
+  Kokkos::DefaultHostExecutionSpace const exec;
+  detail::for_each_site<TypeParam>(exec, "packs", packs.layout(), on(packs));
+  detail::SiteLoop<TypeParam, decltype(kernel)> const loop{on(sites), sites.layout(),
+                                                           sites.layout().all()};
+  for (std::int64_t site = 0; site < lattice.sites(); ++site) loop(site);
+  exec.fence();
+  EXPECT_EQ(numbers_of(sites), numbers_of(packs));
+  EXPECT_NE(numbers_of(sites), start);
 }
 
 TEST(ThermalBits, AreThoseOfEveryHostSpace) {

@@ -29,13 +29,14 @@ struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
   std::uint64_t seed, draw;
-  bool after, before;                             // which halves
-  std::int64_t first_y, first_z, blocks, ny, nz;  // of the part in the whole lattice, and that
+  bool after, before;                     // which halves
+  std::int64_t first_y, first_z, ny, nz;  // of the part in the whole lattice, and that
+  std::uint64_t blocks;                   // of 32 sites in a row
   // The quaternion of exp(v) is cosine + w, with +-small, +-large and 0 for the components of w.
   Real cosine, small, large;
 
   // A counter has a word for each of four sites, eight counters those of a block.
-  static constexpr std::int64_t counters = 8, block = 4 * counters;
+  static constexpr std::uint32_t counters = 8, block = 4 * counters;
 
   /// s^2: the variance of each component.
   void set_variance(double variance) {
@@ -49,10 +50,10 @@ struct TurnAtRandom {
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
-    std::int64_t const y = (first_y + site.y() + ny) % ny, z = (first_z + site.z() + nz) % nz;
-    auto const of_block =
-        static_cast<std::uint64_t>(((z * ny + y) * blocks + site.x() / block) * counters);
-    auto const random = Turns<lanes_of<Value>>(words(of_block, site));
+    std::int64_t const y = wrapped(first_y + site.y(), ny), z = wrapped(first_z + site.z(), nz);
+    auto const x = static_cast<std::uint32_t>(site.x());
+    auto const of_block = (static_cast<std::uint64_t>(z * ny + y) * blocks + x / block) * counters;
+    auto const random = Turns<lanes_of<Value>>(words<lanes_of<Value>>(of_block, x % block));
     Vec3<Value> m = site.load(spins);
     if (after) {
       // The quaternion's own round-off is the same in each step: left alone, lengths would drift.
@@ -64,6 +65,11 @@ struct TurnAtRandom {
   }
 
  private:
+  // Ghosts are less than a lattice away.
+  KOKKOS_FORCEINLINE_FUNCTION static std::int64_t wrapped(std::int64_t at, std::int64_t extent) {
+    return at < 0 ? at + extent : at < extent ? at : at - extent;
+  }
+
   using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
 
   /// Random numbers of sites side by side. 28 bits of a word are two digits to the base 5, which
@@ -82,27 +88,25 @@ struct TurnAtRandom {
     }
   };
 
-  /// The words of this site and those beside it.
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION auto words(std::uint64_t of_block, Site const& site) const {
-    constexpr int lanes = lanes_of<typename Site::value_type>;
-    auto const x = static_cast<std::uint64_t>(site.x() % block);
-    if constexpr (lanes == 1) {
+  /// The words of site `x` of a block and those beside it.
+  template <int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION auto words(std::uint64_t of_block, std::uint32_t x) const {
+    if constexpr (Lanes == 1) {
       Philox<1> random(of_block + x % counters, draw);
       random.encrypt(seed);
       auto const pair = x < 2 * counters ? 0 : 2;
       return static_cast<Bits>(x / counters % 2 == 0 ? random.word[pair] : random.word[pair + 1]);
     } else {
       if (block_drawn != of_block) draw_block(of_block);
-      typename LanesOf<std::uint32_t, lanes>::type found;
+      typename LanesOf<std::uint32_t, Lanes>::type found;
       std::memcpy(&found, drawn + x, sizeof found);
-      return __builtin_convertvector(found, typename LanesOf<Bits, lanes>::type);
+      return __builtin_convertvector(found, typename LanesOf<Bits, Lanes>::type);
     }
   }
   KOKKOS_FORCEINLINE_FUNCTION void draw_block(std::uint64_t of_block) const {
     Philox<counters> random(of_block, draw);
     random.encrypt(seed);
-    for (int k = 0; k < 4; ++k) {
+    for (std::uint32_t k = 0; k < 4; ++k) {
       auto const narrow =
           __builtin_convertvector(random.word[k], typename LanesOf<std::uint32_t, counters>::type);
       std::memcpy(drawn + k * counters, &narrow, sizeof narrow);
@@ -236,7 +240,7 @@ class ThermalNoise {
     kernel.before = before;
     kernel.first_y = begin[1];
     kernel.first_z = begin[2];
-    kernel.blocks = (all.shape[0] + kernel.block - 1) / kernel.block;
+    kernel.blocks = (static_cast<std::uint64_t>(all.shape[0]) + kernel.block - 1) / kernel.block;
     kernel.ny = all.shape[1];
     kernel.nz = all.shape[2];
     kernel.set_variance(u - u * u / 12);
