@@ -153,6 +153,8 @@ TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
   expect_refused({"check", "--set", "integrator.method='euler'", "--set",
                   "integrator.isotropy='finite_difference_backward'"},
                  "integrator.method: remembers steps");
+  expect_refused({"check", "--set", "field.slab_demag={normal=[0,0,1],average='layer',dear=true}"},
+                 "thermal.temperature: noise does not go with a dear field");
   expect_refused({"trade"}, "thermal.temperature: trajectories at a temperature are random");
   expect_refused({"advise", "--error", "1e-4"}, "thermal.temperature: trajectories");
 }
