@@ -36,7 +36,7 @@ struct MultirateOptions {
 /// The first step evaluates the dear field in each stage of its substeps. Steps may change, but
 /// grow by a factor of 2 at most; otherwise the method starts again. Work memory beside the
 /// method's: Order + 1 fields, and one of Dear.
-/// Not in the literature in this form; a relative of the schemes of Günther and Sandu (2016).
+/// A predictor-corrector form of the multirate methods of Gear and Wells (BIT 24, 1984).
 template <class Stepper, class DearTerm, int Order = 3>
 class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   using Base = detail::StepperBase<typename Stepper::spins_type>;
