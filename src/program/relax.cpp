@@ -7,6 +7,7 @@
 #include "simulation/scene_field.hpp"
 #include "simulation/space.hpp"
 #include "simulation/text.hpp"
+#include "simulation/thermal.hpp"
 
 #include <cayspin/io/relax.hpp>
 #include <cayspin/io/run_output.hpp>
@@ -133,6 +134,9 @@ class Relaxation {
 
 int relax(RelaxOptions const& options) {
   auto const scene = io::read_scene_to_relax(options.scene, options.overrides);
+  if (is_thermal(scene))
+    throw io::scene_error(scene, "thermal.temperature",
+                          "a state of rest has no temperature; accepted: temperature = 0");
   output_file(scene, options);
   io::check_files(scene);
   auto const space = chosen_space(options.space);

@@ -155,6 +155,8 @@ TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
                  "integrator.method: remembers steps");
   expect_refused({"check", "--set", "field.slab_demag={normal=[0,0,1],average='layer',dear=true}"},
                  "thermal.temperature: noise does not go with a dear field");
+  expect_refused({"relax", "--output", "out.h5", "--set", "field.applied=[0.3,0.1,0.2]"},
+                 "thermal.temperature: a state of rest has no temperature");
   expect_refused({"trade"}, "thermal.temperature: trajectories at a temperature are random");
   expect_refused({"advise", "--error", "1e-4"}, "thermal.temperature: trajectories");
 }
