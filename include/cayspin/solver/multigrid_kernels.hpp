@@ -12,6 +12,17 @@
 
 // The passes of a multigrid cycle. A task is a row on hosts, where compilers vectorise along it,
 // and a site on devices.
+// In front of a loop over the cells of a row, none of which is written and read.
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
+#define CAYSPIN_DETAIL_INDEPENDENT
+#elif defined(__clang__)
+#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define CAYSPIN_DETAIL_INDEPENDENT
+#endif
+
 namespace cayspin::detail {
 
 /// Cells [begin, end) of a row.
@@ -52,7 +63,7 @@ struct CellGrid {
   }
 };
 
-/// out = u + weight (f - (c + b K) u), or f - (c + b K) u where weight is 0.
+/// out = u + weight (f - (c + b K) u), or weight (f - (c + b K) u).
 template <class Scalar, int RightHandComponents>
 struct RelaxCells {
   using Real = real_part_t<Scalar>;
@@ -80,7 +91,7 @@ struct RelaxCells {
         row.relax(last, last - 1, wraps ? 0 : last);
         end = last;
       }
-      for (std::int32_t x = begin; x < end; ++x) row.relax(x, x - 1, x + 1);
+      row.relax_inside(begin, end);
     }
   }
 
@@ -92,7 +103,7 @@ struct RelaxCells {
           weight(all.weight),
           to_previous_x(all.grid.axis[0].to_previous),
           to_next_x(all.grid.axis[0].to_next),
-          residual(all.residual) {
+          kept(all.residual ? 0 : 1) {
       auto const& layout = all.grid.layout;
       std::ptrdiff_t const offset = all.grid.row(cells.y, cells.z);
       for (int part = 0; part < parts; ++part) {
@@ -107,25 +118,25 @@ struct RelaxCells {
 
     KOKKOS_FORCEINLINE_FUNCTION void relax(std::int32_t x, std::int32_t before,
                                            std::int32_t after) const {
-      Real k[parts], r[parts];
+      Real k[parts], r[parts], sum[parts];
       for (int part = 0; part < parts; ++part) {
-        Real const* const KOKKOS_RESTRICT v = u[part];
+        Real const* const v = u[part];
         Real const here = v[x];
         k[part] =
             to_previous_x[x] * (here - v[before]) + to_next_x[x] * (here - v[after]) +
             couple[0][0] * (here - v[x + way[0][0]]) + couple[0][1] * (here - v[x + way[0][1]]) +
             couple[1][0] * (here - v[x + way[1][0]]) + couple[1][1] * (here - v[x + way[1][1]]);
         r[part] = (part < RightHandComponents / 3 ? f[part][x] : Real(0)) - c * here;
+        sum[part] = kept * here;
       }
       multiply_subtract_from(b, k, r);
-      if (residual) {
-        for (int part = 0; part < parts; ++part) out[part][x] = r[part];
-      } else {
-        Real sum[parts];
-        for (int part = 0; part < parts; ++part) sum[part] = u[part][x];
-        multiply_add_to(weight, r, sum);
-        for (int part = 0; part < parts; ++part) out[part][x] = sum[part];
-      }
+      multiply_add_to(weight, r, sum);
+      for (int part = 0; part < parts; ++part) out[part][x] = sum[part];
+    }
+    KOKKOS_FORCEINLINE_FUNCTION void relax_inside(std::int32_t begin, std::int32_t end) const {
+      Row const row = *this;  // which no store changes
+      CAYSPIN_DETAIL_INDEPENDENT
+      for (std::int32_t x = begin; x < end; ++x) row.relax(x, x - 1, x + 1);
     }
 
    private:
@@ -142,7 +153,7 @@ struct RelaxCells {
     Real c;
     Scalar b, weight;
     Real const *to_previous_x, *to_next_x;
-    bool residual;
+    Real kept;  // of u
     Real const* u[parts];
     Real const* f[parts] = {};
     Real* out[parts];
@@ -164,15 +175,23 @@ struct ScaleCells {
 
   KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
     std::ptrdiff_t const offset = (std::ptrdiff_t(cells.z) * layout.ny + cells.y) * layout.pitch;
-    for (int component = 0; component < 3; ++component)
+    for (int component = 0; component < 3; ++component) {
+      Real const* source[parts] = {};
+      Real* target[parts];
+      for (int part = 0; part < parts; ++part) {
+        if (part < RightHandComponents / 3)
+          source[part] = f.data + (component + 3 * part) * f.stride + offset;
+        target[part] = out.data + (component + 3 * part) * out.stride + offset;
+      }
+      Scalar const factor = weight;
+      CAYSPIN_DETAIL_INDEPENDENT
       for (std::int32_t x = cells.begin; x < cells.end; ++x) {
         Real from[parts] = {}, to[parts] = {};
-        for (int part = 0; part < RightHandComponents / 3; ++part)
-          from[part] = f.data[(component + 3 * part) * f.stride + offset + x];
-        multiply_add_to(weight, from, to);
-        for (int part = 0; part < parts; ++part)
-          out.data[(component + 3 * part) * out.stride + offset + x] = to[part];
+        for (int part = 0; part < RightHandComponents / 3; ++part) from[part] = source[part][x];
+        multiply_add_to(factor, from, to);
+        for (int part = 0; part < parts; ++part) target[part][x] = to[part];
       }
+    }
   }
 };
 
@@ -190,22 +209,46 @@ struct RestrictCells {
     std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
     std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
     std::int32_t const extent = extents[axis];
+    constexpr auto reach = static_cast<std::int32_t>(CellAxis::reach);
+    // The first cell of a row that does not look past either end, and the first that does again.
+    std::int32_t const inside = axis == 0 && cells.end - cells.begin > 1 ? 1 : cells.end;
+    std::int32_t const outside = axis == 0 ? to_layout.nx - 1 : 0;
+    std::ptrdiff_t const rest = (axis == 1 ? 0 : cells.y * strides[1]) +
+                                (axis == 2 ? 0 : cells.z * strides[2]);
+    std::int32_t const row = axis == 1 ? cells.y : cells.z;
+    std::ptrdiff_t rows[CellAxis::reach];
+    for (std::int32_t k = 0; k < reach; ++k)
+      rows[k] = (2 * row + k + extent - 1) % extent * strides[axis];
     for (int component = 0; component < Components; ++component) {
-      Real const* const source = from.data + component * from.stride;
+      Real const* const source = from.data + component * from.stride + rest;
       Real* const target = to.data + component * to.stride + to_row;
-      for (std::int32_t x = cells.begin; x < cells.end; ++x) {
-        std::int32_t const index[3] = {x, cells.y, cells.z};
-        std::ptrdiff_t rest = 0;
-        for (int other = 0; other < 3; ++other)
-          if (other != axis) rest += index[other] * strides[other];
-        Real sum = 0;
-        constexpr auto reach = static_cast<std::int32_t>(CellAxis::reach);
-        for (std::int32_t k = 0; k < reach; ++k) {
-          std::int32_t const at = (2 * index[axis] + k + extent - 1) % extent;
-          sum += weights[index[axis] * reach + k] * source[rest + at * strides[axis]];
-        }
-        target[x] = sum;
+      if (axis != 0) {
+        Real const* const here = weights + row * reach;
+        Real const w0 = here[0], w1 = here[1], w2 = here[2], w3 = here[3], w4 = here[4];
+        Real const *const s0 = source + rows[0], *const s1 = source + rows[1],
+                          *const s2 = source + rows[2], *const s3 = source + rows[3],
+                          *const s4 = source + rows[4];
+        CAYSPIN_DETAIL_INDEPENDENT
+        for (std::int32_t x = cells.begin; x < cells.end; ++x)
+          target[x] = w0 * s0[x] + w1 * s1[x] + w2 * s2[x] + w3 * s3[x] + w4 * s4[x];
+        continue;
       }
+      auto const around = [&](std::int32_t x) {
+        Real sum = 0;
+        for (std::int32_t k = 0; k < reach; ++k)
+          sum += weights[x * reach + k] * source[(2 * x + k + extent - 1) % extent];
+        target[x] = sum;
+      };
+      std::int32_t x = cells.begin;
+      for (; x < cells.end && x < inside; ++x) around(x);
+      Real const* const w = weights;
+      std::int32_t const end = outside < cells.end ? outside : cells.end;
+      CAYSPIN_DETAIL_INDEPENDENT
+      for (std::int32_t i = x; i < end; ++i)
+        target[i] = w[i * reach] * source[2 * i - 1] + w[i * reach + 1] * source[2 * i] +
+                    w[i * reach + 2] * source[2 * i + 1] + w[i * reach + 3] * source[2 * i + 2] +
+                    w[i * reach + 4] * source[2 * i + 3];
+      for (x = end > x ? end : x; x < cells.end; ++x) around(x);
     }
   }
 };
@@ -226,20 +269,35 @@ struct InterpolateCells {
     std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
     std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
     std::int32_t const last = extents[axis] - 1;
+    std::ptrdiff_t const rest = (axis == 1 ? 0 : cells.y * strides[1]) +
+                                (axis == 2 ? 0 : cells.z * strides[2]);
     for (int component = 0; component < Components; ++component) {
-      Real const* const source = from.data + component * from.stride;
+      Real const* const source = from.data + component * from.stride + rest;
       Real* const target = to.data + component * to.stride + to_row;
+      if (axis != 0) {
+        std::int32_t const fine = axis == 1 ? cells.y : cells.z;
+        Real const share = numbers.share[fine], other = Real(1) - share;
+        Real const* const own = source + (fine / 2 < last ? fine / 2 : last) * strides[axis];
+        Real const* const beside = source + numbers.beside[fine] * strides[axis];
+        if (adds) {
+          CAYSPIN_DETAIL_INDEPENDENT
+          for (std::int32_t x = cells.begin; x < cells.end; ++x)
+            target[x] = target[x] + (other * own[x] + share * beside[x]);
+        } else {
+          CAYSPIN_DETAIL_INDEPENDENT
+          for (std::int32_t x = cells.begin; x < cells.end; ++x)
+            target[x] = other * own[x] + share * beside[x];
+        }
+        continue;
+      }
+      Real const* const shares = numbers.share;
+      std::int32_t const* const besides = numbers.beside;
+      CAYSPIN_DETAIL_INDEPENDENT
       for (std::int32_t x = cells.begin; x < cells.end; ++x) {
-        std::int32_t const index[3] = {x, cells.y, cells.z};
-        std::ptrdiff_t rest = 0;
-        for (int other = 0; other < 3; ++other)
-          if (other != axis) rest += index[other] * strides[other];
-        std::int32_t const fine = index[axis];
-        std::int32_t const own = fine / 2 < last ? fine / 2 : last;
-        Real const share = numbers.share[fine];
-        Real const value = (Real(1) - share) * source[rest + own * strides[axis]] +
-                           share * source[rest + numbers.beside[fine] * strides[axis]];
-        target[x] = adds ? target[x] + value : value;
+        Real const share = shares[x];
+        Real const value = (Real(1) - share) * source[x / 2 < last ? x / 2 : last] +
+                           share * source[besides[x]];
+        target[x] = (adds ? target[x] : Real(0)) + value;
       }
     }
   }
