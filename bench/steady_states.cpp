@@ -3,10 +3,10 @@
 // of cayspin::minimize, of the same without its preconditioner, of Barzilai and Borwein's steps
 // with the same kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and
 // 64^3 spins. A method that takes more than 60000 evaluations is stopped.
+#include "random_spins.hpp"
+
 #include <cayspin/cayspin.hpp>
 #include <cayspin/minimize.hpp>
-
-#include "random_spins.hpp"
 
 #include <array>
 #include <cmath>
@@ -50,9 +50,9 @@ struct Cost {
 template <class Field>
 Cost by_minimize(Field const& field, Spins& spins, bool preconditioned) {
   Kokkos::Timer const clock;
-  auto const found =
-      minimize(Exec(), field, spins,
-               {.torque = bound, .evaluations = most_evaluations, .preconditioned = preconditioned});
+  auto const found = minimize(
+      Exec(), field, spins,
+      {.torque = bound, .evaluations = most_evaluations, .preconditioned = preconditioned});
   return {found.end == MinimizeEnd::converged, found.evaluations, clock.seconds()};
 }
 
@@ -136,8 +136,8 @@ void compare(Lattice const& lattice, double exchange, bool random) {
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
   bool const large = argc > 1 && std::strcmp(argv[1], "--large") == 0;
-  std::printf("%-16s | %6s | %-6s | %15s | %15s | %15s | %15s\n", "spins", "A", "start",
-              "minimize", "no precond.", "Barzilai-Borw.", "RKMK4 in time");
+  std::printf("%-16s | %6s | %-6s | %15s | %15s | %15s | %15s\n", "spins", "A", "start", "minimize",
+              "no precond.", "Barzilai-Borw.", "RKMK4 in time");
   for (double const exchange : {2.0, 50.0, 1000.0})
     for (bool const random : {false, true}) compare(Lattice::square(32, 32), exchange, random);
   if (!large) return 0;

@@ -170,11 +170,10 @@ class Helmholtz {
   void relax(Exec const& exec, Level const& level, double c, Scalar b, Scalar weight,
              Field const& u, SiteField<Real, RightHandComponents, MemorySpace> const& right,
              Field const& out, bool residual = false) const {
-    for_each_cell(
-        exec, residual ? residual_label_ : relax_label_, level.layout,
-        RelaxCells<Scalar, RightHandComponents>{level.grid(), static_cast<Real>(c), b,
-                                                residual ? Scalar(1) : weight, u.array(),
-                                                right.array(), out.array(), residual});
+    for_each_cell(exec, residual ? residual_label_ : relax_label_, level.layout,
+                  RelaxCells<Scalar, RightHandComponents>{level.grid(), static_cast<Real>(c), b,
+                                                          residual ? Scalar(1) : weight, u.array(),
+                                                          right.array(), out.array(), residual});
   }
   template <class Exec>
   void restrict_to(Exec const& exec, Level const& level, Field const& coarse) const {

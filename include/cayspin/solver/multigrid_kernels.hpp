@@ -213,8 +213,8 @@ struct RestrictCells {
     // The first cell of a row that does not look past either end, and the first that does again.
     std::int32_t const inside = axis == 0 && cells.end - cells.begin > 1 ? 1 : cells.end;
     std::int32_t const outside = axis == 0 ? to_layout.nx - 1 : 0;
-    std::ptrdiff_t const rest = (axis == 1 ? 0 : cells.y * strides[1]) +
-                                (axis == 2 ? 0 : cells.z * strides[2]);
+    std::ptrdiff_t const rest =
+        (axis == 1 ? 0 : cells.y * strides[1]) + (axis == 2 ? 0 : cells.z * strides[2]);
     std::int32_t const row = axis == 1 ? cells.y : cells.z;
     std::ptrdiff_t rows[CellAxis::reach];
     for (std::int32_t k = 0; k < reach; ++k)
@@ -269,8 +269,8 @@ struct InterpolateCells {
     std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
     std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
     std::int32_t const last = extents[axis] - 1;
-    std::ptrdiff_t const rest = (axis == 1 ? 0 : cells.y * strides[1]) +
-                                (axis == 2 ? 0 : cells.z * strides[2]);
+    std::ptrdiff_t const rest =
+        (axis == 1 ? 0 : cells.y * strides[1]) + (axis == 2 ? 0 : cells.z * strides[2]);
     for (int component = 0; component < Components; ++component) {
       Real const* const source = from.data + component * from.stride + rest;
       Real* const target = to.data + component * to.stride + to_row;
@@ -295,8 +295,8 @@ struct InterpolateCells {
       CAYSPIN_DETAIL_INDEPENDENT
       for (std::int32_t x = cells.begin; x < cells.end; ++x) {
         Real const share = shares[x];
-        Real const value = (Real(1) - share) * source[x / 2 < last ? x / 2 : last] +
-                           share * source[besides[x]];
+        Real const value =
+            (Real(1) - share) * source[x / 2 < last ? x / 2 : last] + share * source[besides[x]];
         target[x] = (adds ? target[x] : Real(0)) + value;
       }
     }
