@@ -94,8 +94,11 @@ struct TurnAtRandom {
     if constexpr (Lanes == 1) {
       Philox<1> random(of_block + x % counters, draw);
       random.encrypt(seed);
-      auto const pair = x < 2 * counters ? 0 : 2;
-      return static_cast<Bits>(x / counters % 2 == 0 ? random.word[pair] : random.word[pair + 1]);
+      // By constant indices: an array on the stack of a device is slow.
+      auto const& word = random.word;
+      auto const even = x < 2 * counters ? word[0] : word[2];
+      auto const odd = x < 2 * counters ? word[1] : word[3];
+      return static_cast<Bits>(x / counters % 2 == 0 ? even : odd);
     } else {
       if (block_drawn != of_block) draw_block(of_block);
       typename LanesOf<std::uint32_t, Lanes>::type found;
