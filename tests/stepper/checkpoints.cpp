@@ -3,6 +3,8 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin/stepper/stiff_midpoint.hpp>
+
 #include <tuple>
 
 using namespace cayspin;
@@ -39,7 +41,8 @@ using Kinds = ::testing::Types<
     Compensated<Rkmk4<Field<float>>>, FieldExtrapolation3<Field<float>>,
     FieldExtrapolation4<Field<double>>, Estimating<Field<double>>, AdaptiveRkmk<Field<double>>,
     AdaptiveRkmk<Field<float>>, AdaptiveStereographic<Field<double>, tableau::BogackiShampine3>,
-    AdaptiveProjected<Field<double>>>;
+    AdaptiveProjected<Field<double>>, StiffMidpoint2<Field<double>>, StiffMidpoint2<Field<float>>,
+    StiffMidpoint4<Field<double>>>;
 TYPED_TEST_SUITE(Checkpoints, Kinds);
 
 template <class Stepper>

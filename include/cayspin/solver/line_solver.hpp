@@ -58,16 +58,17 @@ struct SolveLines {
  private:
   KOKKOS_FORCEINLINE_FUNCTION void solve(int component, std::ptrdiff_t begin, std::ptrdiff_t stride,
                                          std::int32_t count, std::int32_t width) const {
-    Real* to[parts];
+    Real* to[std::size_t{parts}];
     for (int part = 0; part < parts; ++part)
       to[part] = z.data + (component + 3 * part) * z.stride + begin;
-    Real const* from[parts] = {};
+    Real const* from[std::size_t{parts}] = {};
     for (int part = 0; part < RightHandComponents / 3; ++part)
       from[part] = r.data + (component + 3 * part) * r.stride + begin;
     for (std::int32_t i = 0; i < count; ++i)
       for (std::int32_t k = 0; k < width; ++k) {
         std::ptrdiff_t const at = i * stride + k;
-        Real right[parts] = {}, before[parts] = {}, sum[parts] = {};
+        Real right[std::size_t{parts}] = {}, before[std::size_t{parts}] = {},
+             sum[std::size_t{parts}] = {};
         for (int part = 0; part < RightHandComponents / 3; ++part) right[part] = from[part][at];
         multiply_add_to(factors.inverse[i], right, sum);
         if (i > 0) {
@@ -79,7 +80,7 @@ struct SolveLines {
     for (std::int32_t i = count - 2; i >= 0; --i)
       for (std::int32_t k = 0; k < width; ++k) {
         std::ptrdiff_t const at = i * stride + k;
-        Real after[parts], sum[parts];
+        Real after[std::size_t{parts}], sum[std::size_t{parts}];
         for (int part = 0; part < parts; ++part) {
           after[part] = to[part][at + stride];
           sum[part] = to[part][at];
@@ -90,17 +91,18 @@ struct SolveLines {
     if (factors.periodic) close(to, stride, count, width);
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION void close(Real* const (&to)[parts], std::ptrdiff_t stride,
-                                         std::int32_t count, std::int32_t width) const {
+  KOKKOS_FORCEINLINE_FUNCTION void close(Real* const (&to)[std::size_t{parts}],
+                                         std::ptrdiff_t stride, std::int32_t count,
+                                         std::int32_t width) const {
     for (std::int32_t k = 0; k < width; ++k) {
-      Real ends[parts], end[parts];
+      Real ends[std::size_t{parts}], end[std::size_t{parts}];
       for (int part = 0; part < parts; ++part) {
         ends[part] = to[part][k];
         end[part] = to[part][(count - 1) * stride + k];
       }
       multiply_add_to(factors.last, end, ends);
       for (std::int32_t i = 0; i < count; ++i) {
-        Real sum[parts];
+        Real sum[std::size_t{parts}];
         for (int part = 0; part < parts; ++part) sum[part] = to[part][i * stride + k];
         multiply_subtract_from(factors.closing[i], ends, sum);
         for (int part = 0; part < parts; ++part) to[part][i * stride + k] = sum[part];

@@ -118,7 +118,7 @@ struct RelaxCells {
 
     KOKKOS_FORCEINLINE_FUNCTION void relax(std::int32_t x, std::int32_t before,
                                            std::int32_t after) const {
-      Real k[parts], r[parts], sum[parts];
+      Real k[std::size_t{parts}], r[std::size_t{parts}], sum[std::size_t{parts}];
       for (int part = 0; part < parts; ++part) {
         Real const* const v = u[part];
         Real const here = v[x];
@@ -154,9 +154,9 @@ struct RelaxCells {
     Scalar b, weight;
     Real const *to_previous_x, *to_next_x;
     Real kept;  // of u
-    Real const* u[parts];
-    Real const* f[parts] = {};
-    Real* out[parts];
+    Real const* u[std::size_t{parts}];
+    Real const* f[std::size_t{parts}] = {};
+    Real* out[std::size_t{parts}];
     std::ptrdiff_t way[2][2];
     Real couple[2][2];
   };
@@ -176,8 +176,8 @@ struct ScaleCells {
   KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
     std::ptrdiff_t const offset = (std::ptrdiff_t(cells.z) * layout.ny + cells.y) * layout.pitch;
     for (int component = 0; component < 3; ++component) {
-      Real const* source[parts] = {};
-      Real* target[parts];
+      Real const* source[std::size_t{parts}] = {};
+      Real* target[std::size_t{parts}];
       for (int part = 0; part < parts; ++part) {
         if (part < RightHandComponents / 3)
           source[part] = f.data + (component + 3 * part) * f.stride + offset;
@@ -186,7 +186,7 @@ struct ScaleCells {
       Scalar const factor = weight;
       CAYSPIN_DETAIL_INDEPENDENT
       for (std::int32_t x = cells.begin; x < cells.end; ++x) {
-        Real from[parts] = {}, to[parts] = {};
+        Real from[std::size_t{parts}] = {}, to[std::size_t{parts}] = {};
         for (int part = 0; part < RightHandComponents / 3; ++part) from[part] = source[part][x];
         multiply_add_to(factor, from, to);
         for (int part = 0; part < parts; ++part) target[part][x] = to[part];

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The same bits on every host space and for any number of threads.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/stepper/stiff_midpoint.hpp>
+
+namespace cayspin::test {
+namespace {
+
+template <class Exec, class Stepper>
+auto end_of(Lattice const& lattice, Exec const& exec) {
+  using Field = typename Stepper::spins_type;
+  auto const numbers = random_directions(lattice.sites(), 11);
+  std::vector<double> start(numbers);
+  for (std::size_t i = 2; i < start.size(); i += 3) start[i] += 4;
+  Field spins = spins_of<Field>(lattice, start);
+  normalize(exec, spins);
+  LandauLifshitz const generator(
+      EffectiveField(Exchange(lattice, 20), UniaxialAnisotropy(1, {1, 2, 2}), Zeeman({0, 1, 0})),
+      0.1);
+  Stepper stepper(spins);
+  for (int n = 0; n < 4; ++n) stepper.step(exec, generator, spins, 0.005 * n, 0.005);
+  return copy_to_host(spins);
+}
+
+template <class Real>
+class StiffBits : public ::testing::Test {};
+TYPED_TEST_SUITE(StiffBits, Precisions, PrecisionName);
+
+#if defined(KOKKOS_ENABLE_SERIAL) && defined(KOKKOS_ENABLE_OPENMP)
+TYPED_TEST(StiffBits, AreTheSameOnSerialAndOpenMP) {
+  using Field = SpinField<TypeParam, Kokkos::HostSpace>;
+  for (Lattice const& lattice :
+       {Lattice::chain(3000), Lattice::square(53, 41, 1, Boundary::periodic)}) {
+    EXPECT_EQ((end_of<Kokkos::Serial, StiffMidpoint2<Field>>(lattice, {})),
+              (end_of<Kokkos::OpenMP, StiffMidpoint2<Field>>(lattice, {})));
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace cayspin::test

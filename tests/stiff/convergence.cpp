@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// How many evaluations stiff steps take, and what happens where dt is too large for them.
+#include "../support/figures.hpp"
+#include "../support/landau_lifshitz.hpp"
+
+#include <cayspin/stepper/stiff_midpoint.hpp>
+
+#include <numbers>
+
+namespace cayspin::test {
+namespace {
+
+/// A slab of thickness 1 in so many cells: its fastest spin wave is of frequency 4 cells^2.
+Slab slab_of(std::int64_t cells, double damping) {
+  return {.lattice = Lattice::chain(cells, 1 / static_cast<double>(cells)),
+          .exchange = 1,
+          .anisotropy = 1,
+          .demag = 1,
+          .applied = {0.05, 0.05, 0},
+          .damping = damping};
+}
+
+template <class Field = Spins>
+Field smooth_start(Lattice const& lattice) {
+  return make_spins<Field>(lattice, [&](auto i, auto, auto) {
+    double const u = std::numbers::pi * (i + 0.5) / static_cast<double>(lattice.shape[0]);
+    return Vector{0.3 + 0.2 * std::cos(u), 0.5 + 0.1 * std::cos(2 * u), 0.8};
+  });
+}
+
+template <class Field>
+class StiffMidpointOn : public ::testing::Test {};
+using Fields = ::testing::Types<SpinField<float, Space::memory_space>, Spins>;
+TYPED_TEST_SUITE(StiffMidpointOn, Fields);
+
+TYPED_TEST(StiffMidpointOn, FinerMeshesTakesNoMoreEvaluations) {
+  for (std::int64_t const cells : {100, 400, 1600}) {
+    // There the differences of neighbours in single precision are round-off.
+    constexpr bool is_single = std::is_same_v<typename TypeParam::value_type, float>;
+    if (is_single && cells > 400) continue;
+    SCOPED_TRACE(cells);
+    Slab const slab = slab_of(cells, 0.05);
+    auto spins = smooth_start<TypeParam>(slab.lattice);
+    StiffMidpoint2<TypeParam> stepper(spins);
+    advance(stepper, slab.natural(), spins, 0.5 / 200, 200);
+    EXPECT_LE(stepper.evaluations_done(), is_single ? 450 : 260);
+    EXPECT_EQ(stepper.halvings_done(), 0);
+  }
+}
+
+TEST(StiffMidpoint, ErrorDoesNotDependOnTheMesh) {
+  // Explicit steps would have to be 1100 times shorter on the finest of these.
+  double first = 0;
+  for (std::int64_t const cells : {50, 200, 800}) {
+    Slab const slab = slab_of(cells, 0.05);
+    auto const start = smooth_start(slab.lattice);
+    auto const end = run<StiffMidpoint2<Spins>>(slab.natural(), start, 0.5 / 100, 100);
+    auto const finer = run<StiffMidpoint4<Spins>>(slab.natural(), start, 0.5 / 200, 200);
+    double const error = largest_distance(end, finer);
+    std::printf("    %4ld cells: %.3e\n", static_cast<long>(cells), error);
+    if (first == 0) first = error;
+    EXPECT_LT(error, 4e-3);
+    EXPECT_NEAR(error, first, 0.1 * first);
+  }
+}
+
+TYPED_TEST(StiffMidpointOn, HotSpinsHalveStepsThatAreTooLarge) {
+  Slab const slab{.lattice = Lattice::chain(40),
+                  .exchange = 30,
+                  .anisotropy = 1,
+                  .applied = {0.3, 0, 1},
+                  .damping = 0.1};
+  auto const start = random_spins<TypeParam>(slab.lattice, 7);
+  // So short a time that an accurate solution is to be had: other roots would be far from it.
+  double const end_time = 0.1;
+  auto const exact =
+      run<Rkmk4<Spins>>(slab.natural(), random_spins(slab.lattice, 7), end_time / 4000, 4000);
+  auto spins = copy_of(start);
+  StiffMidpoint4<TypeParam> stepper(spins, {.tolerance = 1e-5});
+  advance(stepper, slab.natural(), spins, end_time / 4, 4);
+  EXPECT_GT(stepper.halvings_done(), 0);
+  double const coarse = largest_distance(spins, exact);
+  EXPECT_LT(coarse, 0.3);
+  auto fine = copy_of(start);
+  StiffMidpoint4<TypeParam> other(fine);
+  advance(other, slab.natural(), fine, end_time / 200, 200);
+  EXPECT_EQ(other.halvings_done(), 0);
+  EXPECT_LT(largest_distance(fine, exact), 1e-4);
+}
+
+TYPED_TEST(StiffMidpointOn, StepWithoutSolutionLeavesTheSpins) {
+  Slab const slab{.lattice = Lattice::chain(40), .exchange = 30, .damping = 0.1};
+  auto spins = random_spins<TypeParam>(slab.lattice, 7);
+  auto const before = copy_to_host(spins);
+  StiffMidpoint4<TypeParam> stepper(spins, {.halvings = 2});
+  EXPECT_THROW(advance(stepper, slab.natural(), spins, 5.0, 1), NotConverged);
+  EXPECT_EQ(copy_to_host(spins), before);
+  // The same stepper goes on from there.
+  EXPECT_NO_THROW(advance(stepper, slab.natural(), spins, 1e-3, 5));
+}
+
+TEST(StiffMidpoint, NumbersThatAreNotFiniteHaveNoSolution) {
+  Slab const slab{.lattice = Lattice::chain(5), .exchange = 1, .applied = {1e300, 0, 1e300}};
+  auto spins = random_spins(slab.lattice, 7);
+  StiffMidpoint2<Spins> stepper(spins);
+  EXPECT_THROW(advance(stepper, slab.natural(), spins, 1e30, 1), NotConverged);
+}
+
+}  // namespace
+}  // namespace cayspin::test
