@@ -6,6 +6,7 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/evaluate.hpp>
 #include <cayspin/exchange_memory.hpp>
+#include <cayspin/field/dear.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>
@@ -25,9 +26,11 @@
 #include <cayspin/isotropy/energy.hpp>
 #include <cayspin/isotropy/policies.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/minimize.hpp>
 #include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>
+#include <cayspin/observer/thermal_noise.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/scalars.hpp>
@@ -39,8 +42,10 @@
 #include <cayspin/stepper/field_extrapolation.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/methods.hpp>
+#include <cayspin/stepper/multirate.hpp>
 #include <cayspin/stepper/red_black.hpp>
 #include <cayspin/stepper/series4.hpp>
+#include <cayspin/stepper/stiff_midpoint.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
 #include <cayspin/stepper/two_point.hpp>
 #include <cayspin/units.hpp>

@@ -55,6 +55,7 @@ struct Minimum {
   double curvature = std::numeric_limits<double>::infinity();
 };
 
+/// Options of minimize.
 struct MinimizeOptions {
   double torque = 1e-6;              ///< bound on max |m x H|, in the units of H
   std::int64_t evaluations = 10000;  ///< at most so many, and the few of one more iteration

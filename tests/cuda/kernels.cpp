@@ -2,10 +2,6 @@
 // The kernels of every stepper, isotropy policy, generator, field term and scalar, compiled in both
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
-#include <cayspin/field/dear.hpp>
-#include <cayspin/minimize.hpp>
-#include <cayspin/observer/thermal_noise.hpp>
-#include <cayspin/stepper/multirate.hpp>
 
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 

@@ -195,6 +195,13 @@ struct ScaleCells {
   }
 };
 
+KOKKOS_FORCEINLINE_FUNCTION std::int32_t extent_along(RowLayout const& layout, int axis) {
+  return axis == 0 ? layout.nx : axis == 1 ? layout.ny : layout.nz;
+}
+KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t stride_along(RowLayout const& layout, int axis) {
+  return axis == 0 ? 1 : axis == 1 ? layout.pitch : layout.pitch * layout.ny;
+}
+
 /// Restriction along one axis: `to` has about half the cells along it.
 template <class Real, int Components>
 struct RestrictCells {
@@ -206,28 +213,27 @@ struct RestrictCells {
   KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
     std::ptrdiff_t const to_row =
         (std::ptrdiff_t(cells.z) * to_layout.ny + cells.y) * to_layout.pitch;
-    std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
-    std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
-    std::int32_t const extent = extents[axis];
+    std::int32_t const extent = extent_along(from_layout, axis);
+    std::ptrdiff_t const stride = stride_along(from_layout, axis);
     constexpr auto reach = static_cast<std::int32_t>(CellAxis::reach);
     // The first cell of a row that does not look past either end, and the first that does again.
     std::int32_t const inside = axis == 0 && cells.end - cells.begin > 1 ? 1 : cells.end;
     std::int32_t const outside = axis == 0 ? to_layout.nx - 1 : 0;
-    std::ptrdiff_t const rest =
-        (axis == 1 ? 0 : cells.y * strides[1]) + (axis == 2 ? 0 : cells.z * strides[2]);
+    std::ptrdiff_t const rest = (axis == 1 ? 0 : cells.y * stride_along(from_layout, 1)) +
+                                (axis == 2 ? 0 : cells.z * stride_along(from_layout, 2));
     std::int32_t const row = axis == 1 ? cells.y : cells.z;
-    std::ptrdiff_t rows[CellAxis::reach];
-    for (std::int32_t k = 0; k < reach; ++k)
-      rows[k] = (2 * row + k + extent - 1) % extent * strides[axis];
+    auto const from_row = [=](std::int32_t k) {
+      return (2 * row + k + extent - 1) % extent * stride;
+    };
     for (int component = 0; component < Components; ++component) {
       Real const* const source = from.data + component * from.stride + rest;
       Real* const target = to.data + component * to.stride + to_row;
       if (axis != 0) {
         Real const* const here = weights + row * reach;
         Real const w0 = here[0], w1 = here[1], w2 = here[2], w3 = here[3], w4 = here[4];
-        Real const *const s0 = source + rows[0], *const s1 = source + rows[1],
-                          *const s2 = source + rows[2], *const s3 = source + rows[3],
-                          *const s4 = source + rows[4];
+        Real const *const s0 = source + from_row(0), *const s1 = source + from_row(1),
+                          *const s2 = source + from_row(2), *const s3 = source + from_row(3),
+                          *const s4 = source + from_row(4);
         CAYSPIN_DETAIL_INDEPENDENT
         for (std::int32_t x = cells.begin; x < cells.end; ++x)
           target[x] = w0 * s0[x] + w1 * s1[x] + w2 * s2[x] + w3 * s3[x] + w4 * s4[x];
@@ -266,19 +272,18 @@ struct InterpolateCells {
   KOKKOS_FUNCTION void operator()(CellsOfRow const& cells) const {
     std::ptrdiff_t const to_row =
         (std::ptrdiff_t(cells.z) * to_layout.ny + cells.y) * to_layout.pitch;
-    std::int32_t const extents[3] = {from_layout.nx, from_layout.ny, from_layout.nz};
-    std::ptrdiff_t const strides[3] = {1, from_layout.pitch, from_layout.pitch * from_layout.ny};
-    std::int32_t const last = extents[axis] - 1;
-    std::ptrdiff_t const rest =
-        (axis == 1 ? 0 : cells.y * strides[1]) + (axis == 2 ? 0 : cells.z * strides[2]);
+    std::int32_t const last = extent_along(from_layout, axis) - 1;
+    std::ptrdiff_t const stride = stride_along(from_layout, axis);
+    std::ptrdiff_t const rest = (axis == 1 ? 0 : cells.y * stride_along(from_layout, 1)) +
+                                (axis == 2 ? 0 : cells.z * stride_along(from_layout, 2));
     for (int component = 0; component < Components; ++component) {
       Real const* const source = from.data + component * from.stride + rest;
       Real* const target = to.data + component * to.stride + to_row;
       if (axis != 0) {
         std::int32_t const fine = axis == 1 ? cells.y : cells.z;
         Real const share = numbers.share[fine], other = Real(1) - share;
-        Real const* const own = source + (fine / 2 < last ? fine / 2 : last) * strides[axis];
-        Real const* const beside = source + numbers.beside[fine] * strides[axis];
+        Real const* const own = source + (fine / 2 < last ? fine / 2 : last) * stride;
+        Real const* const beside = source + numbers.beside[fine] * stride;
         if (adds) {
           CAYSPIN_DETAIL_INDEPENDENT
           for (std::int32_t x = cells.begin; x < cells.end; ++x)

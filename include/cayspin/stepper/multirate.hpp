@@ -19,6 +19,7 @@
 
 namespace cayspin {
 
+/// Options of Multirate.
 struct MultirateOptions {
   std::int64_t substeps = 1;  ///< of the inner method in each step
 };
