@@ -92,12 +92,14 @@ struct LowestCurvature {
 template <class Exec, class Field, class Spins, class Moves, class Precondition>
 LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, double time,
                                       Spins const& spins, Moves const& moves, double tolerance,
-                                      CurvatureArrays<Spins>& arrays,
+                                      CurvatureArrays<Spins> const& arrays,
                                       Precondition const& precondition) {
   using Real = typename Spins::value_type;
   constexpr int most_steps = 40;
   LowestCurvature found;
-  auto& [x, hx, d, hd, r, w, shifted, at_rest, before] = arrays;
+  Spins const &x = arrays.vector, &hx = arrays.product, &d = arrays.direction,
+              &hd = arrays.its_product, &r = arrays.rest, &w = arrays.preconditioned,
+              &shifted = arrays.shifted, &at_rest = arrays.at_rest, &before = arrays.before;
 
   evaluate_field(exec, field, spins, time, at_rest);
   ++found.evaluations;
