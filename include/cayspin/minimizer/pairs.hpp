@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/unrolled.hpp>
 #include <cayspin/minimizer/trial.hpp>
 
 #include <algorithm>
@@ -25,7 +26,9 @@ template <class Real>
 struct ProductsOfPairs {
   static constexpr int pairs = static_cast<int>(pairs_kept);
   static constexpr int count_of_values = pairs + pairs * (pairs - 1) / 2 + 1;
-  static constexpr int of(int i, int j) { return pairs + j * (j - 1) / 2 + i; }
+  KOKKOS_FORCEINLINE_FUNCTION static constexpr int of(int i, int j) {
+    return pairs + j * (j - 1) / 2 + i;
+  }
 
   SiteArray<Real, 3> spins, gradient;
   PairArrays<Real> steps, changes;
@@ -34,13 +37,16 @@ struct ProductsOfPairs {
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    for (int i = 0; i < count_of_values; ++i) values[i] = Value(0.0);
     Vec3<Value> const m = site.load(spins), g = site.load(gradient);
-    for (int j = 0; j < count; ++j) {
-      values[j] = dot(Vec3<Value>(site.load(steps[j])), g);
-      Vec3<Value> const change = tangent(m, Vec3<Value>(site.load(changes[j])));
-      for (int i = 0; i < j; ++i) values[of(i, j)] = dot(Vec3<Value>(site.load(steps[i])), change);
-    }
+    for (int i = 0; i < count_of_values; ++i) values[i] = Value(0.0);
+    // Constant indices: devices keep the values in registers.
+    unrolled<pairs>([&](auto j) {
+      if (j() >= count) return;
+      values[j()] = dot(Vec3<Value>(site.load(steps[j()])), g);
+      Vec3<Value> const change = tangent(m, Vec3<Value>(site.load(changes[j()])));
+      unrolled<j()>(
+          [&](auto i) { values[of(i(), j())] = dot(Vec3<Value>(site.load(steps[i()])), change); });
+    });
     if (count == 0) return;
     Stencil<Site, Real> const last(site, steps[count - 1]);
     values[count_of_values - 1] = bonds<0>(last) + bonds<1>(last) + bonds<2>(last);
