@@ -37,6 +37,8 @@ template <int Order>
 struct FieldExtrapolation;
 template <int Order>
 struct RedBlack;
+template <int Order>
+struct Stiff;
 }  // namespace family
 
 /// A method and what makes its steppers.
@@ -152,6 +154,8 @@ inline constexpr auto method_list = [] {
                                .isotropies = a_number,
                                .trials = {plain}})),
       row<ImplicitMidpoint>(lie({.word = "implicit_midpoint", .order = 2, .trials = {plain}})),
+      row<Stiff<2>>(lie({.word = "stiff2", .order = 2, .stiff = true, .trials = {plain}})),
+      row<Stiff<4>>(lie({.word = "stiff4", .order = 4, .stiff = true, .trials = {plain}})),
       row<CommutatorFree>(lie({.word = "cf4",
                                .order = 4,
                                .evaluations = 4,

@@ -112,7 +112,7 @@ TEST_F(Checking, StableDtOfAFieldInTimeIsThatOfItsLargest) {
 }
 
 TEST_F(Checking, IterationsHaveNoCountBeforehand) {
-  for (std::string const method : {"implicit_euler", "implicit_midpoint"}) {
+  for (std::string const method : {"implicit_euler", "implicit_midpoint", "stiff2", "stiff4"}) {
     auto const numbers = check(chain_scene(), {"--set", "integrator.method='" + method + "'"});
     EXPECT_TRUE(numbers.at("evaluations_per_step").is_null());
     EXPECT_TRUE(numbers.at("stable_dt").is_null());
@@ -197,11 +197,13 @@ TEST_F(Checking, MethodsListsEveryMethodOnce) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.errors, "");
   write("chain.toml", chain_scene());
-  for (std::string const method :
-       {"euler", "implicit_euler", "heun", "rkmk4", "rkmk4_as_printed", "rkmk5", "rkmk8", "series4",
-        "series4_paper", "ab2", "implicit_midpoint", "classical_euler", "classical_heun",
-        "classical_rk4", "projected_euler", "projected_heun", "projected_rk4", "projected_rk5",
-        "projected_rk8"}) {
+  for (std::string const method : {"euler",         "implicit_euler",    "heun",
+                                   "rkmk4",         "rkmk4_as_printed",  "rkmk5",
+                                   "rkmk8",         "series4",           "series4_paper",
+                                   "ab2",           "implicit_midpoint", "stiff2",
+                                   "stiff4",        "classical_euler",   "classical_heun",
+                                   "classical_rk4", "projected_euler",   "projected_heun",
+                                   "projected_rk4", "projected_rk5",     "projected_rk8"}) {
     EXPECT_TRUE(contains(outcome.output, "\n" + method + " "));
     EXPECT_EQ(start({"check", "chain.toml", "--set", "integrator.method='" + method + "'"}).status,
               0)

@@ -28,6 +28,7 @@ struct Method {
   bool automatic = false;             ///< stands for another method, chosen by integrator.error
   bool keeps_length = true;           ///< |m| = 1 to round-off
   bool compensated = false;           ///< takes integrator.compensated
+  bool stiff = false;                 ///< takes steps that exchange does not limit
   bool differentiates_field = false;  ///< refuses fields that depend on t
   Neighbors neighbors = Neighbors::of_the_stage;
   SetOf<Rotation> rotations{};       ///< none: a baseline

@@ -108,8 +108,10 @@ class CellAxisTables {
   CellAxisTables() = default;
   CellAxisTables(std::string const& name, CellAxis const& axis, double coupling)
       : cells_(axis.cells()),
-        numbers_("cayspin::" + name + "::axis", 3 * cells_ + CellAxis::reach * axis.coarse_cells()),
-        beside_("cayspin::" + name + "::beside", cells_) {
+        numbers_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::axis"),
+                 3 * cells_ + CellAxis::reach * axis.coarse_cells()),
+        beside_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::beside"),
+                cells_) {
     auto const numbers = Kokkos::create_mirror_view(numbers_);
     auto const beside = Kokkos::create_mirror_view(beside_);
     for (std::size_t i = 0; i < cells_; ++i) {
@@ -122,8 +124,8 @@ class CellAxisTables {
     std::size_t at = 3 * cells_;
     for (auto const& weights : axis.restriction())
       for (double const weight : weights) numbers(at++) = static_cast<Real>(weight);
-    Kokkos::deep_copy(numbers_, numbers);
-    Kokkos::deep_copy(beside_, beside);
+    if (numbers.data() != numbers_.data()) Kokkos::deep_copy(numbers_, numbers);
+    if (beside.data() != beside_.data()) Kokkos::deep_copy(beside_, beside);
   }
 
   CellAxisArrays<Real> arrays() const {

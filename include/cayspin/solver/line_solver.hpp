@@ -51,11 +51,48 @@ struct SolveLines {
         axis == 0 ? line * layout.pitch : x + line * (axis == 1 ? plane : layout.pitch);
     std::int32_t const extents[3] = {layout.nx, layout.ny, layout.nz};
     std::int32_t const width = axis == 0 ? 1 : Kokkos::min(bundle, layout.nx - x);
+    if (axis == 0 && !factors.periodic) return solve_row(begin, layout.nx);
     for (int component = 0; component < 3; ++component)
       solve(component, begin, strides[axis], extents[axis], width);
   }
 
  private:
+  // The three components at once, since each is a chain of dependent operations.
+  KOKKOS_FORCEINLINE_FUNCTION void solve_row(std::ptrdiff_t begin, std::int32_t count) const {
+    constexpr std::size_t numbers = 3;
+    Real carried[numbers][std::size_t{parts}] = {};
+    Real const* const from = r.data + begin;
+    Real* const to = z.data + begin;
+    for (std::int32_t i = 0; i < count; ++i) {
+      Scalar const inverse = factors.inverse[i], ratio = i > 0 ? factors.ratio[i] : Scalar(0);
+      for (std::size_t component = 0; component < numbers; ++component) {
+        auto const row = static_cast<std::ptrdiff_t>(component);
+        Real right[std::size_t{parts}] = {}, sum[std::size_t{parts}] = {};
+        for (int part = 0; part < RightHandComponents / 3; ++part)
+          right[part] = from[(row + 3 * part) * r.stride + i];
+        multiply_add_to(inverse, right, sum);
+        multiply_add_to(ratio, carried[component], sum);
+        for (int part = 0; part < parts; ++part) {
+          carried[component][part] = sum[part];
+          to[(row + 3 * part) * z.stride + i] = sum[part];
+        }
+      }
+    }
+    for (std::int32_t i = count - 2; i >= 0; --i) {
+      Scalar const ratio = factors.ratio[i];
+      for (std::size_t component = 0; component < numbers; ++component) {
+        auto const row = static_cast<std::ptrdiff_t>(component);
+        Real sum[std::size_t{parts}];
+        for (int part = 0; part < parts; ++part) sum[part] = to[(row + 3 * part) * z.stride + i];
+        multiply_add_to(ratio, carried[component], sum);
+        for (int part = 0; part < parts; ++part) {
+          carried[component][part] = sum[part];
+          to[(row + 3 * part) * z.stride + i] = sum[part];
+        }
+      }
+    }
+  }
+
   KOKKOS_FORCEINLINE_FUNCTION void solve(int component, std::ptrdiff_t begin, std::ptrdiff_t stride,
                                          std::int32_t count, std::int32_t width) const {
     Real* to[std::size_t{parts}];
@@ -128,8 +165,9 @@ class LineSolver {
     // A periodic axis of two sites has its bond twice.
     coupling_ = layout.periodic[axis] && count_ == 2 ? 2 * coupling : coupling;
     for (Kept& kept : kept_)
-      kept.factors =
-          Kokkos::View<Scalar*, MemorySpace>("cayspin::" + name + "::factors", 3 * count_);
+      kept.factors = Kokkos::View<Scalar*, MemorySpace>(
+          Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::factors"),
+          3 * count_);
   }
 
   template <class Exec, int RightHandComponents>
@@ -212,7 +250,7 @@ class LineSolver {
       factors(n + i) = scalar(ratio[i]);
       factors(2 * n + i) = scalar(closing[i]);
     }
-    Kokkos::deep_copy(kept.factors, factors);
+    if (factors.data() != kept.factors.data()) Kokkos::deep_copy(kept.factors, factors);
     kept.c = c;
     kept.b = b;
   }

@@ -224,7 +224,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
       return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, Order + 1)), 16 * epsilon);
     double const least = 16 * epsilon;
     first = stage->usual = std::clamp(first, least, std::max(least, 1.2 * stage->usual));
-    double const share = Order == 2 ? 0.005 : std::min(1e-4, 0.2 * first * std::sqrt(first));
+    double const share = Order == 2 ? 0.005 : std::min(1e-3, std::sqrt(first));
     return std::max(share * first, 16 * epsilon);
   }
 

@@ -41,8 +41,8 @@ double interpolated(Ladder const& ladder, double error, bool of_evaluations) {
 Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double horizon,
                      std::int64_t own_steps) {
   if (candidate.method->adaptive) return {0, 0.1};
-  // Fewer than an adaptive method takes at its coarsest, but stable ones.
-  double const few = static_cast<double>(own_steps) / 4;
+  // Fewer than an explicit adaptive method takes at its coarsest, but stable ones.
+  double const few = candidate.method->stiff ? 0 : static_cast<double>(own_steps) / 4;
   auto plain = candidate;
   plain.isotropy = io::Isotropy::zero;
   plain.sigma = 0;  // it may make slow modes grow by a little, which is no reason to begin finer
