@@ -44,16 +44,16 @@ struct SolveLines {
   KOKKOS_FUNCTION void operator()(std::int64_t task) const {
     std::int64_t const across = axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle;
     std::ptrdiff_t const plane = layout.pitch * layout.ny;
-    std::ptrdiff_t const strides[3] = {1, layout.pitch, plane};
     std::int64_t const line = task / across;
     auto const x = static_cast<std::int32_t>(task % across) * bundle;
     std::ptrdiff_t const begin =
         axis == 0 ? line * layout.pitch : x + line * (axis == 1 ? plane : layout.pitch);
-    std::int32_t const extents[3] = {layout.nx, layout.ny, layout.nz};
     std::int32_t const width = axis == 0 ? 1 : Kokkos::min(bundle, layout.nx - x);
     if (axis == 0 && !factors.periodic) return solve_row(begin, layout.nx);
+    std::int32_t const extent = axis == 0 ? layout.nx : axis == 1 ? layout.ny : layout.nz;
+    std::ptrdiff_t const stride = axis == 0 ? 1 : axis == 1 ? layout.pitch : plane;
     for (int component = 0; component < 3; ++component)
-      solve(component, begin, strides[axis], extents[axis], width);
+      solve(component, begin, stride, extent, width);
   }
 
  private:
