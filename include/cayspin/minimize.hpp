@@ -6,6 +6,7 @@
 #include <cayspin/minimizer/probe.hpp>
 #include <cayspin/minimizer/trial.hpp>
 #include <cayspin/solver/helmholtz.hpp>
+#include <cayspin/step.hpp>
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 
