@@ -63,7 +63,7 @@ struct Philox {
 
   /// Of lower halves. The processor has an instruction for them that g++ does not find.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {
-#if defined(CAYSPIN_DETAIL_AVX512)
+#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
     if constexpr (Lanes == 8)
       return reinterpret_cast<Words>(_mm512_maskz_mul_epu32(
           0xff, reinterpret_cast<__m512i>(a), _mm512_set1_epi64(static_cast<std::int64_t>(b))));
