@@ -96,6 +96,10 @@ std::string describe_units(io::Units const& units);
 /// "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation"
 std::string describe_method(io::Scene const& scene);
 
+/// Where a scene is written to: `output`, or its own file. Throws io::SceneError for neither.
+std::filesystem::path output_file(io::Scene const& scene,
+                                  std::optional<std::filesystem::path> const& output);
+
 /// The commands of the program. Each returns its exit status, or throws.
 int run(RunOptions const& options, Ranks& ranks);
 int relax(RelaxOptions const& options);

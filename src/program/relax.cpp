@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "files/file_beside.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/run_files.hpp"
@@ -9,6 +10,7 @@
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
+#include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/io/run_output.hpp>
 #include <cayspin/minimize.hpp>
@@ -36,13 +38,6 @@ std::vector<io::Field> fields_in_turn(io::Scene const& scene) {
   return fields;
 }
 
-std::filesystem::path output_file(io::Scene const& scene, RelaxOptions const& options) {
-  if (options.output) return *options.output;
-  if (scene.output.file) return *scene.output.file;
-  throw io::scene_error(scene, "output.file",
-                        "no file to write to; accepted: this key, or --output FILE.h5");
-}
-
 template <class Real, class Space>
 class Relaxation {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -55,8 +50,12 @@ class Relaxation {
     auto header =
         run_header(scene, options.precision, space_name<Space>(), threads, CAYSPIN_GIT_COMMIT);
     header.relaxes = true;
-    file_.emplace(output_file(scene, options), header,
-                  run_output_options(scene, options.overwrite));
+    // That of another run would be taken for one of this file.
+    auto const path = output_file(scene, options.output);
+    auto const checkpoint = io::checkpoint_beside(path);
+    io::require_free(checkpoint, options.overwrite);
+    file_.emplace(path, header, run_output_options(scene, options.overwrite));
+    std::filesystem::remove(checkpoint);
   }
 
   int run() {
@@ -137,7 +136,7 @@ int relax(RelaxOptions const& options) {
   if (is_thermal(scene))
     throw io::scene_error(scene, "thermal.temperature",
                           "a state of rest has no temperature; accepted: temperature = 0");
-  output_file(scene, options);
+  output_file(scene, options.output);
   io::check_files(scene);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);

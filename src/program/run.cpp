@@ -27,14 +27,16 @@
 #include <vector>
 
 namespace cayspin::program {
-namespace {
 
-std::filesystem::path output_file(io::Scene const& scene, RunOptions const& options) {
-  if (options.output) return *options.output;
+std::filesystem::path output_file(io::Scene const& scene,
+                                  std::optional<std::filesystem::path> const& output) {
+  if (output) return *output;
   if (scene.output.file) return *scene.output.file;
   throw io::scene_error(scene, "output.file",
                         "no file to write to; accepted: this key, or --output FILE.h5");
 }
+
+namespace {
 
 void warn_above_stable_dt(io::Scene const& scene, Plan const& plan, Ranks const& ranks) {
   auto const reason = dt_warning(plan, scene.units);
@@ -71,7 +73,7 @@ io::CheckpointHeader checkpoint_header(io::Scene const& typed, io::Scene const& 
 
 Restart restart_of(LeftBehind left, io::Scene const& scene, Plan const& plan,
                    RunOptions const& options) {
-  auto const output = output_file(scene, options);
+  auto const output = output_file(scene, options.output);
   try {
     Restart restart(std::move(left), scene, plan, options.precision, scene.integrator.steps);
     std::error_code ignored;
@@ -104,7 +106,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   }));
   auto const method = open_method(scene, plan, &simulation);
 
-  auto const path = output_file(scene, options);
+  auto const path = output_file(scene, options.output);
   auto const checkpoint_path = io::checkpoint_beside(path);
   Watch<Real, Space> watch(
       scene, simulation.generator, simulation.spins, times.first,
@@ -201,7 +203,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
     auto scene = io::read_scene(options.scene, options.overrides);
-    output_file(scene, options);
+    output_file(scene, options.output);
     io::check_files(scene);
     return scene;
   });

@@ -103,6 +103,15 @@ TEST_F(Relax, SaysWhenItDoesNotConverge) {
   EXPECT_GT(info.cost.relaxed->torque, 1e-6);
 }
 
+// What an earlier run left beside the file is not taken for the file's own.
+TEST_F(Relax, LeavesNoCheckpointOfAnother) {
+  write("out.checkpoint.h5", "of another run");
+  EXPECT_EQ(relax(scene).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5")));
+  EXPECT_EQ(relax(scene, {"--overwrite"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("out.checkpoint.h5")));
+}
+
 TEST_F(Relax, RefusesInOneLine) {
   struct Case {
     std::string text;
