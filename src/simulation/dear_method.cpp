@@ -29,7 +29,7 @@ template <class Simulation>
 class MethodOfScene {
  public:
   using spins_type = typename Simulation::Spins;
-  static constexpr int order = order_of_dear, work_fields = 0;
+  static constexpr int order = 4, work_fields = 0;  // the order: not above Multirate's
 
   MethodOfScene(Simulation& simulation, std::unique_ptr<OpenMethod> method)
       : simulation_(simulation), method_(std::move(method)) {}
@@ -60,7 +60,7 @@ class MethodOfScene {
   std::int64_t evaluations_ = 0;
 };
 
-template <class Simulation>
+template <class Simulation, int Order>
 class DearMethod final : public OpenMethod {
   using Inner = MethodOfScene<Simulation>;
   using Field = SceneField<typename Simulation::Spins>;
@@ -83,7 +83,7 @@ class DearMethod final : public OpenMethod {
 
  private:
   Simulation& simulation_;
-  Multirate<Inner, typename Field::DearTerm> stepper_;
+  Multirate<Inner, typename Field::DearTerm, Order> stepper_;
 };
 
 [[noreturn]] void refuse(io::Scene const& scene, char const* key, std::string const& wrong,
@@ -92,6 +92,8 @@ class DearMethod final : public OpenMethod {
 }
 
 }  // namespace
+
+int order_of_dear(Variant const& variant) { return variant.order > 4 ? 4 : 3; }
 
 bool has_dear_field(io::Scene const& scene) {
   auto const& slab = scene.field.slab_demag;
@@ -133,8 +135,12 @@ std::unique_ptr<OpenMethod> open_method(io::Scene const& scene, Plan const& plan
   if (!has_dear_field(scene)) return method;
   return std::visit(
       [&]<class Simulation>(Simulation* of_types) -> std::unique_ptr<OpenMethod> {
-        return std::make_unique<DearMethod<Simulation>>(*of_types, std::move(method),
-                                                        scene.integrator.substeps);
+        auto const with_order = [&]<int Order>() -> std::unique_ptr<OpenMethod> {
+          return std::make_unique<DearMethod<Simulation, Order>>(*of_types, std::move(method),
+                                                                 scene.integrator.substeps);
+        };
+        return order_of_dear(plan.variant) == 4 ? with_order.template operator()<4>()
+                                                : with_order.template operator()<3>();
       },
       simulation);
 }

@@ -19,10 +19,13 @@ bool has_dear_field(io::Scene const& scene);
 /// see it at each stage, or remembers the stages of steps before.
 void require_dear_field_fits(io::Scene const& scene, Variant const& variant);
 
-/// The order in time of its interpolation.
-constexpr int order_of_dear = 3;
+/// The order in time of its interpolation: 4 for methods of a higher order, otherwise 3, which
+/// stands longer steps.
+int order_of_dear(Variant const& variant);
 /// Fields of three numbers per site that the method keeps for a dear field.
-constexpr std::int64_t work_fields_of_dear = 4;
+inline std::int64_t work_fields_of_dear(Variant const& variant) {
+  return order_of_dear(variant) + 1;
+}
 
 /// The method of the plan, in substeps between evaluations of a dear field where there is one.
 std::unique_ptr<OpenMethod> open_method(io::Scene const& scene, Plan const& plan,

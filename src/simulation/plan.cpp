@@ -108,7 +108,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     if (slab->average_layer) memory.field += 8 * words * std::ranges::max(whole(lattice).shape);
   }
   if (has_dear_field(scene)) {
-    memory.work += work_fields_of_dear * memory.spins;
+    memory.work += work_fields_of_dear(variant) * memory.spins;
     memory.field += memory.spins;
   }
   // A rank reads its sites by some planes at once, but OVF whole. The first one writes.

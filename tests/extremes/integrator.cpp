@@ -6,6 +6,7 @@
 namespace cayspin::extremes {
 
 std::string Integrator::name() const {
+  if (relaxes) return "relax";
   std::string name(method->word);
   if (isotropy != io::Isotropy::zero) name += fmt::format(" {}", io::to_string(isotropy));
   if (generator == io::Generator::tangent) name += " tangent";
@@ -15,7 +16,7 @@ std::string Integrator::name() const {
 }
 
 std::string Integrator::variant() const {
-  if (method->is_baseline() || generator == io::Generator::tangent) return "";
+  if (relaxes || method->is_baseline() || generator == io::Generator::tangent) return "";
   return fmt::format("{} {}", io::to_string(generator), io::to_string(rotation));
 }
 
@@ -59,5 +60,11 @@ std::vector<Integrator> integrators(bool adaptive) {
 
 std::vector<Integrator> with_equal_steps() { return integrators(false); }
 std::vector<Integrator> with_adaptive_steps() { return integrators(true); }
+
+Integrator relaxation() {
+  auto some = with_equal_steps().front();
+  some.relaxes = true;
+  return some;
+}
 
 }  // namespace cayspin::extremes

@@ -14,6 +14,7 @@ using namespace simulation;
 /// One integrator as a scene can ask for it.
 struct Integrator : Choice {
   bool of_rigid_bodies = false;
+  bool relaxes = false;  // to a state of rest, by no method
 
   /// Neighbours count as they were, or as they are predicted, while a spin moves.
   bool takes_neighbors_apart() const { return method->neighbors != io::Neighbors::of_the_stage; }
@@ -29,5 +30,8 @@ std::vector<Integrator> with_equal_steps();
 
 /// The same of those that choose their steps.
 std::vector<Integrator> with_adaptive_steps();
+
+/// `cayspin relax`.
+Integrator relaxation();
 
 }  // namespace cayspin::extremes

@@ -14,6 +14,17 @@ std::vector<Integrator> simplest(std::vector<Integrator> const& all) {
   return few;
 }
 
+// Whose scenes are not refused.
+std::vector<Integrator> those_that_take(std::vector<Integrator> const& all,
+                                        Setting const& setting) {
+  Situation const situation{"", setting, setting};
+  std::vector<Integrator> some;
+  for (auto const& one : all)
+    if (try_out(one, situation, Precision::double_precision).fate != Fate::refused)
+      some.push_back(one);
+  return some;
+}
+
 int perform(int argc, char** argv) {
   bool json = false, longest = false;
   CLI::App app("Behaviour of every method at extreme inputs", "cayspin extremes");
@@ -35,6 +46,9 @@ int perform(int argc, char** argv) {
     if (!json) print_head();
     for (auto const& section : sections()) show(section, integrators);
     show(adaptive_steps(), with_adaptive_steps());
+    show(temperatures(), those_that_take(integrators, {.damping = 0.1, .temperature = 1}));
+    show(dear_fields(), those_that_take(integrators, {.damping = 0.1, .dear = 0.5}));
+    show(states_of_rest(), {relaxation()});
   }
   if (!kept) throw NumbersFailed("cayspin: a promise of the tables is broken");
   return Status::done;

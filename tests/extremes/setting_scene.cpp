@@ -3,6 +3,8 @@
 
 #include "exact.hpp"
 
+#include <cayspin/io/relax.hpp>
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,20 +38,31 @@ std::string scene_text(Integrator const& integrator, Setting const& setting) {
       setting.switched_on_at > 0
           ? fmt::format("\"t < {} ? 0 : {}\"", setting.switched_on_at, setting.field)
           : decimal(setting.field);
-  auto const field = body
-                         ? std::string()
-                         : fmt::format("[field]\nexchange = 1.0\napplied = [0, 0, {}]\n", strength);
+  auto field = body ? std::string()
+                    : fmt::format("[field]\nexchange = {}\napplied = [0, 0, {}]\n",
+                                  decimal(setting.exchange), strength);
+  if (setting.dear)
+    field += fmt::format(
+        "{}slab_demag = {{ normal = [0, 0, 1], average = \"layer\", dear = true, strength = {} }}\n",
+        body ? "[field]\n" : "", decimal(*setting.dear));
+  auto const initial = setting.initial.empty()
+                           ? fmt::format("uniform = [{}, 0, {}]", setting.along_field ? 0 : across,
+                                         setting.along_field ? 1 : along)
+                           : setting.initial;
+  auto const thermal = setting.temperature ? fmt::format("[thermal]\ntemperature = {}\nseed = 3\n",
+                                                         decimal(*setting.temperature))
+                                           : std::string();
   return fmt::format(
-      "[system]\n{}[lattice]\nshape = [{}]\n{}[initial]\nuniform = [{}, 0, {}]\n"
-      "[integrator]\n{}\n{}dt = {}\nsteps = {}\n",
+      "[system]\n{}[lattice]\nshape = [{}]\n{}[initial]\n{}\n"
+      "[integrator]\n{}\n{}{}dt = {}\nsteps = {}\n{}",
       system,
       body ? fmt::format("{}", n[0] * n[1] * n[2]) : fmt::format("{}, {}, {}", n[0], n[1], n[2]),
-      field, setting.along_field ? 0 : across, setting.along_field ? 1 : along,
-      lines_of(integrator),
+      field, initial, lines_of(integrator),
       integrator.method->adaptive ? fmt::format("tolerance = {}\nmin_dt = {}\n",
                                                 decimal(setting.tolerance), decimal(setting.min_dt))
                                   : std::string(),
-      decimal(setting.dt), setting.steps);
+      setting.substeps > 1 ? fmt::format("substeps = {}\n", setting.substeps) : std::string(),
+      decimal(setting.dt), setting.steps, thermal);
 }
 
 }  // namespace
@@ -64,7 +77,7 @@ io::Scene scene_of(Integrator const& integrator, Setting const& setting) {
     }
   } const file;
   std::ofstream(file.path) << scene_text(integrator, setting);
-  return io::read_scene(file.path);
+  return integrator.relaxes ? io::read_scene_to_relax(file.path) : io::read_scene(file.path);
 }
 
 }  // namespace cayspin::extremes

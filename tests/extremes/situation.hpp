@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,21 @@ struct Setting {
   std::array<std::int64_t, 3> shape{1, 1, 1};
   bool asks_for_damping = false;  // of methods that conserve the energy too
   bool along_field = false;
-  double switched_on_at = 0;            // > 0: the field is 0 before
-  double start_length = 1;              // of the first spin, after the program's own normalising
-  std::int64_t fault_at = -1;           // step after which a spin is made NaN
-  std::int64_t normalized = 0;          // steps between Newton steps; 0: none
-  double tolerance = 1e-4, min_dt = 0;  // of adaptive methods, which look at the spins every dt
+  double switched_on_at = 0;               // > 0: the field is 0 before
+  double start_length = 1;                 // of the first spin, after the program's own normalising
+  std::int64_t fault_at = -1;              // step after which a spin is made NaN
+  std::int64_t normalized = 0;             // steps between Newton steps; 0: none
+  double tolerance = 1e-4, min_dt = 0;     // of adaptive methods, which look at the spins every dt
+  std::optional<double> temperature = {};  // none: no [thermal]
+  std::optional<double> dear = {};         // strength of a slab's field, named dear
+  std::int64_t substeps = 1;
+  double exchange = 1, torque = 1e-6;  // the latter: relax's bound
+  std::string initial = {};            // instead of spins at an angle
 };
 
 /// What the end is compared with.
-enum class Against { nothing, solution, one_spin };
+/// One spin: a lattice of one. No noise: each bit of the run without [thermal].
+enum class Against { nothing, solution, one_spin, no_noise, start };
 
 /// One column of a table.
 struct Situation {
@@ -57,6 +64,13 @@ std::vector<Section> sections();
 
 /// For the adaptive methods.
 Section adaptive_steps();
+
+/// For both.
+Section temperatures();
+Section dear_fields();
+
+/// For relaxation().
+Section states_of_rest();
 
 /// 1e8 steps, for the simplest methods.
 Section longest_runs();

@@ -3,7 +3,9 @@
 
 #include "exact.hpp"
 #include "setting_scene.hpp"
+#include "simulation/dear_method.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/run_noise.hpp"
 #include "simulation/simulate.hpp"
 
 #include <cayspin/observer/normalize.hpp>
@@ -29,10 +31,13 @@ class Look : public RunObserver<HostSpace, Spins> {
   using Real = typename Spins::value_type;
 
  public:
-  Look(io::Scene const& scene, Setting const& setting, SceneGenerator<Spins> const& generator)
+  Look(io::Scene const& scene, Setting const& setting, SceneGenerator<Spins> const& generator,
+       Spins const& spins)
       : setting_(setting),
         generator_(generator),
-        guard_(scene, std::numeric_limits<Real>::epsilon()) {}
+        guard_(scene, std::numeric_limits<Real>::epsilon()) {
+    if (is_thermal(scene)) noise_.emplace(scene, spins);
+  }
 
   // Long runs are looked at in between.
   bool due(Step const& step) const override {
@@ -41,6 +46,15 @@ class Look : public RunObserver<HostSpace, Spins> {
   }
 
   Next operator()(HostSpace const& exec, Step const& step, Spins const& spins) override {
+    if (!noise_) return look(exec, step, spins);
+    return (*noise_)(exec, step, 0, spins, true, [&] { return look(exec, step, spins); });
+  }
+
+  std::int64_t step() const { return step_; }
+  std::optional<std::string> const& failure() const { return failure_; }
+
+ private:
+  Next look(HostSpace const& exec, Step const& step, Spins const& spins) {
     auto const now = sample(exec, generator_, step, spins);
     if (guard_.due(step) || step.last) failure_ = guard_.judge(step, now.energy, now.norm_defect);
     step_ = step.number;
@@ -50,10 +64,6 @@ class Look : public RunObserver<HostSpace, Spins> {
     return Next::proceed;
   }
 
-  std::int64_t step() const { return step_; }
-  std::optional<std::string> const& failure() const { return failure_; }
-
- private:
   static Vec3<Real> nan() {
     Real const none = std::numeric_limits<Real>::quiet_NaN();
     return {none, Real(0), Real(1)};
@@ -62,6 +72,7 @@ class Look : public RunObserver<HostSpace, Spins> {
   Setting const& setting_;
   SceneGenerator<Spins> const& generator_;
   Guard guard_;
+  std::optional<RunNoise<Spins>> noise_;
   std::int64_t step_ = 0;
   std::optional<std::string> failure_;
 };
@@ -93,8 +104,9 @@ struct Run {
     auto numbers = io::initial_spins(scene);
     for (int c = 0; c < 3; ++c) numbers[c] *= setting.start_length;
     Simulation<Real, HostSpace> simulation(scene, plan.lattice, plan.times, numbers);
-    Look<Spins> look(scene, setting, simulation.generator);
-    auto const ending = simulation.advance(plan.variant, plan.options, look);
+    Look<Spins> look(scene, setting, simulation.generator, simulation.spins);
+    auto const method = open_method(scene, plan, &simulation);
+    auto const ending = simulation.advance(*method, look);
     own_steps = ending.summary.own_steps;
     if (ending.failure) {
       stopped_at = look.step() + 1;
@@ -135,20 +147,29 @@ Outcome try_out(Integrator const& integrator, Situation const& situation, Settin
   bool const body = integrator.of_rigid_bodies;
   auto const time = static_cast<long double>(setting.dt) * setting.steps;
   auto const [off, error] = distances(run.spins, exact_end(setting, body, time));
-  std::int64_t const counted =
-      setting.normalized ? setting.normalized : std::max(setting.steps, run.own_steps);
+  std::int64_t const counted = setting.normalized
+                                   ? setting.normalized
+                                   : std::max(setting.steps * setting.substeps, run.own_steps);
   auto const steps = static_cast<double>(counted);
   // Round-off, and what is not known of an angle that large.
   double const angle = std::fabs(static_cast<double>(exact_angle(setting, body, time)));
   double const tolerance = std::fmin(eps * (8 * (steps + 1) + 4 * angle), 1e-4);
   bool exact = situation.against == Against::solution && error <= tolerance;
+  auto const spins_of_another = [&](Setting const& another) {
+    auto const other_scene = scene_of(integrator, another);
+    Run<Real> other{another, {}};
+    other.go(other_scene, make_plan(other_scene, plan_precision<Real>));
+    return other.spins;
+  };
   if (situation.against == Against::one_spin) {
     auto alone = setting;
     alone.shape = {1, 1, 1};
-    auto const scene_alone = scene_of(integrator, alone);
-    Run<Real> one{alone, {}};
-    one.go(scene_alone, make_plan(scene_alone, plan_precision<Real>));
-    exact = largest_difference(run.spins, one.spins) <= 8 * eps;
+    exact = largest_difference(run.spins, spins_of_another(alone)) <= 8 * eps;
+  }
+  if (situation.against == Against::no_noise) {
+    auto cold = setting;
+    cold.temperature.reset();
+    exact = copy_to_host(run.spins) == copy_to_host(spins_of_another(cold));
   }
   bool const kept = !integrator.method->keeps_length || off <= 4 * eps * (steps + 1);
   Fate const fate = !kept                              ? Fate::drifts
@@ -162,6 +183,7 @@ Outcome try_out(Integrator const& integrator, Situation const& situation, Settin
 }  // namespace
 
 Outcome try_out(Integrator const& integrator, Situation const& situation, Precision precision) {
+  if (integrator.relaxes) return try_to_relax(integrator, situation, precision);
   bool const in_double = precision == Precision::double_precision;
   auto setting = in_double ? situation.in_double : situation.in_single;
   bool const conserves = integrator.isotropy == io::Isotropy::energy;

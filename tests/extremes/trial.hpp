@@ -19,4 +19,7 @@ struct Outcome {
 /// Runs the scene of a situation as `cayspin run` does, but for the trajectory file.
 Outcome try_out(Integrator const& integrator, Situation const& situation, Precision precision);
 
+/// Relaxes it, as `cayspin relax` does.
+Outcome try_to_relax(Integrator const& integrator, Situation const& situation, Precision precision);
+
 }  // namespace cayspin::extremes

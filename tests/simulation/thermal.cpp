@@ -103,6 +103,36 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   EXPECT_GE(methods.size(), 12U);
 }
 
+std::int64_t fences_of_noise = 0;
+
+// Between two looks nothing waits for noise.
+TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
+  namespace tools = Kokkos::Tools::Experimental;
+  auto const run = SceneRun::open(io::parse_scene(R"(
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [9]
+[initial]
+random = { seed = 4 }
+[integrator]
+method = "heun"
+dt = 0.02
+steps = 100
+[thermal]
+temperature = 0.5
+)",
+                                                  "scene.toml"),
+                                  {});
+  tools::set_begin_fence_callback([](char const* label, std::uint32_t, std::uint64_t*) {
+    if (std::string_view(label).starts_with("cayspin::RunNoise")) ++fences_of_noise;
+  });
+  run->advance(100, {.period = 10});
+  tools::set_begin_fence_callback(nullptr);
+  EXPECT_EQ(fences_of_noise, 10);
+}
+
 // A program's field that throws once: the step is taken again, with the noise that it had.
 TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
   constexpr std::string_view text = R"(
