@@ -46,10 +46,10 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
   }
   // A torque below the bound leaves each spin about that near to the field.
   bool const rests = against == Against::solution && error <= 2 * setting.torque / setting.field;
-  Fate const fate = off > 4 * eps    ? Fate::drifts
-                    : end == start   ? Fate::exact
-                    : rests          ? Fate::bounded
-                                     : Fate::drifts;
+  Fate const fate = off > 4 * eps  ? Fate::drifts
+                    : end == start ? Fate::exact
+                    : rests        ? Fate::bounded
+                                   : Fate::drifts;
   return {fate, -1, 1, off / eps, error / eps, {}};
 }
 

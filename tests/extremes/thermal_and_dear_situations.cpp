@@ -24,8 +24,7 @@ warns where noise turns spins by half a radian a step.)",
   add("T 1e300", {.damping = 0.1}, 1e300);
   add("field 1e-300", {.field = 1e-300, .damping = 0.1}, 1);
   add("field and T 1e300, dt 1e-303", {.field = 1e300, .damping = 0.1, .dt = 1e-303}, 1e300);
-  add("NaN",
-      {.damping = 0.1, .dt = 1e-3, .steps = 20, .shape = {64, 1, 1}, .fault_at = 3}, 1);
+  add("NaN", {.damping = 0.1, .dt = 1e-3, .steps = 20, .shape = {64, 1, 1}, .fault_at = 3}, 1);
   section.situations.back().detected_by = 4;
   return section;
 }
