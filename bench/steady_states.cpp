@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// States of rest of films and a cube, to max |m x H| < 1e-6: evaluations of the field and seconds
+// States of rest of films and cubes, to max |m x H| < 1e-6: evaluations of the field and seconds
 // of cayspin::minimize, of the same without its preconditioner, of Barzilai and Borwein's steps
 // with the same kernels, and of a relaxation in time. `bench_steady_states --large`: also 256^2 and
 // 64^3 spins. A method that takes more than 60000 evaluations is stopped.
@@ -123,9 +123,10 @@ void compare(Lattice const& lattice, double exchange, bool random) {
               random ? "random" : "vortex");
   for (int method = 0; method < 4; ++method) {
     auto spins = fresh();
-    print(method < 2    ? by_minimize(field, spins, method == 0)
-          : method == 2 ? by_barzilai_borwein(field, spins)
-                        : by_relaxing(field, spins, exchange_bound(lattice, exchange) + 1.1));
+    print(method < 2 ? by_minimize(field, spins, method == 0)
+          : method == 2
+              ? by_barzilai_borwein(field, spins)
+              : by_relaxing(field, spins, exchange_bound(lattice, std::abs(exchange)) + 1.1));
   }
   std::printf("\n");
   std::fflush(stdout);
@@ -140,6 +141,8 @@ int main(int argc, char** argv) {
               "no precond.", "Barzilai-Borw.", "RKMK4 in time");
   for (double const exchange : {2.0, 50.0, 1000.0})
     for (bool const random : {false, true}) compare(Lattice::square(32, 32), exchange, random);
+  compare(Lattice::square(32, 32), -50, true);
+  compare(Lattice::cubic(16, 16, 16), -50, true);
   if (!large) return 0;
   for (double const exchange : {2.0, 50.0, 1000.0}) {
     compare(Lattice::square(256, 256), exchange, true);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/field/field_of_sites.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
@@ -13,20 +14,6 @@
 namespace cayspin {
 
 namespace detail {
-
-template <class Term, class Real>
-struct FieldOfSites {
-  Term term;
-  SiteArray<Real, 3> spins;
-  OutputArray<Real, 3> output;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using AtSite = Stencil<Site, Real>;
-    check_field<Term, AtSite>();
-    site.store(term.field(AtSite(site, spins)), output);
-  }
-};
 
 template <class Generator, class Real>
 struct GeneratorOfSites {

@@ -12,9 +12,9 @@ Arrays of vectors have the shape (nz, ny, nx, 3). All numbers are in the units o
 from cayspin._cayspin import CayspinError, NumbersFailed, SceneError
 from cayspin._cayspin import version as __version__
 from cayspin.scene import Scene
-from cayspin.simulation import Simulation
+from cayspin.simulation import Minimum, Simulation
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
 
-__all__ = ["Advice", "CayspinError", "NumbersFailed", "Scene", "SceneError", "Simulation", "Trade",
-           "Trajectory", "__version__", "advise", "open", "trade"]
+__all__ = ["Advice", "CayspinError", "Minimum", "NumbersFailed", "Scene", "SceneError",
+           "Simulation", "Trade", "Trajectory", "__version__", "advise", "open", "trade"]

@@ -40,13 +40,15 @@ class Scene:
     `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites as an array
     (nz, ny, nx, 3). It is called before each stage with a copy of the spins, and H has to be linear
     in them and symmetric: its energy is -sum m.H / 2.
-    Without `end` and `steps` in `integrator` the scene has no end.
+    Without `end` and `steps` in `integrator` the scene has no end. Without `integrator` it is for
+    Simulation.relax() alone.
 
     Raises SceneError with one line that names the key, what is wrong and what is accepted.
     """
 
-    def __init__(self, *, system: dict, lattice: dict, integrator: dict, initial: Any,
-                 field: dict | None = None, output: dict | None = None, **tables: Any):
+    def __init__(self, *, system: dict, lattice: dict, initial: Any,
+                 integrator: dict | None = None, field: dict | None = None,
+                 output: dict | None = None, **tables: Any):
         if isinstance(integrator, dict) and not {"end", "steps"} & set(integrator):
             integrator = {**integrator, "steps": 0}
         typed, spins, own = _split({**tables, "system": system, "lattice": lattice, "field": field,
@@ -97,14 +99,14 @@ class Scene:
         return self._scene.shape
 
     @property
-    def method(self) -> str:
-        """integrator.method"""
-        return self._scene.method
+    def method(self) -> str | None:
+        """integrator.method; None without an integrator"""
+        return self._scene.method if self._scene.has_integrator else None
 
     @property
-    def dt(self) -> float:
+    def dt(self) -> float | None:
         """The time step; of adaptive methods the time from one look at the spins to the next."""
-        return self._scene.dt
+        return self._scene.dt if self._scene.has_integrator else None
 
     @property
     def steps(self) -> int:
@@ -113,4 +115,5 @@ class Scene:
 
     def __repr__(self):
         nz, ny, nx = self.shape
-        return f"<cayspin.Scene {nx} x {ny} x {nz}, {self.method}, dt {self.dt:g}>"
+        steps = "to relax" if self.method is None else f"{self.method}, dt {self.dt:g}"
+        return f"<cayspin.Scene {nx} x {ny} x {nz}, {steps}>"

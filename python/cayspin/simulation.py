@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import os
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import numpy as np
 
@@ -12,6 +13,24 @@ from cayspin import _cayspin, arguments
 from cayspin.scene import Scene
 
 _GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
+
+
+@dataclasses.dataclass(frozen=True)
+class Minimum:
+    """What relax() found, in the units of the scene."""
+
+    end: str  #: "converged", "stagnated" (by round-off) or "evaluation limit"
+    torque: float  #: max |m x H|
+    energy: float
+    iterations: int
+    evaluations: int  #: of the field of all sites
+    saddles: int  #: that were left on the way
+    curvature: float  #: an upper bound of the least one of the energy, of a converged state
+
+    @property
+    def converged(self) -> bool:
+        """Is the torque below its bound, and was no direction found that leads down?"""
+        return self.end == "converged"
 
 
 class Simulation:
@@ -45,6 +64,8 @@ class Simulation:
     def step(self, n: int = 1) -> None:
         """Takes n steps of dt, or fewer when an observer returns True."""
         n = arguments.whole(n, "step")
+        if not self._scene._scene.has_integrator:
+            raise _cayspin.CayspinError("step: the scene has no integrator; accepted: relax()")
         if not self._observers:
             self._run.advance(n, _GUARD_PERIOD, False)
             return
@@ -57,6 +78,8 @@ class Simulation:
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
         none. The run ends early where the scene's until_torque or an observer says so.
         """
+        if not self._scene._scene.has_integrator:
+            raise _cayspin.CayspinError("run: the scene has no integrator; accepted: relax()")
         if until is None and self._scene.steps == 0:
             raise _cayspin.CayspinError("run: the scene has no end; accepted: run(until=t), or "
                                         "integrator.end in the scene")
@@ -84,6 +107,28 @@ class Simulation:
             recorder.finish(False)
             raise
         recorder.finish(True)
+
+    def relax(self, torque: float = 1e-6, evaluations: int = 100000,
+              applied: Sequence[float] | None = None) -> Minimum:
+        """Moves the spins to a state of least energy, without steps in time, as `cayspin relax`
+        does: until max |m x H| is below `torque`, or for so many evaluations of the field.
+
+        `applied`, three numbers, takes the place of the scene's field.applied. A hysteresis is
+        [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search begins at the
+        state before. Otherwise H is that at the time now. Time and steps stay as they are.
+
+        The scene needs no integrator. Raises NumbersFailed for a field that is not finite,
+        SceneError for rigid bodies and temperatures. Ctrl-C leaves the spins on their way.
+        """
+        if applied is not None:
+            applied = arguments.numbers(applied, "relax: applied")
+            if applied.shape != (3,):
+                raise _cayspin.CayspinError(f"relax: applied of shape {applied.shape}; accepted: "
+                                            "three numbers")
+            applied = tuple(float(component) for component in applied)
+        found = self._run.relax(arguments.real(torque, "relax: torque"),
+                                arguments.whole(evaluations, "relax: evaluations"), applied)
+        return Minimum(*(getattr(found, field.name) for field in dataclasses.fields(Minimum)))
 
     def save(self, checkpoint: str | os.PathLike) -> None:
         """Stores all that Simulation(scene, restart=checkpoint) needs to go on with the same bits.

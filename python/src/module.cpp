@@ -6,9 +6,11 @@
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
 
+#include <cayspin/io/relax.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -50,6 +52,26 @@ bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_
   return ended == Advanced::at_rest;
 }
 
+Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
+              std::optional<std::array<double, 3>> const& applied) {
+  Minimum found;
+  {
+    nb::gil_scoped_release const released;
+    found = run.relax({torque, evaluations, applied, interrupted});
+  }
+  if (found.end == MinimizeEnd::interrupted) throw nb::python_error();
+  return found;
+}
+
+// A list of fields would take several runs.
+io::Scene with_one_field(io::Scene scene) {
+  if (!scene.field.applied_in_turn.empty())
+    throw io::scene_error(scene, "field.applied",
+                          "a list of fields is for cayspin relax; accepted: three numbers or "
+                          "expressions in t, and Simulation.relax(applied=...) for each of a list");
+  return scene;
+}
+
 template <auto Member>
 auto without_gil(SceneRun& run) {
   nb::gil_scoped_release const released;
@@ -62,14 +84,15 @@ void define_scene(nb::module_& module) {
           "read",
           [](std::filesystem::path const& path, Overrides const& overrides,
              std::optional<NumbersIn> const& spins) {
-            return io::read_scene(path, overrides, given(spins));
+            return with_one_field(io::read_scene_to_run_or_relax(path, overrides, given(spins)));
           },
           "path"_a, "overrides"_a, "spins"_a.none())
       .def_static(
           "parse",
           [](std::string const& text, std::filesystem::path const& name, Overrides const& overrides,
              std::optional<NumbersIn> const& spins) {
-            return io::parse_scene(text, name, overrides, given(spins));
+            return with_one_field(
+                io::parse_scene_to_run_or_relax(text, name, overrides, given(spins)));
           },
           "text"_a, "name"_a, "overrides"_a, "spins"_a.none())
       .def("with_overrides",
@@ -100,6 +123,7 @@ void define_scene(nb::module_& module) {
                      auto const& [nx, ny, nz] = scene.lattice.shape;
                      return nb::make_tuple(nz, ny, nx);
                    })
+      .def_prop_ro("has_integrator", io::has_integrator)
       .def_prop_ro(
           "method",
           [](io::Scene const& scene) { return std::string(scene.integrator.method->word); })
@@ -141,6 +165,7 @@ void define_run(nb::module_& module) {
              as_error([&] { run.save(checkpoint); });
            })
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
+      .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none())
       .def("step_at", &SceneRun::step_at)
       .def("spins", [](SceneRun& run) { return array_of(without_gil<&SceneRun::spins>(run)); })
       .def("set_spins",
@@ -174,6 +199,17 @@ void define_run(nb::module_& module) {
                    [](SceneRun const& run) { return std::string(to_string(run.precision())); });
 }
 
+void define_minimum(nb::module_& module) {
+  nb::class_<Minimum>(module, "Minimum")
+      .def_prop_ro("end", [](Minimum const& found) { return std::string(to_string(found.end)); })
+      .def_ro("torque", &Minimum::torque)
+      .def_prop_ro("energy", [](Minimum const& found) { return found.energy.value; })
+      .def_ro("iterations", &Minimum::iterations)
+      .def_ro("evaluations", &Minimum::evaluations)
+      .def_ro("saddles", &Minimum::saddles)
+      .def_ro("curvature", &Minimum::curvature);
+}
+
 void define_recorder(nb::module_& module) {
   nb::class_<RunRecorder>(module, "Recorder")
       .def(nb::new_([](SceneRun& run, std::int64_t end, std::filesystem::path const& path,
@@ -203,6 +239,7 @@ NB_MODULE(_cayspin, module) {
   module.attr("version") = CAYSPIN_VERSION_STRING;
   module.attr("git_commit") = CAYSPIN_GIT_COMMIT;
   python::define_scene(module);
+  python::define_minimum(module);
   python::define_run(module);
   python::define_recorder(module);
 }

@@ -4,9 +4,12 @@
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
+#include "simulation/scene_minimizer.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 #include "trade/resolved.hpp"
+
+#include <cayspin/io/relax.hpp>
 
 #include <fmt/format.h>
 
@@ -72,6 +75,24 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
   fmt::print("}}\n");
 }
 
+void print_json_to_relax(io::Scene const& scene, Plan const& plan, Precision precision) {
+  auto const& memory = plan.memory;
+  auto const& units = scene.units;
+  fmt::print(
+      "{{\"stable_dt\": null, \"sites\": {}, \"bytes_per_site\": {}, \"spins_bytes\": {}, "
+      "\"work_bytes\": {}, \"field_bytes\": {}, \"host_buffer_bytes\": {}, "
+      "\"memory_bytes\": {}, \"evaluations_per_step\": null, \"states\": {}, "
+      "\"file_bytes\": {}, \"precision\": \"{}\"",
+      plan.lattice.sites(), bytes_per_site(plan), memory.spins, memory.work, memory.field,
+      memory.files, memory.total(), plan.frames, plan.file_bytes, to_string(precision));
+  if (units.si)
+    fmt::print(
+        ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
+        "\"energy_unit\": {}",
+        units.time, units.length, units.field, units.energy);
+  fmt::print("}}\n");
+}
+
 // In SI with the reduced number after it.
 std::string both(io::Units const& units, double time, int digits) {
   auto const text = time_text(units, time, digits);
@@ -105,7 +126,8 @@ std::string noise_text(io::Scene const& scene, Plan const& plan) {
 
 std::string output_text(io::Scene const& scene, Plan const& plan) {
   auto const& output = scene.output;
-  auto text = fmt::format("{} frames, {}, to {}", plan.frames, bytes_text(plan.file_bytes),
+  auto text = fmt::format("{} frame{}, {}, to {}", plan.frames, plan.frames == 1 ? "" : "s",
+                          bytes_text(plan.file_bytes),
                           output.file ? output.file->string() : "the file that --output names");
   if (output.compression > 0) text += fmt::format(", compressed at level {}", output.compression);
   if (output.xdmf) text += ", described by an XDMF file";
@@ -125,13 +147,22 @@ void check_start(io::Scene const& scene) {
   io::initial_spins(scene);
 }
 
+void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
+
+void print_memory(Plan const& plan, Precision precision, char const* work) {
+  auto const& memory = plan.memory;
+  print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, {} {}, fields "
+                              "{}; with {} of buffers on the host {}",
+                              bytes_per_site(plan), to_string(precision), bytes_text(memory.spins),
+                              work, bytes_text(memory.work), bytes_text(memory.field),
+                              bytes_text(memory.files), bytes_text(memory.total())));
+  if (!is_start_checked(plan)) print("", "the start's numbers are not checked: too many sites");
+  if (!fits(plan)) print("", "more memory than is available now");
+}
+
 void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
                 std::optional<double> const& repeated) {
-  for (auto const& [name, text] : describe(scene)) fmt::print("{:<11} {}\n", name, text);
-  auto const print = [](char const* name, std::string const& text) {
-    fmt::print("{:<11} {}\n", name, text);
-  };
-  auto const& memory = plan.memory;
+  for (auto const& [name, text] : describe(scene)) print(name, text);
   print("method", fmt::format("{}, order {}, {} per step", describe_method(scene),
                               order(scene, plan.variant), evaluations_text(scene, plan.variant)));
   print("time", fmt::format("{} steps of {}, to t = {}", plan.times.steps,
@@ -143,13 +174,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
         fmt::format(
             "{} per step, {:.4g} spin updates in all", evaluations_text(scene, plan.variant),
             static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites())));
-  print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, method {}, fields "
-                              "{}; with {} of buffers on the host {}",
-                              bytes_per_site(plan), to_string(precision), bytes_text(memory.spins),
-                              bytes_text(memory.work), bytes_text(memory.field),
-                              bytes_text(memory.files), bytes_text(memory.total())));
-  if (!is_start_checked(plan)) print("", "the start's numbers are not checked: too many sites");
-  if (!fits(plan)) print("", "more memory than is available now");
+  print_memory(plan, precision, "method");
   if (repeated)
     print("ranks",
           fmt::format("each repeats {:.3g} % of its work, and has {} rows or planes of its "
@@ -158,11 +183,36 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   print("output", output_text(scene, plan));
 }
 
+// The field itself decides on the rest when the search begins.
+std::string search_text(io::Scene const& scene) {
+  return fmt::format("L-BFGS {}, to max |m x H| < --torque{}",
+                     scene.field.exchange ? "preconditioned by exchange" : "without exchange",
+                     scene.field.applied_in_turn.empty() ? "" : ", each from the state before");
+}
+
+int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
+  if (options.ranks)
+    throw UsageError(fmt::format(
+        "--ranks {}: the scene is for cayspin relax, which runs on one rank", *options.ranks));
+  auto const plan = make_plan_to_relax(scene, options.precision);
+  if (is_start_checked(plan)) check_start(scene);
+  if (options.json) {
+    print_json_to_relax(scene, plan, options.precision);
+    return Status::done;
+  }
+  for (auto const& [name, text] : describe(scene)) print(name, text);
+  print("relax", search_text(scene));
+  print_memory(plan, options.precision, "search");
+  print("output", output_text(scene, plan));
+  return Status::done;
+}
+
 }  // namespace
 
 int check(CheckOptions const& options) {
-  auto scene = io::read_scene(options.scene, options.overrides);
+  auto scene = io::read_scene_to_run_or_relax(options.scene, options.overrides);
   io::check_files(scene);
+  if (io::is_to_relax(scene)) return check_to_relax(options, scene);
   if (scene.integrator.method->automatic) {
     auto const space = chosen_space({});
     KokkosSession const kokkos(space, {}, {});

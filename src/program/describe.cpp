@@ -73,6 +73,18 @@ std::string applied_text(io::Scene const& scene) {
   return fmt::format("{} T, {}", components_text(*scene.applied_in_tesla), text);
 }
 
+std::string list_text(io::Scene const& scene) {
+  auto const& list = scene.field.applied_in_turn;
+  double const unit = scene.units.si ? scene.units.field : 1;
+  auto const text = [&](io::Triple const& h) {
+    return vector_text({h[0] * unit, h[1] * unit, h[2] * unit});
+  };
+  double const mu0 = scene.field.mu0;
+  return fmt::format("H = {}h{} in turn, {} of them: h = {} to {}",
+                     mu0 == 1 ? "" : fmt::format("{:.6g} ", mu0), scene.units.si ? " T" : "",
+                     list.size(), text(list.front()), text(list.back()));
+}
+
 std::string material_text(io::Material const& material) {
   bool const atoms = material.atomistic;
   auto text =
@@ -141,6 +153,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     });
     for (auto const& term : field.anisotropies) lines.emplace_back("anisotropy", term_text(term));
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
+    if (!field.applied_in_turn.empty()) lines.emplace_back("applied", list_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));
   }
   if (scene.thermal) lines.emplace_back("temperature", thermal_text(scene));

@@ -2,41 +2,26 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "files/file_beside.hpp"
-#include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/run_files.hpp"
-#include "simulation/scene_field.hpp"
+#include "simulation/scene_minimizer.hpp"
 #include "simulation/space.hpp"
 #include "simulation/text.hpp"
-#include "simulation/thermal.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/io/run_output.hpp>
-#include <cayspin/minimize.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace cayspin::program {
 namespace {
-
-// One field for each state that is asked for.
-std::vector<io::Field> fields_in_turn(io::Scene const& scene) {
-  if (scene.field.applied_in_turn.empty()) return {scene.field};
-  std::vector<io::Field> fields;
-  for (auto const& [x, y, z] : scene.field.applied_in_turn) {
-    fields.push_back(scene.field);
-    fields.back().applied = {x, y, z};
-  }
-  return fields;
-}
 
 template <class Real, class Space>
 class Relaxation {
@@ -59,7 +44,7 @@ class Relaxation {
   }
 
   int run() {
-    auto const fields = fields_in_turn(scene_);
+    auto const fields = io::fields_in_turn(scene_);
     for (auto const& field : fields) {
       auto const found = relax_in(SceneField<Spins>(field, spins_.lattice(), false));
       cost_.evaluations += found.evaluations;
@@ -83,18 +68,13 @@ class Relaxation {
  private:
   Minimum relax_in(SceneField<Spins> const& field) {
     Kokkos::Timer const clock;
-    Minimum found;
-    try {
-      found = minimizer_.minimize(exec_, field, spins_,
-                                  {.torque = options_.torque / scene_.units.field,
-                                   .evaluations = options_.evaluations,
-                                   .observer = [](Minimum const&) {
-                                     return interrupt_requested() ? Next::stop : Next::proceed;
-                                   }});
-    } catch (std::invalid_argument const&) {
-      throw NumbersFailed(fmt::format("{}: the field of the start, or its energy, is not finite",
-                                      scene_.path.string()));
-    }
+    auto const found =
+        minimizer_.minimize(exec_, scene_, field, spins_,
+                            {.torque = options_.torque / scene_.units.field,
+                             .evaluations = options_.evaluations,
+                             .observer = [](Minimum const&) {
+                               return interrupt_requested() ? Next::stop : Next::proceed;
+                             }});
     cost_.step_seconds += clock.seconds();
     Step const step{states_, static_cast<double>(states_), 1, true};
     last_ = sample(exec_, field, step, spins_);
@@ -120,7 +100,7 @@ class Relaxation {
   RelaxOptions const& options_;
   Space exec_;
   Spins spins_;
-  Minimizer<Spins> minimizer_;
+  SceneMinimizer<Real, Space> minimizer_;
   std::optional<io::RunOutput> file_;
   io::RunCost cost_{.relaxed = io::Relaxed{}};
   Kokkos::Timer clock_;
@@ -133,15 +113,12 @@ class Relaxation {
 
 int relax(RelaxOptions const& options) {
   auto const scene = io::read_scene_to_relax(options.scene, options.overrides);
-  if (is_thermal(scene))
-    throw io::scene_error(scene, "thermal.temperature",
-                          "a state of rest has no temperature; accepted: temperature = 0");
+  require_rest(scene);
   output_file(scene, options.output);
   io::check_files(scene);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
-  auto plan = make_plan(scene, options.precision);
-  plan.memory.work = plan.memory.spins * Minimizer<SpinField<double>>::work_fields;
+  auto const plan = make_plan_to_relax(scene, options.precision);
   require_memory(scene, plan);
   catch_signals();
   return in_space(space, options.precision, [&]<class Real, class Space>() {

@@ -146,7 +146,8 @@ double read_dt(Table const& table, Integrator const& integrator) {
 }  // namespace
 
 Integrator read_integrator(Table const& root, SystemKind kind) {
-  auto const table = root.table("integrator", "a table [integrator]");
+  auto const table =
+      root.table("integrator", "a table [integrator]; only cayspin relax goes without");
   table.accept_only(with_flags<Integrator>(
       {"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end", "steps",
        "substeps", "tolerance", "min_dt", "max_dt", "error", "until_torque"},

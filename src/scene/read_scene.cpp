@@ -47,11 +47,12 @@ toml::table parse(std::string const& text, std::filesystem::path const& path) {
   }
 }
 
-enum class Purpose { run, relax };
+enum class Purpose { run, relax, any };
 
 // For a scene to relax, [integrator] is read where it is there.
 Integrator read_integrator_for(Purpose purpose, detail::Table const& root, SystemKind kind) {
-  if (purpose == Purpose::run || root.contains("integrator"))
+  bool const is_for_bodies = purpose == Purpose::any && kind != SystemKind::llg;
+  if (purpose == Purpose::run || is_for_bodies || root.contains("integrator"))
     return detail::read_integrator(root, kind);
   Integrator none;
   none.method = methods().front();
@@ -60,6 +61,7 @@ Integrator read_integrator_for(Purpose purpose, detail::Table const& root, Syste
 }
 
 void check_purpose(Purpose purpose, Scene const& scene) {
+  if (purpose == Purpose::any) purpose = is_to_relax(scene) ? Purpose::relax : Purpose::run;
   if (purpose == Purpose::run) {
     if (!scene.field.applied_in_turn.empty())
       throw scene_error(scene, "field.applied",
@@ -102,7 +104,7 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   scene.thermal = detail::read_thermal(root, scene.system.kind);
   scene.output = detail::read_output(root, scene.integrator.steps);
   if (scene.units.si) detail::convert_to_reduced(root);
-  if (purpose == Purpose::run || root.contains("integrator")) check_combination(scene);
+  if (purpose == Purpose::run || has_integrator(scene)) check_combination(scene);
   check_purpose(purpose, scene);
   return scene;
 }
@@ -118,6 +120,34 @@ Scene parse_scene(std::string text, std::filesystem::path const& path,
 Scene read_scene_to_relax(std::filesystem::path const& path,
                           std::vector<std::string> const& overrides) {
   return parse_scene_for(Purpose::relax, read_text(path), path, overrides, {});
+}
+
+Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const& name,
+                                  std::vector<std::string> const& overrides,
+                                  std::shared_ptr<std::vector<double> const> given_spins) {
+  return parse_scene_for(Purpose::any, std::move(text), name, overrides, std::move(given_spins));
+}
+
+Scene read_scene_to_run_or_relax(std::filesystem::path const& path,
+                                 std::vector<std::string> const& overrides,
+                                 std::shared_ptr<std::vector<double> const> given_spins) {
+  return parse_scene_to_run_or_relax(read_text(path), path, overrides, std::move(given_spins));
+}
+
+bool has_integrator(Scene const& scene) { return scene.places.contains("integrator"); }
+
+bool is_to_relax(Scene const& scene) {
+  return !has_integrator(scene) || !scene.field.applied_in_turn.empty();
+}
+
+std::vector<Field> fields_in_turn(Scene const& scene) {
+  if (scene.field.applied_in_turn.empty()) return {scene.field};
+  std::vector<Field> fields;
+  for (auto const& [x, y, z] : scene.field.applied_in_turn) {
+    fields.push_back(scene.field);
+    fields.back().applied = {x, y, z};
+  }
+  return fields;
 }
 
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides,

@@ -5,6 +5,7 @@
 #include "scene_run_in_space.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
+#include <cayspin/io/relax.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
@@ -184,6 +185,8 @@ std::int64_t SceneRun::step_at(double t) const {
 }
 
 Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
+  if (!io::has_integrator(scene_))
+    throw UsageError("the scene has no table [integrator]; accepted: a search for a state of rest");
   if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
   Turn const turn;
   constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
@@ -199,6 +202,38 @@ Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
         target, scene_.integrator.steps,
         plan_.times.at(scene_.integrator.steps) * scene_.units.time));
   return advance_to(target, looks);
+}
+
+Minimum SceneRun::relax(RelaxSettings const& settings) {
+  if (!(settings.torque > 0) || !std::isfinite(settings.torque))
+    throw UsageError(fmt::format("torque {}; accepted: a number > 0", settings.torque));
+  if (settings.evaluations < 1)
+    throw UsageError(
+        fmt::format("{} evaluations; accepted: a whole number >= 1", settings.evaluations));
+  Turn const turn;
+  require_rest(scene_);
+  auto field = scene_.field;
+  if (auto const& applied = settings.applied) {
+    field.own.uniform = nullptr;
+    field.applied.emplace();
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!std::isfinite((*applied)[i]))
+        throw UsageError("applied: not finite; accepted: three finite numbers");
+      (*field.applied)[i] = (*applied)[i] / scene_.units.field;
+    }
+  }
+  InterruptPoll poll(settings.interrupted);
+  auto found = find_rest(
+      field, {.torque = settings.torque / scene_.units.field,
+              .evaluations = settings.evaluations,
+              .time = reduced_time(),
+              .observer = [&](Minimum const&) { return poll() ? Next::stop : Next::proceed; }});
+  evaluations_ += found.evaluations;
+  found.torque *= scene_.units.field;
+  found.curvature *= scene_.units.field;
+  found.energy.value *= scene_.units.energy;
+  found.energy.magnitude *= scene_.units.energy;
+  return found;
 }
 
 LentVectors SceneRun::spins() {

@@ -6,6 +6,7 @@
 #include <cayspin/checkpoint.hpp>
 #include <cayspin/io/own_field.hpp>
 #include <cayspin/io/scene.hpp>
+#include <cayspin/minimizer/minimum.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <cstdint>
@@ -40,6 +41,14 @@ struct Looks {
 };
 
 enum class Advanced { whole, interrupted, at_rest };
+
+/// How far a state of rest is looked for.
+struct RelaxSettings {
+  double torque = 1e-6;                    // bound on max |m x H|, in the units of the scene
+  std::int64_t evaluations = 100000;       // of the field, at most
+  std::optional<io::Triple> applied = {};  // in place of field.applied
+  std::function<bool()> interrupted = {};  // asked about twenty times a second
+};
 
 /// A run of a scene, its types erased: what other languages hold. Calls of several threads, also on
 /// several runs, take turns. Kokkos starts with the first run of a process, unless the program has
@@ -81,6 +90,12 @@ class SceneRun {
   /// program throws. steps() and the spins are then those before the step that failed.
   Advanced advance(std::int64_t count, Looks const& looks = {});
 
+  /// Moves the spins to a state of rest of the field now. Time and steps stay. Methods that
+  /// remember steps begin again. The result is in the scene's units. Throws UsageError for settings
+  /// that cannot be, io::SceneError for rigid bodies and temperatures, NumbersFailed for a field
+  /// that is not finite, and what a field of the program throws.
+  Minimum relax(RelaxSettings const& settings = {});
+
   /// The spins. Memory that is still lent when the run goes on is left as it is: the run moves to
   /// other memory, by one copy.
   LentVectors spins();
@@ -105,6 +120,7 @@ class SceneRun {
   double reduced_time() const { return plan_.times.at(number_); }
 
   virtual Advanced advance_to(std::int64_t target, Looks const& looks) = 0;
+  virtual Minimum find_rest(io::Field const& field, MinimizeOptions const& options) = 0;
   virtual LentVectors lend_spins() = 0;
   virtual void replace_spins(std::vector<double> const& start) = 0;
   virtual void exchange(Checkpoint& checkpoint) = 0;

@@ -6,6 +6,7 @@
 #include "interrupt_poll.hpp"
 #include "run_noise.hpp"
 #include "run_state.hpp"
+#include "scene_minimizer.hpp"
 #include "scene_run.hpp"
 #include "thermal.hpp"
 
@@ -142,6 +143,23 @@ class SceneRunInSpace final
   void replace_spins(std::vector<double> const& start) override {
     leave_lent_memory(false);
     copy_from_host(start, simulation_.spins);
+    begin_again();
+  }
+
+  Minimum find_rest(io::Field const& field, MinimizeOptions const& options) override {
+    leave_lent_memory(true);
+    begin_again();
+    if (!minimizer_) {
+      require_memory(scene_, make_plan_to_relax(scene_, precision()));
+      minimizer_.emplace(simulation_.spins);
+    }
+    return minimizer_->minimize(simulation_.exec, scene_,
+                                SceneField<Spins>(field, plan_.lattice, false), simulation_.spins,
+                                options);
+  }
+
+  // With other spins.
+  void begin_again() {
     continues_ = false;
     guard_ = Guard(scene_, epsilon);
     looked_ = -1;
@@ -212,6 +230,7 @@ class SceneRunInSpace final
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
   std::optional<RunNoise<Spins>> noise_;
   std::optional<SceneGenerator<Spins>> torque_;
+  std::optional<SceneMinimizer<Real, Space>> minimizer_;
   std::vector<std::pair<std::string, SceneGenerator<Spins>>> terms_;
   std::shared_ptr<Spins> lent_;
 

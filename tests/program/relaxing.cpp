@@ -2,6 +2,8 @@
 // cayspin relax: a state of rest, or one for each field of a list, its file, and how it ends.
 #include "program_test.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cmath>
 
 namespace cayspin::program::test {
@@ -112,6 +114,92 @@ TEST_F(Relax, LeavesNoCheckpointOfAnother) {
   EXPECT_FALSE(std::filesystem::exists(in_folder("out.checkpoint.h5")));
 }
 
+// `check` says what relax would do with a scene that only relax takes.
+TEST_F(Relax, IsChecked) {
+  std::string const list = "field.applied=[[0.3, 0, 0.001], [0, 0, 0.001], [-0.3, 0, 0.001]]";
+  auto const file = write("scene.toml", scene);
+  auto const outcome = start({"check", file, "--set", list});
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  for (std::string const part :
+       {"H = h in turn, 3 of them: h = (0.3, 0, 0.001) to (-0.3, 0, 0.001)",
+        "relax       L-BFGS preconditioned by exchange, to max |m x H| < --torque, each from",
+        "search ", "output      3 frames, "})
+    EXPECT_TRUE(contains(outcome.output, part)) << part << "\n" << outcome.output;
+  for (std::string const part : {"stable dt", "method", "per step"})
+    EXPECT_FALSE(contains(outcome.output, part)) << part;
+  auto const without =
+      start({"check", file, "--set", "field={ applied = [0.1, 0, 0] }", "--precision", "single"});
+  EXPECT_TRUE(contains(without.output, "relax       L-BFGS without exchange")) << without.errors;
+  EXPECT_TRUE(contains(without.output, "output      1 frame, "));
+
+  auto const json = nlohmann::json::parse(
+      start({"check", file, "--json", "--set", list, "--set", "lattice.shape=[120, 100]"}).output);
+  EXPECT_EQ(json.at("states"), 3);
+  EXPECT_EQ(json.at("sites"), 12000);
+  EXPECT_TRUE(json.at("stable_dt").is_null());
+  EXPECT_TRUE(json.at("evaluations_per_step").is_null());
+  EXPECT_EQ(json.at("work_bytes"), 20 * json.at("spins_bytes").get<std::int64_t>());
+  double const frames = 3 * 12000 * 3 * 8;
+  EXPECT_GT(json.at("file_bytes").get<double>(), frames);
+  EXPECT_LT(json.at("file_bytes").get<double>(), frames + 3 * 200);
+  ASSERT_EQ(relax(scene, {"--set", list, "--set", "lattice.shape=[120, 100]"}).status, 0);
+  EXPECT_GT(static_cast<double>(std::filesystem::file_size(in_folder("out.h5"))), frames);
+
+  // With [integrator] as without it: the list decides. Without a list it is a run.
+  std::string const integrator = "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 50\n";
+  auto const both = write("scene.toml", scene + integrator);
+  EXPECT_TRUE(contains(start({"check", both, "--set", list}).output, "output      3 frames, "));
+  EXPECT_TRUE(contains(start({"check", both}).output, "stable dt"));
+}
+
+TEST_F(Relax, IsCheckedInSi) {
+  auto const file = write("scene.toml", R"toml(units = "SI"
+[material]
+Ms = 8e5
+A = 1.3e-11
+alpha = 0.02
+damping_form = "gilbert"
+[system]
+kind = "llg"
+[lattice]
+shape = [8, 6]
+spacing = 5e-9
+[field]
+applied = [[0.02, 0.0, 0.0], [-0.05, 0.0, 0.0]]
+[initial]
+uniform = [1, 0.1, 0.2]
+)toml");
+  auto const outcome = start({"check", file});
+  EXPECT_TRUE(
+      contains(outcome.output, "H = h T in turn, 2 of them: h = (0.02, 0, 0) to (-0.05, 0, 0)"))
+      << outcome.output << outcome.errors;
+  auto const json = nlohmann::json::parse(start({"check", file, "--json"}).output);
+  EXPECT_EQ(json.at("units"), "SI");
+  EXPECT_EQ(json.at("states"), 2);
+}
+
+TEST_F(Relax, IsRefusedByCheck) {
+  auto const file = write("scene.toml", scene);
+  for (auto const& [more, says] : std::vector<std::pair<Arguments, std::string>>{
+           {{"--ranks", "1,2"}, "--ranks 1,2: the scene is for cayspin relax, which runs on one"},
+           {{"--set", "thermal={ temperature = 1, seed = 2 }"}, "thermal.temperature: a state of"},
+           {{"--set", "field.applied=[[1, 0, 0], [0, 1]]"}, "field.applied[1]"},
+           {{"--set", "field.applied=[\"t\", 0, 0]"}, "field.applied: depends on t"}}) {
+    Arguments arguments{"check", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    auto const outcome = start(arguments);
+    EXPECT_EQ(outcome.status, 2) << says;
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, says)) << outcome.errors;
+    EXPECT_EQ(outcome.output, "");
+  }
+  // A rigid body is for `run` alone.
+  auto const body = write("body.toml",
+                          "[system]\nkind = \"rigid_body\"\ninertia = [1, 2, 3]\n"
+                          "[lattice]\nshape = [1]\n[initial]\nuniform = [1, 0, 0]\n");
+  EXPECT_TRUE(contains(start({"check", body}).errors, "integrator: is missing"));
+}
+
 TEST_F(Relax, RefusesInOneLine) {
   struct Case {
     std::string text;
@@ -133,6 +221,10 @@ TEST_F(Relax, RefusesInOneLine) {
     EXPECT_TRUE(contains(outcome.errors, says));
     EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5"))) << says;
   }
+  auto const missing = start({"run", write("scene.toml", scene), "--output", "out.h5"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_TRUE(contains(missing.errors, "integrator: is missing")) << missing.errors;
+  EXPECT_TRUE(contains(missing.errors, "only cayspin relax goes without")) << missing.errors;
   auto const listed = scene + "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 1\n";
   auto const run = start({"run", write("scene.toml", listed), "--output", "out.h5", "--set",
                           "field.applied=[[1, 0, 0]]"});

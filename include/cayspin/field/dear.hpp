@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/field/field_of_sites.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
-#include <cayspin/stencil.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,21 +23,6 @@
 namespace cayspin {
 
 namespace detail {
-
-/// Writes a prepared term's field into an array.
-template <class Term, class Real>
-struct StoreField {
-  Term term;
-  SiteArray<Real, 3> spins;
-  OutputArray<Real, 3> output;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using AtSite = Stencil<Site, Real>;
-    check_field<Term, AtSite>();
-    site.store(term.field(AtSite(site, spins)), output);
-  }
-};
 
 /// The weighted sum of the first `count` arrays.
 template <class Real>
@@ -156,7 +141,7 @@ class Dear {
     auto prepared = detail::prepare_term(term_, exec, spins, t);
     state_->energy_factor = detail::energy_factor_of(prepared);
     detail::for_each_site<Real>(exec, "cayspin::Dear::evaluate", spins.layout(),
-                                detail::StoreField<decltype(prepared), Real>{
+                                detail::FieldOfSites<decltype(prepared), Real>{
                                     std::move(prepared), spins.array(), output.output(false)},
                                 spins.layout().own);
     ++state_->evaluations;

@@ -11,4 +11,25 @@ namespace cayspin::io {
 Scene read_scene_to_relax(std::filesystem::path const& path,
                           std::vector<std::string> const& overrides = {});
 
+/// Reads a scene that only `cayspin relax` can take as read_scene_to_relax does, any other one as
+/// read_scene does.
+Scene read_scene_to_run_or_relax(std::filesystem::path const& path,
+                                 std::vector<std::string> const& overrides = {},
+                                 std::shared_ptr<std::vector<double> const> given_spins = {});
+
+/// The same for a text in memory.
+Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const& name,
+                                  std::vector<std::string> const& overrides = {},
+                                  std::shared_ptr<std::vector<double> const> given_spins = {});
+
+/// Has the scene a table [integrator]? What stands in Scene::integrator of one without means
+/// nothing.
+bool has_integrator(Scene const& scene);
+
+/// Can only `cayspin relax` take the scene: for want of [integrator], or for its list of fields?
+bool is_to_relax(Scene const& scene);
+
+/// The [field] of each state of rest that the scene asks for: one, or those of its list.
+std::vector<Field> fields_in_turn(Scene const& scene);
+
 }  // namespace cayspin::io

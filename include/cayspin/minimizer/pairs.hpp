@@ -33,7 +33,7 @@ struct ProductsOfPairs {
   SiteArray<Real, 3> spins, gradient;
   PairArrays<Real> steps, changes;
   int count;
-  double couplings[3];
+  double couplings[3];  // where negative, of neighbours that want to be opposite
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -56,9 +56,11 @@ struct ProductsOfPairs {
   template <int Axis, class AnyStencil>
   KOKKOS_FORCEINLINE_FUNCTION auto bonds(AnyStencil const& stencil) const {
     using Value = typename AnyStencil::value_type;
-    auto const back = stencil.template previous<Axis>() - stencil.center();
-    auto const on = stencil.template next<Axis>() - stencil.center();
-    return as_value<Value>(0.5 * couplings[Axis]) * Value(dot(back, back) + dot(on, on));
+    double const coupling = couplings[Axis];
+    Vec3<Value> const here = as_value<Value>(coupling < 0 ? -1.0 : 1.0) * stencil.center();
+    auto const back = stencil.template previous<Axis>(here) - here;
+    auto const on = stencil.template next<Axis>(here) - here;
+    return as_value<Value>(0.5 * Kokkos::abs(coupling)) * Value(dot(back, back) + dot(on, on));
   }
 };
 

@@ -18,10 +18,29 @@
 // along each axis, how strong the rest is, and which spins it leaves alone.
 namespace cayspin::detail {
 
-/// The same direction everywhere, or reversed from site to site along one axis.
+/// -1 where the indices along some axes have an odd sum, 1 elsewhere.
+struct AlternatingSigns {
+  bool along[3] = {false, false, false};
+
+  bool any() const { return along[0] || along[1] || along[2]; }
+
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION Value at(Site const& site) const {
+    using Real = scalar_t<Value>;
+    std::int64_t const rows = (along[1] ? site.y() : 0) + (along[2] ? site.z() : 0);
+    Real const first = rows % 2 == 0 ? Real(1) : Real(-1);
+    if (!along[0]) return Value(first);
+    Real signs[std::size_t{lanes_of<Value>}];
+    for (int lane = 0; lane < lanes_of<Value>; ++lane)
+      signs[lane] = (site.x() + lane) % 2 == 0 ? first : -first;
+    return load<Value>(signs);
+  }
+};
+
+/// The same direction everywhere, or reversed from site to site.
 template <class Real>
-struct AlternateAlong {
-  int axis;  // -1: nowhere
+struct AlternateSpins {
+  AlternatingSigns signs;
   OutputArray<Real, 3> output;
 
   template <class Site>
@@ -29,22 +48,7 @@ struct AlternateAlong {
     using Value = typename Site::value_type;
     // In no plane of symmetry.
     Vec3<Value> const m{Value(Real(0.26726124)), Value(Real(0.53452248)), Value(Real(0.80178373))};
-    site.store(Value(sign<Value>(site)) * m, output);
-  }
-
- private:
-  template <class Value, class Site>
-  KOKKOS_FORCEINLINE_FUNCTION Value sign(Site const& site) const {
-    if (axis == 0) return alternating<Value>(site.x());
-    std::int64_t const index = axis == 1 ? site.y() : axis == 2 ? site.z() : 0;
-    return Value(Real(index % 2 == 0 ? 1 : -1));
-  }
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Value alternating(std::int64_t first) {
-    Real signs[std::size_t{lanes_of<Value>}];
-    for (int lane = 0; lane < lanes_of<Value>; ++lane)
-      signs[lane] = Real((first + lane) % 2 == 0 ? 1 : -1);
-    return load<Value>(signs);
+    site.store(signs.template at<Value>(site) * m, output);
   }
 };
 
@@ -103,9 +107,18 @@ struct FieldAlongSpins {
 
 /// What is found.
 struct FieldStrengths {
-  std::array<double, 3> couplings{};  ///< mean J of a bond along each axis: H = J (m' - m)
-  double rest = 0;                    ///< the root mean square of |H| of spins that are parallel
+  /// Mean J of a bond along each axis: H = J (m' - m). Those below zero are left out where an odd
+  /// ring keeps spins from alternating: they lie in no pattern that is known beforehand.
+  std::array<double, 3> couplings{};
+  double rest = 0;  ///< the root mean square of |H| of spins that are parallel
   int evaluations = 0;
+
+  /// About the largest |H|.
+  double strongest() const {
+    double sum = rest;
+    for (double const coupling : couplings) sum += 4 * std::abs(coupling);
+    return sum;
+  }
 };
 
 /// Evaluates the field for parallel spins and for spins that alternate along each axis. `spins` is
@@ -126,11 +139,12 @@ FieldStrengths probe(
         FieldAlongSpins<decltype(prepared), Real>{std::move(prepared), spins.array(),
                                                   moves.array()});
   };
-  auto const alternating = [&](int axis) {
-    return look(AlternateAlong<Real>{axis, spins.output(false)});
+  auto const look_at = [&](AlternatingSigns const& signs) {
+    return look(AlternateSpins<Real>{signs, spins.output(false)});
   };
-  auto const parallel = alternating(-1);
+  auto const parallel = look_at({});
   double rests = parallel[2];
+  bool is_frustrated = false;
   auto const sites = static_cast<double>(lattice.sites());
   found.rest = std::sqrt(parallel[1] / sites);
   for (int axis = 0; axis < 3; ++axis) {
@@ -140,12 +154,18 @@ FieldStrengths probe(
     // Each bond between opposite spins takes 4 J from the sum of m.H.
     bool const closes = lattice.boundary[i] == Boundary::periodic && lattice.shape[i] % 2 == 0;
     double const bonds = sites / extent * (extent - (closes ? 0 : 1));
-    auto const opposed = alternating(axis);
+    AlternatingSigns signs;
+    signs.along[i] = true;
+    auto const opposed = look_at(signs);
     rests = opposed[2];
     double const coupling = (parallel[0] - opposed[0]) / (4 * bonds);
-    bool const is_noise = !(4 * bonds * coupling > 1e-5 * std::abs(parallel[0]));
+    bool const is_noise = !(4 * bonds * std::abs(coupling) > 1e-5 * std::abs(parallel[0]));
     found.couplings[i] = is_noise || !std::isfinite(coupling) ? 0 : coupling;
+    bool const is_odd_ring = lattice.boundary[i] == Boundary::periodic && lattice.shape[i] % 2 == 1;
+    is_frustrated = is_frustrated || (is_odd_ring && found.couplings[i] < 0);
   }
+  if (is_frustrated)
+    for (double& coupling : found.couplings) coupling = std::max(0.0, coupling);
   if (rests > 0) look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], spins.output(false)});
   return found;
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/scalars.hpp>
+#include <cayspin/step.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string_view>
+
+namespace cayspin {
+
+/// Why a minimisation ended.
+enum class MinimizeEnd {
+  converged,         ///< max |m x H| is below the bound, and no direction was found to go down
+  stagnated,         ///< round-off keeps max |m x H| above the bound
+  evaluation_limit,  ///< the largest number of evaluations was reached
+  interrupted        ///< the observer said Next::stop
+};
+
+constexpr std::string_view to_string(MinimizeEnd end) {
+  switch (end) {
+    case MinimizeEnd::converged:
+      return "converged";
+    case MinimizeEnd::stagnated:
+      return "stagnated";
+    case MinimizeEnd::evaluation_limit:
+      return "evaluation limit";
+    case MinimizeEnd::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+/// How far a minimisation has come, and at the end its result.
+struct Minimum {
+  MinimizeEnd end = MinimizeEnd::evaluation_limit;
+  double torque = std::numeric_limits<double>::infinity();  ///< max |m x H|
+  Energy energy = {};
+  std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
+  std::int64_t saddles = 0;                      ///< that were left on the way
+  /// An upper bound of the least eigenvalue of the energy's Hessian, of a converged state.
+  double curvature = std::numeric_limits<double>::infinity();
+};
+
+/// Options of minimize.
+struct MinimizeOptions {
+  double torque = 1e-6;              ///< bound on max |m x H|, in the units of H
+  std::int64_t evaluations = 10000;  ///< at most so many, and the few of one more iteration
+  double time = 0;                   ///< at which H is taken
+  bool preconditioned = true;        ///< by the exchange that the field is found to have
+  std::function<Next(Minimum const&)> observer = {};  ///< after each iteration
+};
+
+}  // namespace cayspin

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/minimizer/probe.hpp>
+#include <cayspin/solver/helmholtz.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+// A first guess of the inverse Hessian: (K + c)^-1 with the exchange K that a field is found to
+// have. Where neighbours want to be opposite, turning every second spin over maps their exchange to
+// that of a ferromagnet.
+namespace cayspin::detail {
+
+template <class Real>
+struct ChangeSigns {
+  AlternatingSigns signs;
+  SiteArray<Real, 3> vectors;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    site.store(signs.template at<Value>(site) * Vec3<Value>(site.load(vectors)), output);
+  }
+};
+
+template <class Spins>
+class Preconditioner {
+  using Real = typename Spins::value_type;
+
+ public:
+  /// Allocates. Without exchange it is 1 / c.
+  void set(Lattice const& lattice, FieldStrengths const& found, bool with_exchange) {
+    couplings_ = with_exchange ? found.couplings : std::array<double, 3>{};
+    auto strengths = couplings_;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      signs_.along[axis] = strengths[axis] < 0;
+      strengths[axis] = std::abs(strengths[axis]);
+    }
+    exchange_.emplace("Minimizer::exchange", lattice, strengths);
+    double const strongest = found.strongest();
+    first_shift_ = found.rest > 0 ? found.rest : strongest > 0 ? 1e-3 * strongest : 1;
+    shift_ = first_shift_;
+  }
+
+  std::array<double, 3> const& couplings() const { return couplings_; }
+
+  /// The curvature along the last step, of square length `step_square`, that exchange does not
+  /// explain becomes the constant.
+  void follow_curvature(double product, double exchange_energy, double step_square) {
+    double const rest = (product - exchange_energy) / step_square;
+    if (!std::isfinite(rest)) return;
+    shift_ = std::clamp(std::sqrt(shift_ * std::max(rest, 0.2 * shift_)), 1e-3 * first_shift_,
+                        30 * first_shift_);
+  }
+
+  /// to <- (K + c)^-1 from
+  template <class Exec>
+  void apply(Exec const& exec, Spins const& from, Spins const& to) {
+    auto const change_signs = [&](Spins const& v) {
+      for_each_site<Real>(exec, "cayspin::minimize::change_signs", v.layout(),
+                          ChangeSigns<Real>{signs_, v.array(), v.output(false)});
+    };
+    if (signs_.any()) change_signs(from);
+    exchange_->solve(exec, shift_, Real(1), from, to);
+    if (!signs_.any()) return;
+    change_signs(from);
+    change_signs(to);
+  }
+
+ private:
+  std::array<double, 3> couplings_{};
+  AlternatingSigns signs_;
+  std::optional<Helmholtz<Real, typename Spins::memory_space>> exchange_;
+  double first_shift_ = 1, shift_ = 1;
+};
+
+}  // namespace cayspin::detail

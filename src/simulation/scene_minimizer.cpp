@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "scene_minimizer.hpp"
+
+#include "failure.hpp"
+#include "space.hpp"
+#include "thermal.hpp"
+
+#include <cayspin/io/relax.hpp>
+
+#include <fmt/format.h>
+
+namespace cayspin::simulation {
+
+void require_rest(io::Scene const& scene) {
+  if (scene.system.kind != io::SystemKind::llg)
+    throw io::scene_error(scene, "system.kind",
+                          "rigid bodies have no state of rest; accepted: \"llg\"");
+  if (is_thermal(scene))
+    throw io::scene_error(scene, "thermal.temperature",
+                          "a state of rest has no temperature; accepted: temperature = 0");
+}
+
+Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
+  require_rest(scene);
+  auto without_steps = scene;
+  without_steps.integrator.steps = 0;
+  without_steps.integrator.substeps = 1;
+  // A search evaluates all terms alike.
+  if (auto& slab = without_steps.field.slab_demag; slab && slab->dear) {
+    slab->dear = false;
+    slab->on_host = true;
+  }
+  auto plan = make_plan(without_steps, precision);
+  auto const states = static_cast<std::int64_t>(io::fields_in_turn(scene).size());
+  plan.frames *= states;
+  plan.file_bytes *= states;
+  plan.memory.work = plan.memory.spins * Minimizer<SpinField<double>>::work_fields;
+  return plan;
+}
+
+template <class Real, class Space>
+Minimum SceneMinimizer<Real, Space>::minimize(Space const& exec, io::Scene const& scene,
+                                              SceneField<Spins> const& field, Spins& spins,
+                                              MinimizeOptions const& options) {
+  try {
+    return minimizer_.minimize(exec, field, spins, options);
+  } catch (std::invalid_argument const&) {
+    throw NumbersFailed(fmt::format("{}: the field of the start, or its energy, is not finite",
+                                    scene.path.string()));
+  }
+}
+
+#define CAYSPIN_INSTANTIATE(Space, Real) template class SceneMinimizer<Real, Space>;
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
+#undef CAYSPIN_INSTANTIATE
+
+}  // namespace cayspin::simulation

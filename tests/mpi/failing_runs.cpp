@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Runs on several ranks that are refused, fail, are interrupted or lose a rank.
+#include "on_ranks.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
+
+#include <sys/types.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace cayspin::program::test {
+namespace {
+
+/// The processes that a process started.
+std::vector<pid_t> children_of(pid_t parent) {
+  std::vector<pid_t> found;
+  for (auto const& entry : fs::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "stat");
+    pid_t child = 0, its_parent = 0;
+    std::string name, state;
+    if (file >> child >> name >> state >> its_parent && its_parent == parent)
+      found.push_back(child);
+  }
+  return found;
+}
+TEST_F(OnRanks, AreRefusedInOneLine) {
+  auto const scene = write("scene.toml", film("[7, 9, 13]", "method = \"rkmk4\""));
+  auto const refused = [&](Arguments const& more, std::string const& part) {
+    SCOPED_TRACE(part);
+    expect_refused(start_on(2, run_of(scene, "out.h5", more)), part);
+    EXPECT_FALSE(fs::exists(in_folder("out.h5")));
+  };
+  refused({"--ranks", "1,4"}, "--ranks 1,4: accepted:");
+  refused({"--ranks", "many"}, "--ranks many: accepted: two numbers");
+  refused({"--set", "lattice.shape=[7,9,-1]"}, "lattice.shape");
+  refused({"--set", "integrator.method='rkmk4_as_printed'"},
+          "integrator.method: runs on one rank alone");
+  for (std::string const slab : {"normal=[1,0,0]", "normal=[0,0,1],where='host'"})
+    refused({"--set", fmt::format("field.slab_demag={{{},average='layer'}}", slab)},
+            "field.slab_demag.average: runs on one rank alone");
+  refused({"--set", "initial={expression=['0','0','k-12']}"}, "the spin of site (0, 0, 12)");
+  refused({"--restart", "nothing.h5"}, "nothing.h5");
+  refused({"--space", "nowhere"}, "--space nowhere");
+  refused({"--no-such-option"}, "--no-such-option");
+  expect_refused(start_on(2, run_of(scene, "no/such/folder/out.h5")), "no/such/folder");
+  expect_refused(start(run_of(scene, "out.h5", {"--ranks", "1,2"})),
+                 "--ranks 1,2: the run has one");
+  expect_refused(start_on(2, {"check", scene}), "check runs on one rank; accepted: run");
+  expect_refused(start_on(2, {"relax", scene}), "relax runs on one rank; accepted: run");
+
+  auto const other = write("other.toml", film("[7, 9, 13]", "method = \"heun\""));
+  Arguments both = launch(1, run_of(scene, "out.h5"));
+  both.push_back(":");
+  auto const second = launch(1, run_of(other, "out.h5"));
+  both.insert(both.end(), second.begin(), second.end());
+  Treatment launcher;
+  launcher.program = CAYSPIN_MPIEXEC;
+  expect_refused(start(both, launcher), "the ranks were given different scenes");
+}
+
+TEST_F(OnRanks, SayOnceThatOneHasTooLittleMemory) {
+  auto const scene = write("scene.toml", film("[256, 256, 160]", "method = \"rkmk4\""));
+  Treatment launcher;
+  launcher.program = CAYSPIN_MPIEXEC;
+  for (int const poor : {0, 1}) {
+    SCOPED_TRACE(poor);
+    Arguments both;
+    for (int rank = 0; rank < 2; ++rank) {
+      auto const run = launch(1, run_of(scene, "out.h5"));
+      both.insert(both.end(), run.begin(), run.begin() + 2);
+      // A field is 131 MB, and no program can have 300.
+      if (rank == poor)
+        both.insert(both.end(), {"sh", "-c", "ulimit -v 300000; exec \"$0\" \"$@\""});
+      both.insert(both.end(), run.begin() + 2, run.end());
+      if (rank == 0) both.push_back(":");
+    }
+    auto const outcome = start(both, launcher);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(outcome.errors.find("memory") != std::string::npos) << outcome.errors;
+  }
+}
+
+TEST_F(OnRanks, SayOnceThatNumbersFailed) {
+  auto const scene = write("scene.toml", film("[7, 9, 13]", "method = \"euler\""));
+  auto const outcome = start_on(
+      3, run_of(scene, "out.h5", {"--set", "field.applied=[0,0,1]", "--set", "integrator.dt=0.3"}));
+  EXPECT_EQ(outcome.status, 3);
+  auto const after_warning = outcome.errors.find('\n') + 1;
+  EXPECT_TRUE(contains(outcome.errors.substr(0, after_warning), "warning: "));
+  auto const failure = outcome.errors.substr(after_warning);
+  EXPECT_TRUE(is_one_line(failure)) << failure;
+  EXPECT_TRUE(contains(failure, "energy rose by"));
+  EXPECT_TRUE(contains(failure, "last good frame is "));
+}
+
+TEST_F(OnRanks, EndTogetherWhenInterrupted) {
+  auto const scene = write("scene.toml", film("[16, 33, 8]", "method = \"rkmk4\""));
+  Treatment interrupted;
+  interrupted.program = CAYSPIN_MPIEXEC;
+  interrupted.interrupt_after = 0.3;
+  interrupted.interrupt_when = in_folder("out.h5");
+  // A launcher that is interrupted itself may lose the statuses of its ranks: each leaves its own.
+  auto command = launch(3, run_of(scene, "out.h5", {"--set", "integrator.steps=1000000"}));
+  command.insert(command.begin() + 2,
+                 {"sh", "-c", "trap : INT; \"$@\"; echo $? > status.$$", "sh"});
+  auto const outcome = start(command, interrupted);
+  int ended = 0;
+  for (auto const& entry : fs::directory_iterator(folder_)) {
+    if (entry.path().stem() != "status") continue;
+    int status = 0;
+    std::ifstream(entry.path()) >> status;
+    EXPECT_EQ(status, 130) << entry.path();
+    ++ended;
+  }
+  EXPECT_EQ(ended, 3);
+  auto const line = outcome.errors.find("interrupted after step ");
+  ASSERT_NE(line, std::string::npos) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("interrupted after step ", line + 1), std::string::npos);
+  auto const info = io::read_info(in_folder("out.h5"));
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(std::stoll(outcome.errors.substr(line + 23)), info.frame_steps.back());
+}
+
+TEST_F(OnRanks, SurviveTheDeathOfOne) {
+  auto const scene = write(
+      "scene.toml", film("[16, 33, 8]", "method = \"ab2\"") + "checkpoint_every = \"20 steps\"\n");
+  Arguments const longer{"--set", "integrator.steps=100000", "--set", "output.every=10"};
+  std::mt19937 random(5);
+  int const kills = setting("CAYSPIN_RANK_KILLS", 5);
+  for (int kill = 0; kill < kills; ++kill) {
+    SCOPED_TRACE(kill);
+    auto const name = fmt::format("{}.h5", kill);
+    auto const process = begin(launch(3, run_of(scene, name, longer)), CAYSPIN_MPIEXEC);
+    auto const checkpoint = io::checkpoint_beside(in_folder(name));
+    ASSERT_TRUE(eventually([&] { return fs::exists(checkpoint); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 500));
+    std::vector<pid_t> ranks;
+    for (pid_t const proxy : children_of(process))
+      for (pid_t const rank : children_of(proxy)) ranks.push_back(rank);
+    ASSERT_EQ(ranks.size(), 3u);
+    ::kill(ranks[random() % 3], SIGKILL);
+    auto const began = std::chrono::steady_clock::now();
+    EXPECT_NE(end(process, 0), 0);
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(20));
+    auto const info = io::read_info(in_folder(name));
+    EXPECT_FALSE(info.complete);
+    ASSERT_GT(info.frames, 0);
+    auto const step = io::CheckpointReader(checkpoint).header().step;
+    auto const to = fmt::format("integrator.steps={}", std::max(step, info.frame_steps.back()) + 5);
+    auto const outcome = start_on(2, run_of(scene, "on.h5", {"--restart", name, "--set", to}));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  }
+}
+}  // namespace
+}  // namespace cayspin::program::test
