@@ -36,6 +36,8 @@ class Minimizer {
  public:
   /// Fields of three numbers per site that it allocates, the grids of the multigrid included.
   static constexpr int work_fields = 20;
+  /// The least bound on the torque, of which squares are summed.
+  static constexpr double least_bound = 1e-150;
 
   /// Throws std::invalid_argument for a part of a lattice.
   explicit Minimizer(Spins const& like)
@@ -55,8 +57,10 @@ class Minimizer {
     detail::check_access<Exec, Memory>();
     Kokkos::Profiling::ScopedRegion const region("cayspin::minimize");
     require_lattice("cayspin::minimize", moves_.lattice(), spins.lattice());
-    if (!(options.torque > 0))
-      throw std::invalid_argument("cayspin::minimize: the bound on the torque must be above 0");
+    if (!(options.torque >= least_bound))
+      throw std::invalid_argument(
+          "cayspin::minimize: the bound on the torque must be 1e-150 or "
+          "more");
     if (options.evaluations < 1)
       throw std::invalid_argument("cayspin::minimize: the evaluations must be at least 1");
     begin(exec, field, spins, options);

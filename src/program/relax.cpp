@@ -116,6 +116,10 @@ int relax(RelaxOptions const& options) {
   require_rest(scene);
   output_file(scene, options.output);
   io::check_files(scene);
+  constexpr double least = Minimizer<SpinField<double>>::least_bound;
+  if (!(options.torque / scene.units.field >= least))
+    throw UsageError(fmt::format("--torque {}: too small to be told from 0; accepted: at least {}",
+                                 options.torque, least * scene.units.field));
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   auto const plan = make_plan_to_relax(scene, options.precision);

@@ -29,7 +29,8 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
     found = minimize(HostSpace(), SceneField<Spins>(scene.field, plan.lattice, false), spins,
                      {.torque = setting.torque});
   } catch (std::invalid_argument const& error) {
-    return {.fate = Fate::detected, .step = 0, .message = error.what()};
+    bool const by_bound = setting.torque < Minimizer<Spins>::least_bound;
+    return {.fate = by_bound ? Fate::refused : Fate::detected, .step = 0, .message = error.what()};
   }
   if (found.end != MinimizeEnd::converged)
     return {.fate = Fate::detected,
@@ -71,7 +72,7 @@ Section states_of_rest() {
                   R"(
 `cayspin relax` of random spins in a field of 1 with exchange 1, to the bound 1e-6 on the torque.
 Exact: all stay to the bit. Bounded: all end along the field.)",
-                  {exact, bounded, detected},
+                  {exact, bounded, refused, detected},
                   {},
                   {}};
   auto const add = [&](char const* name, Setting setting, Against against) {
@@ -93,6 +94,7 @@ Exact: all stay to the bit. Bounded: all end along the field.)",
   add("exchange 1e300", {.exchange = 1e300}, Against::solution);
   add("field 1e30, bound 1e24", {.field = 1e30, .torque = 1e24}, Against::solution);
   add("field 1e300", {.field = 1e300}, Against::solution);
+  add("bound 1e-200", {.torque = 1e-200}, Against::solution);
   add("NaN", {.fault_at = 0}, Against::solution);
   return section;
 }

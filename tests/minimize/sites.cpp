@@ -35,6 +35,19 @@ TYPED_TEST(Sites, VacantOnesStay) {
   EXPECT_LT(largest_rate(this->exec, generator, spins), 1.2e-4);
 }
 
+TYPED_TEST(Sites, WhereAllAreVacantNothingMoves) {
+  using Spins = typename TestFixture::Spins;
+  auto const lattice = Lattice::cubic(7, 5, 3);
+  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 5));
+  auto const before = numbers_of(spins);
+  FieldWithVacancies const field(EffectiveField(Exchange(lattice, 20), Zeeman{{0, 0, 1}}),
+                                 numbers_on<Spins>(lattice, [](std::int64_t) { return 0; }));
+  auto const found = minimize(this->exec, field, spins);
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  EXPECT_EQ(found.torque, 0);
+  EXPECT_EQ(numbers_of(spins), before);
+}
+
 TYPED_TEST(Sites, WithExchangeAndAnisotropyOfTheirOwn) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::square(30, 23);
@@ -57,6 +70,7 @@ TYPED_TEST(Sites, WrongCalls) {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   expect_refused({
       {"torque 0", [&] { minimize(this->exec, field, spins, {.torque = 0}); }},
+      {"torque 1e-151", [&] { minimize(this->exec, field, spins, {.torque = 1e-151}); }},
       {"torque nan", [&] { minimize(this->exec, field, spins, {.torque = nan}); }},
       {"evaluations", [&] { minimize(this->exec, field, spins, {.evaluations = 0}); }},
       {"other spins", [&] { minimizer.minimize(this->exec, field, other); }},

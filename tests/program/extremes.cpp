@@ -183,6 +183,7 @@ TEST_F(Extremes, RunsKeepTheirPromises) {
                                             {"exchange 1e300", "detected"},
                                             {"field 1e30, bound 1e24", "bounded"},
                                             {"field 1e300", "detected"},
+                                            {"bound 1e-200", "refused"},
                                             {"NaN", "detected"}})
     each("States of rest: " + std::string(situation),
          [&](Json const& run, std::string const& fate) { EXPECT_EQ(fate, expected) << run; });
