@@ -212,6 +212,8 @@ inline constexpr auto method_list = [] {
            .compensated = true,
            .trials = {plain, single_precision, compensated_single_precision}}),
       row<Projected<tableau::Oscillatory64>>({.word = "projected_rk64", .trials = {plain}}),
+      row<Projected<tableau::Oscillatory74>>(
+          {.word = "projected_rk74", .trials = {plain, single_precision}}),
       row<Projected<tableau::DormandPrince5>>({.word = "projected_rk5",
                                                .compensated = true,
                                                .trials = {plain, compensated_single_precision}}),

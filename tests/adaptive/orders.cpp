@@ -2,6 +2,7 @@
 // Orders of the embedded tableaux, with steps of fixed length: of the steps themselves, of the
 // polynomial between them, and of the error that is estimated.
 #include "../order/chain.hpp"
+#include "../support/order_conditions.hpp"
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -71,44 +72,6 @@ TEST_P(Embedded, AdaptiveStepsAreThoseOfTheTableau) {
   auto const plain = run<Rkmk<Spins, tableau::Tsitouras5>>(slab.natural(), chain_start(), dt, 32);
   expect_below("distance", largest_distance(spins, plain), 64 * 0x1p-52);
   EXPECT_EQ(stepper.evaluations_done(), 1 + 6 * 32);
-}
-
-/// The largest defect of the order conditions of weights w at fraction s of a step, of one order.
-template <class Tableau, class Weight>
-double defect(int of_order, double s, Weight const& w) {
-  constexpr int n = Tableau::stages;
-  using Column = std::array<double, n>;
-  auto const times_a = [](Column const& v) {
-    Column product{};
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < i; ++j) product[i] += Tableau::a[i][j] * v[j];
-    return product;
-  };
-  auto const by = [](Column v, Column const& other) {
-    for (int i = 0; i < n; ++i) v[i] *= other[i];
-    return v;
-  };
-  Column one, c;
-  one.fill(1);
-  c = times_a(one);
-  Column const cc = by(c, c), ac = times_a(c), ccc = by(cc, c), acc = times_a(cc);
-  std::vector<std::pair<Column, double>> conditions;  // and the density of the tree
-  if (of_order == 1) conditions = {{one, 1}};
-  if (of_order == 2) conditions = {{c, 2}};
-  if (of_order == 3) conditions = {{cc, 3}, {ac, 6}};
-  if (of_order == 4) conditions = {{ccc, 4}, {by(c, ac), 8}, {acc, 12}, {times_a(ac), 24}};
-  if (of_order == 5)
-    conditions = {
-        {by(ccc, c), 5},          {by(cc, ac), 10},           {by(ac, ac), 20},
-        {by(c, acc), 15},         {times_a(ccc), 20},         {by(c, times_a(ac)), 30},
-        {times_a(by(c, ac)), 40}, {times_a(times_a(cc)), 60}, {times_a(times_a(ac)), 120}};
-  double largest = 0;
-  for (auto const& [column, density] : conditions) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += w(i) * column[i];
-    largest = std::max(largest, std::abs(sum - std::pow(s, of_order) / density));
-  }
-  return largest;
 }
 
 template <class Embedded>

@@ -193,6 +193,8 @@ TEST(Labels, WorkMemory) {
   expect_work_memory<ImplicitMidpoint<Field>>("ImplicitMidpoint", 2);
   expect_work_memory<Rkmk4<Field>>("Rkmk4", 4);
   expect_work_memory<StereographicRungeKutta<Field, tableau::Heun>>("StereographicRungeKutta", 1);
+  expect_work_memory<ProjectedRk4<Field>>("Projected4", 5);
+  expect_work_memory<ProjectedRungeKutta<Field, tableau::Oscillatory74>>("Projected4", 6);
   expect_work_memory<Series4<Field>>("Series4", 1);
 }
 

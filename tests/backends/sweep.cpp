@@ -91,6 +91,11 @@ TYPED_TEST(Sweep, StereographicRungeKutta) {
       StereographicRungeKutta<typename TestFixture::Field, tableau::Classical4>>(turning);
 }
 
+TYPED_TEST(Sweep, IncrementsRecoveredFromSpins) {
+  expect_same_on_both_paths<
+      ProjectedRungeKutta<typename TestFixture::Field, tableau::Oscillatory74>>(turning);
+}
+
 TYPED_TEST(Sweep, Compensated) {
   expect_same_on_both_paths<Compensated<Rkmk4<typename TestFixture::Field>>>(turning);
 }

@@ -60,5 +60,7 @@ int main() {
   count_step<StereographicRungeKutta<F64, tableau::Heun>>("f64_StereographicHeun");
   count_step<StereographicRungeKutta<F64, tableau::Classical4>>("f64_StereographicRk4");
   count_step<StereographicRungeKutta<F32, tableau::Classical4>>("f32_StereographicRk4");
+  count_step<ProjectedRk4<F64>>("f64_ProjectedRk4");
+  count_step<ProjectedRungeKutta<F64, tableau::Oscillatory74>>("f64_Projected74");
   count_sample<F64>("f64_sample");
 }

@@ -203,7 +203,8 @@ TEST_F(Checking, MethodsListsEveryMethodOnce) {
                                    "ab2",           "implicit_midpoint", "stiff2",
                                    "stiff4",        "classical_euler",   "classical_heun",
                                    "classical_rk4", "projected_euler",   "projected_heun",
-                                   "projected_rk4", "projected_rk5",     "projected_rk8"}) {
+                                   "projected_rk4", "projected_rk5",     "projected_rk8",
+                                   "rkmk64",        "projected_rk64",    "projected_rk74"}) {
     EXPECT_TRUE(contains(outcome.output, "\n" + method + " "));
     EXPECT_EQ(start({"check", "chain.toml", "--set", "integrator.method='" + method + "'"}).status,
               0)

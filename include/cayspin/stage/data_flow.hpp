@@ -41,12 +41,12 @@ template <class Tableau, class Update>
 inline constexpr bool keeps_sum = Tableau::stages > 2 &&
                                   is_chain<Tableau>() && Update::increment_needs_argument;
 
-/// A chain in the stereographic chart stores spins alone: it computes each increment again from the
-/// spins of the stage after it.
+/// Some chains store spins alone: they compute each increment again from the spins of the stage
+/// after it.
 template <class Tableau, class Update>
 constexpr bool recovers_increments() {
-  if constexpr (requires { Update::has_chart; })
-    return Update::has_chart && Tableau::stages > 1 && is_chain<Tableau>();
+  if constexpr (requires { Update::recovers_increments(Tableau::stages); })
+    return is_chain<Tableau>() && Update::recovers_increments(Tableau::stages);
   return false;
 }
 

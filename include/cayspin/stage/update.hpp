@@ -12,6 +12,8 @@
 // generator gives at a stage. Coordinates f are taken at the spin m0 of the step's begin.
 // increment(f, dt A, m, m0) belongs to the stage's spin m, to which f moves m0. `move` is for
 // stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
+// recovers_increments(stages): a chain of so many stages (each starts from the increment before it
+// alone) computes increments again from the spins to which they move m0.
 namespace cayspin::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
@@ -84,7 +86,10 @@ struct Classical {
 };
 
 /// Classical, with each spin divided by its length at the end of the step, as in most spin codes.
+/// Those store the increments of RK4; longer chains of stages compute theirs again from the spins.
 struct Projected : Classical {
+  static constexpr bool recovers_increments(int stages) { return stages > 4; }
+
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
@@ -99,6 +104,38 @@ struct Projected : Classical {
     Value const along = longer / (Value(1) + length);  // |m0 + f| - 1
     return {Value(1) / length, multiply_add(Value(Value(0) - along), m0, f)};
   }
+
+  /// move(increment(step a, m, m), m).
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
+                                                         Vec3<Value> const& m) {
+    return advance(step, a, m, m);
+  }
+
+  /// move(increment(step a, m, m0), m0).
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> advance(Value const& step, Vec3<Value> const& a,
+                                                         Vec3<Value> const& m,
+                                                         Vec3<Value> const& m0) {
+    return multiply_add(step, cross(a, m), m0);
+  }
+
+  /// finish(f, m0) with f = sum_j Weights::spin(j) f_j + Weights::last increment(step a, m, m0),
+  /// where f_j moves m0 to spins[j] and m is the last of Count spins.
+  template <class Weights, int Count, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> arrive(Value const& step, Vec3<Value> const& a,
+                                                        Vec3<Value> const* spins,
+                                                        Vec3<Value> const& m0) {
+    using Scalar = detail::scalar_t<Value>;
+    Vec3<Value> f = Value(Value(static_cast<Scalar>(Weights::last)) * step) *
+                    cross(a, spins[std::size_t{Count - 1}]);
+    detail::unrolled<Count>([&](auto j) {
+      constexpr double weight = Weights::spin(j());
+      if constexpr (weight != 0)
+        f = multiply_add(Value(static_cast<Scalar>(weight)), Vec3<Value>(spins[j()] - m0), f);
+    });
+    return finish(f, m0);
+  }
 };
 
 /// Classical Runge-Kutta in the stereographic chart at m0: f is normal to m0 and stands for the
@@ -107,7 +144,7 @@ struct Projected : Classical {
 struct Stereographic {
   static constexpr bool increment_needs_argument = false;
   static constexpr bool needs_turning_alone = true;
-  static constexpr bool has_chart = true;  // f can be computed again from the spin it moves m0 to
+  static constexpr bool recovers_increments(int stages) { return stages > 1; }
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> increment(Vec3<Value> const&,

@@ -13,7 +13,7 @@ namespace update {
 template <class Update>
 struct Compensated : Update {
   static constexpr std::array carried{"residual"};  // names of the fields that a step leaves
-  static constexpr bool has_chart = false;          // increments from rounded spins are too inexact
+  static constexpr bool recovers_increments(int) { return false; }  // rounded spins are too inexact
 };
 
 }  // namespace update
