@@ -97,8 +97,10 @@ class CellAxis {
 template <class Real>
 struct CellAxisArrays {
   Real const *to_previous = nullptr, *to_next = nullptr;  // with the coupling
-  Real const *share = nullptr, *weights = nullptr;
+  Real const *share = nullptr, *weights = nullptr;        // weights[k coarse_cells + coarse]
+  Real const* mean = nullptr;                             // that times the weights sums up to 1
   std::int32_t const* beside = nullptr;
+  std::int32_t coarse_cells = 0;
 };
 
 /// Their memory.
@@ -108,33 +110,50 @@ class CellAxisTables {
   CellAxisTables() = default;
   CellAxisTables(std::string const& name, CellAxis const& axis, double coupling)
       : cells_(axis.cells()),
-        numbers_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::axis"),
-                 3 * cells_ + CellAxis::reach * axis.coarse_cells()),
+        coarse_cells_(axis.coarse_cells()),
+        padded_((cells_ + pad - 1) / pad * pad),
+        numbers_("cayspin::" + name + "::axis",
+                 3 * padded_ + (CellAxis::reach + 1) * coarse_cells_),
         beside_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::beside"),
                 cells_) {
     auto const numbers = Kokkos::create_mirror_view(numbers_);
     auto const beside = Kokkos::create_mirror_view(beside_);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers(i) = 0;
     for (std::size_t i = 0; i < cells_; ++i) {
       auto const interpolation = axis.interpolation(i);
       numbers(i) = static_cast<Real>(coupling * axis.to_previous(i));
-      numbers(cells_ + i) = static_cast<Real>(coupling * axis.to_next(i));
-      numbers(2 * cells_ + i) = static_cast<Real>(interpolation.share);
+      numbers(padded_ + i) = static_cast<Real>(coupling * axis.to_next(i));
+      numbers(2 * padded_ + i) = static_cast<Real>(interpolation.share);
       beside(i) = static_cast<std::int32_t>(interpolation.beside);
     }
-    std::size_t at = 3 * cells_;
-    for (auto const& weights : axis.restriction())
-      for (double const weight : weights) numbers(at++) = static_cast<Real>(weight);
+    auto const weights = axis.restriction();
+    for (std::size_t i = 0; i < coarse_cells_; ++i) {
+      double sum = 0;
+      for (std::size_t k = 0; k < CellAxis::reach; ++k) {
+        numbers(3 * padded_ + k * coarse_cells_ + i) = static_cast<Real>(weights[i][k]);
+        sum += weights[i][k];
+      }
+      numbers(3 * padded_ + CellAxis::reach * coarse_cells_ + i) = static_cast<Real>(1 / sum);
+    }
     if (numbers.data() != numbers_.data()) Kokkos::deep_copy(numbers_, numbers);
     if (beside.data() != beside_.data()) Kokkos::deep_copy(beside_, beside);
   }
 
   CellAxisArrays<Real> arrays() const {
     Real const* const data = numbers_.data();
-    return {data, data + cells_, data + 2 * cells_, data + 3 * cells_, beside_.data()};
+    return {data,
+            data + padded_,
+            data + 2 * padded_,
+            data + 3 * padded_,
+            data + 3 * padded_ + CellAxis::reach * coarse_cells_,
+            beside_.data(),
+            static_cast<std::int32_t>(coarse_cells_)};
   }
 
  private:
-  std::size_t cells_ = 0;
+  static constexpr std::size_t pad = 16;  // lanes of the widest pack
+
+  std::size_t cells_ = 0, coarse_cells_ = 0, padded_ = 0;
   Kokkos::View<Real*, MemorySpace> numbers_;
   Kokkos::View<std::int32_t*, MemorySpace> beside_;
 };

@@ -25,9 +25,12 @@ struct FillWaves {
 
   KOKKOS_FUNCTION void operator()(std::int64_t site) const {
     std::int64_t const row = site / layout.nx;
-    std::int64_t const index[4] = {site % layout.nx, row % layout.ny, row / layout.ny, 0};
+    std::int64_t const index = axis == 0   ? site % layout.nx
+                               : axis == 1 ? row % layout.ny
+                               : axis == 2 ? row / layout.ny
+                                           : 0;
     std::ptrdiff_t const at = layout.offset(site);
-    to.data[at] = index[axis] % 2 == 0 ? sign : -sign;
+    to.data[at] = index % 2 == 0 ? sign : -sign;
     to.data[to.stride + at] = 0;
     to.data[2 * to.stride + at] = 1;
   }

@@ -2,15 +2,17 @@
 #pragma once
 
 #include <cayspin/detail/text.hpp>
-#include <cayspin/solver/helmholtz.hpp>
 #include <cayspin/solver/measured_exchange.hpp>
+#include <cayspin/solver/spin_wave_solver.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
+#include <cayspin/stepper/stiff_history.hpp>
 #include <cayspin/stepper/stiff_midpoint_stage.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -19,23 +21,14 @@
 
 namespace cayspin {
 
-/// How StiffMidpoint solves a step's equation.
-struct StiffOptions {
-  /// Of the rotation vector's remaining error on any site. 0: round-off where the generator is
-  /// conservative, otherwise 1/200 of the usual first correction, or 1e-4 and less of it for
-  /// order 4.
-  double tolerance = 0;
-  int iterations = 30;  ///< corrections before the step is halved
-  int halvings = 12;    ///< of a step, before NotConverged
-};
-
 /// Implicit midpoint in Cayley coordinates for stiff exchange, order 2 (or 4, as five steps of
 /// Suzuki's composition): m1 = cay(f) m0, f = dt A((m0 + m1) / 2). f is extrapolated from earlier
 /// steps and corrected by (1 + b K)^-1 of the residual, b = (dt / 2) (damping - i): with K = -J
-/// Lap, as it is measured at the first step, that is Newton's method for spins that are nearly
-/// parallel. One evaluation a step is usual. A correction that does not converge halves the step.
-/// Keeps |m| and, where the generator is conservative and H affine, the energy to round-off; with
-/// isotropic exchange alone the total spin too. Any generator; not for parts of a lattice.
+/// Lap, as it is measured at the first step, that is Newton's method for exchange, on lines of
+/// spins that are nearly parallel. One or two evaluations a step are usual. A correction that does
+/// not converge halves the step. Keeps |m| and, where the generator is conservative and H affine,
+/// the energy to round-off; with isotropic exchange alone the total spin too. Any generator; not
+/// for parts of a lattice.
 template <class Spins, int Order>
 class StiffMidpoint : public detail::StepperBase<Spins> {
   static_assert(Order == 2 || Order == 4, "StiffMidpoint has order 2 or 4.");
@@ -45,7 +38,8 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
   static constexpr int stages = Order == 2 ? 1 : 5;
-  static constexpr int work_fields = 13 + 3 * stages;  // 6 of them on grids alone
+  // The grids' are of single precision.
+  static constexpr int work_fields = 7 + 3 * stages + (sizeof(Real) == 8 ? 4 : 8);
 
   explicit StiffMidpoint(Spins const& like, StiffOptions options = {})
       : detail::StepperBase<Spins>(name, like.lattice()), options_(options) {
@@ -56,8 +50,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
                                  {end_, "end"},
                                  {start_, "start"}})
       field = Spins(prefix + label, like.lattice());
-    for (Stage& stage : stages_)
-      stage.earlier = detail::numbered_fields<Spins, 3>(prefix + "earlier", like.lattice());
+    for (History& history : histories_) history = {prefix + "earlier", like.lattice()};
     solution_ = Solution(prefix + "solution", like.lattice());
   }
 
@@ -85,13 +78,8 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
     visit("unmeasured", unmeasured_);
     visit("evaluations", evaluations_done_);
     visit("halvings", halvings_done_);
-    for (std::size_t i = 0; i < stages_.size(); ++i) {
-      std::string const prefix = "stage_" + std::to_string(i) + "_";
-      visit(prefix + "known", stages_[i].known);
-      visit(prefix + "usual", stages_[i].usual);
-      for (int k = 0; k < stages_[i].known; ++k)
-        visit(prefix + std::to_string(k), stages_[i].earlier[static_cast<std::size_t>(k)]);
-    }
+    for (std::size_t i = 0; i < histories_.size(); ++i)
+      histories_[i].visit_memory("stage_" + std::to_string(i) + "_", visit);
     if (exchange_.known) make_solver();
   }
 
@@ -113,9 +101,9 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
     last_dt_ = dt;
     moved_ = false;
     double begin = t;
-    for (std::size_t i = 0; i < stages_.size(); ++i) {
+    for (std::size_t i = 0; i < histories_.size(); ++i) {
       double const part = dt * shares[i];
-      if (!advance(exec, generator, spins, begin, part, &stages_[i], options_.halvings)) {
+      if (!advance(exec, generator, spins, begin, part, &histories_[i], options_.halvings)) {
         if (moved_) swap(spins, start_);
         forget();
         throw NotConverged(this->label("::step: the equation of the step from t = ") +
@@ -127,8 +115,9 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
   }
 
  private:
-  using Solver = detail::Helmholtz<Kokkos::complex<Real>, MemorySpace>;
-  using Solution = typename Solver::Field;
+  using Solver = detail::SpinWaveSolver<Real, MemorySpace>;
+  using Solution = typename Solver::Solution;
+  using History = detail::StiffHistory<Spins>;
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
   static constexpr auto name = Order == 2 ? "StiffMidpoint2" : "StiffMidpoint4";
   static constexpr double suzuki = 0.4144907717943757;  // 1 / (4 - 4^(1/3))
@@ -139,40 +128,23 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
       return std::array{suzuki, suzuki, 1 - 4 * suzuki, suzuki, suzuki};
   }();
 
-  /// What A in the middle of this part of a step was in earlier steps, the last one first.
-  struct Stage {
-    std::array<Spins, 3> earlier;
-    int known = 0;
-    double usual = std::numeric_limits<double>::infinity();  // first correction
-  };
-
   void forget() {
-    for (Stage& stage : stages_) {
-      stage.known = 0;
-      stage.usual = std::numeric_limits<double>::infinity();
-    }
+    for (auto& history : histories_) history.forget();
   }
   void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
 
   /// One step of order 2, or two of half the length where it is not solved.
   template <class Exec, class Generator>
   bool advance(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
-               Stage* stage, int halvings) {
-    if (solve(exec, generator, spins, t, dt, stage)) {
+               History* history, int halvings) {
+    if (solve(exec, generator, spins, t, dt, history)) {
       swap(spins, end_);
       if (!moved_) swap(end_, start_);
       moved_ = true;
-      if (stage != nullptr) {
-        std::rotate(stage->earlier.begin(), stage->earlier.end() - 1, stage->earlier.end());
-        swap(x_, stage->earlier[0]);
-        stage->known = std::min(stage->known + 1, 3);
-      }
+      if (history != nullptr) history->remember(x_);
       return true;
     }
-    if (stage != nullptr) {
-      stage->known = 0;
-      stage->usual = std::numeric_limits<double>::infinity();
-    }
+    if (history != nullptr) history->forget();
     if (halvings == 0) return false;
     ++halvings_done_;
     return advance(exec, generator, spins, t, 0.5 * dt, nullptr, halvings - 1) &&
@@ -182,9 +154,9 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
   /// Leaves the spins after the step in end_, and A in its middle in x_.
   template <class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
-             Stage* stage) {
-    bool const has_history = stage != nullptr && stage->known == 3;
-    guess(exec, spins, stage, dt);
+             History* history) {
+    bool const has_history = history != nullptr && history->is_complete();
+    guess(exec, spins, history, dt);
     double change = 0, tolerance = 0, smallest = std::numeric_limits<double>::infinity();
     int stalled = 0;
     for (int i = 0; i < options_.iterations; ++i) {
@@ -193,7 +165,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
       change = correct(exec, generator, spins, to_end ? end_ : middle_, t, dt, to_end);
       if (!(change < 1)) return false;  // out of the reach of its solution, or not a number
       if (i == 0) {
-        tolerance = tolerance_of(generator, has_history ? stage : nullptr, change);
+        tolerance = tolerance_of(generator, has_history ? history : nullptr, change);
         // Only a second correction can tell how fast they converge.
         bool const measures = !has_history || contraction_ > 0.1 || ++unmeasured_ >= 16;
         if (!measures && contraction_ * change <= tolerance) return true;
@@ -212,37 +184,22 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
     return false;
   }
 
-  /// Of the error that corrections leave, given the first of them. Spin waves that are too short
-  /// for dt are not damped, and extrapolation amplifies what is left of them: so a first correction
-  /// that is larger than usual is not a measure.
+  /// Of the error that corrections leave, given the first of them.
   template <class Generator>
-  double tolerance_of(Generator const& generator, Stage* stage, double first) const {
+  double tolerance_of(Generator const& generator, History* history, double first) const {
     if (options_.tolerance > 0) return options_.tolerance;
     if constexpr (requires { generator.is_conservative(); })
       if (generator.is_conservative()) return 4 * epsilon;
-    if (stage == nullptr)  // it is the whole rotation
-      return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, Order + 1)), 16 * epsilon);
-    double const least = 16 * epsilon;
-    first = stage->usual = std::clamp(first, least, std::max(least, 1.2 * stage->usual));
-    double const share = Order == 2 ? 0.005 : std::min(1e-3, std::sqrt(first));
-    return std::max(share * first, 16 * epsilon);
+    if (history != nullptr) return history->tolerance(first, Order);
+    // It is the whole rotation.
+    return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, Order + 1)), 16 * epsilon);
   }
 
   template <class Exec>
-  void guess(Exec const& exec, Spins const& spins, Stage const* stage, double dt) const {
-    static constexpr double coefficients[4][3] = {{0, 0, 0}, {1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
-    int const known = stage == nullptr ? 0 : stage->known;
-    detail::GuessStage<Real> kernel{{},
-                                    {},
-                                    known,
-                                    spins.array(),
-                                    x_.output(false),
-                                    middle_.output(false),
-                                    static_cast<Real>(dt)};
-    for (int i = 0; i < known; ++i) {
-      kernel.earlier[i] = stage->earlier[static_cast<std::size_t>(i)].array();
-      kernel.coefficients[i] = coefficients[known][i];
-    }
+  void guess(Exec const& exec, Spins const& spins, History const* history, double dt) const {
+    detail::GuessStage<Real> kernel{
+        {}, {}, 0, spins.array(), x_.output(false), middle_.output(false), static_cast<Real>(dt)};
+    if (history != nullptr) history->extrapolate_in(kernel);
     detail::for_each_site<Real>(exec, guess_label_, spins.layout(), kernel);
   }
 
@@ -257,12 +214,11 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
                                 Residual{std::move(prepared), middle_.array(), x_.array(),
                                          x_.output(false), residual_.output(false)});
     ++evaluations_done_;
-    Kokkos::complex<Real> const b(static_cast<Real>(0.5 * dt * exchange_.damping),
-                                  static_cast<Real>(-0.5 * dt * exchange_.precession));
-    solver_.solve(exec, 1, b, residual_, solution_);
+    std::complex<double> const b(0.5 * dt * exchange_.damping, -0.5 * dt * exchange_.precession);
+    solver_.solve(exec, b, residual_, middle_, solution_);
     double const square = detail::reduce_sites<detail::Maximum, 1>(
         exec, correct_label_, spins.layout(),
-        detail::CorrectStage<Real, Solver::components>{
+        detail::CorrectStage<Real, Solution::components>{
             solution_.array(), spins.array(), middle_.array(), x_.array(), to.array(),
             static_cast<Real>(dt), to_end ? Real(1) : Real(0.5)})[0];
     return std::abs(dt) * std::sqrt(square);
@@ -273,7 +229,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
   StiffOptions options_;
   Spins x_, middle_, residual_, end_, start_;
   Solution solution_;
-  std::array<Stage, std::size_t{stages}> stages_;
+  std::array<History, std::size_t{stages}> histories_;
   Solver solver_;
   detail::MeasuredExchange exchange_;
   double last_dt_ = 0;

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/narrowing_store.hpp>
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/solver/cell_axis.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+// In front of a loop over the cells of a row, none of which is written and read.
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
+#define CAYSPIN_DETAIL_INDEPENDENT
+#elif defined(__clang__)
+#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define CAYSPIN_DETAIL_INDEPENDENT
+#endif
+
+namespace cayspin::detail {
+
+/// Row y of plane z, from cell x on.
+struct CellPlace {
+  std::int32_t x, y, z;
+};
+
+/// A field as the passes of a solver see it, whatever its precision.
+template <class Real, int Components>
+struct CellArray {
+  Real* data = nullptr;
+  std::ptrdiff_t stride = 0, pitch = 0, plane = 0;  // of components, rows and planes
+
+  KOKKOS_FORCEINLINE_FUNCTION Real* at(CellPlace const& place) const {
+    return data + (place.z * plane + place.y * pitch + place.x);
+  }
+  /// Three components, the first of them `component`.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(CellPlace const& place, int component = 0) const {
+    Real const* const from = at(place) + component * stride;
+    return {detail::load<Value>(from), detail::load<Value>(from + stride),
+            detail::load<Value>(from + 2 * stride)};
+  }
+  /// To cells before `end` alone.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value, CellPlace const& place,
+                                         std::int32_t end, int component = 0) const {
+    Real* const to = at(place) + component * stride;
+    if (place.x + lanes_of<Value> <= end) {
+      store_narrowed(value.x, to);
+      store_narrowed(value.y, to + stride);
+      store_narrowed(value.z, to + 2 * stride);
+    } else {
+      store_first(value.x, to, end - place.x);
+      store_first(value.y, to + stride, end - place.x);
+      store_first(value.z, to + 2 * stride, end - place.x);
+    }
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static void store_first(Value const& value, Real* to,
+                                                      std::int32_t count) {
+    if constexpr (lanes_of<Value> > 1) {
+      scalar_t<Value> lanes[std::size_t{lanes_of<Value>}];
+      detail::store(value, lanes);
+      for (std::int32_t i = 0; i < count; ++i) to[i] = static_cast<Real>(lanes[i]);
+    }
+  }
+};
+
+/// Components `first` and those after it.
+template <int Components, class Real, int All, class MemorySpace>
+CellArray<Real, Components> cells_of(SiteField<Real, All, MemorySpace> const& field,
+                                     int first = 0) {
+  auto const array = field.array();
+  auto const& layout = field.layout();
+  return {array.data + first * array.stride, array.stride, layout.pitch, layout.pitch * layout.ny};
+}
+
+/// Where the cells of a grid lie, and how they couple.
+template <class Real>
+struct CellGrid {
+  std::int32_t extent[3];
+  bool periodic[3];
+  CellAxisArrays<Real> axis[3];
+};
+
+/// The passes of a solver on hosts: a task is a row. A functor takes packs of cells as
+/// functor.template operator()<Value>(place), or rows as functor.row(place, begin, end).
+template <class Real, class Functor>
+struct RowOfCells {
+  Functor functor;
+  std::int32_t nx, ny;
+
+  void operator()(std::int64_t row) const {
+    Functor const local = functor;
+    CellPlace place{0, static_cast<std::int32_t>(row % ny), static_cast<std::int32_t>(row / ny)};
+    if constexpr (requires { local.row(place, nx); }) {
+      local.row(place, nx);
+    } else {
+      for (; place.x < nx; place.x += host_lanes<Real>)
+        local.template operator()<Pack<Real>>(place);
+      // Packs do not look around the ends of a row.
+      if constexpr (requires { local.goes_around; })
+        if (local.goes_around)
+          for (std::int32_t const x : {0, nx - 1}) {
+            place.x = x;
+            local.template operator()<Real>(place);
+          }
+    }
+  }
+};
+
+/// The same on devices: a task is a cell.
+template <class Real, class Functor>
+struct OneCell {
+  Functor functor;
+  std::int32_t nx, ny;
+
+  KOKKOS_FUNCTION void operator()(std::int64_t cell) const {
+    std::int64_t const row = cell / nx;
+    functor.template operator()<Real>(CellPlace{static_cast<std::int32_t>(cell % nx),
+                                                static_cast<std::int32_t>(row % ny),
+                                                static_cast<std::int32_t>(row / ny)});
+  }
+};
+
+/// What a pass over these cells costs, in sites of an evaluation of a field.
+inline std::int64_t sites_worth(RowLayout const& layout) { return layout.sites() / 4; }
+
+/// Calls functor for all cells of a grid, in a kernel of its own.
+template <class Exec>
+struct LaunchEach {
+  Exec const& exec;
+
+  template <class Real, class Functor>
+  void run(std::string const& label, RowLayout const& layout, Functor const& functor) const {
+    if constexpr (is_host_execution<Exec>)
+      for_each_task(exec, label, layout.rows(), sites_worth(layout),
+                    RowOfCells<Real, Functor>{functor, layout.nx, layout.ny});
+    else
+      for_each_task(exec, label, layout.sites(), sites_worth(layout),
+                    OneCell<Real, Functor>{functor, layout.nx, layout.ny});
+  }
+};
+
+/// The same from inside of a kernel of a host: many small passes take one launch.
+struct RunInside {
+  template <class Real, class Functor>
+  void run(std::string const&, RowLayout const& layout, Functor const& functor) const {
+    RowOfCells<Real, Functor> const rows{functor, layout.nx, layout.ny};
+    for (std::int64_t row = 0; row < layout.rows(); ++row) rows(row);
+  }
+};
+
+}  // namespace cayspin::detail

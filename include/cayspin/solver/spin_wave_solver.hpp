@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/ghosts.hpp>
+#include <cayspin/solver/line_solver.hpp>
+#include <cayspin/solver/multigrid.hpp>
+
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace cayspin::detail {
+
+/// Approximates v with v + b K v = r across the directions m, where i of the complex b stands for
+/// m x, and K = -J Lap over the neighbours of a lattice. Where one axis alone couples, by lines,
+/// which are exact for parallel m. Otherwise by one multigrid cycle in single precision, which
+/// follows m and leaves about a tenth.
+template <class Real, class MemorySpace>
+class SpinWaveSolver {
+  using Vectors = SiteField<Real, 3, MemorySpace>;
+
+ public:
+  using Solution = SiteField<Real, 6, MemorySpace>;
+
+  SpinWaveSolver() = default;
+  /// Throws std::invalid_argument for a part of a lattice.
+  SpinWaveSolver(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
+      : turn_label_("cayspin::" + name + "::turn") {
+    require_whole("cayspin::SpinWaveSolver", lattice);
+    if (auto const axis = only_coupled_axis(lattice, couplings))
+      lines_.emplace(name, RowLayout::of<Real>(lattice), *axis,
+                     couplings[static_cast<std::size_t>(*axis)]);
+    else
+      multigrid_ = {name, lattice, couplings};
+  }
+
+  /// z = (v', v'') with v = v' + m x v''. Always by lines, or never: v' is not written by
+  /// multigrid, and has to be zero. Does not wait.
+  template <class Exec>
+  void solve(Exec const& exec, std::complex<double> b, Vectors const& r, Vectors const& m,
+             Solution const& z) {
+    if (lines_)
+      return lines_->solve(
+          exec, 1, Kokkos::complex<Real>(static_cast<Real>(b.real()), static_cast<Real>(b.imag())),
+          r, z);
+    auto const& right = multigrid_.right();
+    LaunchEach<Exec>{exec}.template run<Real>(
+        turn_label_, right.layout(),
+        TurnRightSide<Real, float>{right.layout().nx, cells_of<3>(r), cells_of<3>(m),
+                                   cells_of<6>(right)});
+    multigrid_.solve(exec, b, cells_of<3>(z, 3));
+  }
+
+ private:
+  std::string turn_label_;
+  std::optional<LineSolver<Kokkos::complex<Real>, MemorySpace>> lines_;
+  Multigrid<ShiftedSpinWaves<float>, 5, false, float, MemorySpace> multigrid_;
+};
+
+}  // namespace cayspin::detail
