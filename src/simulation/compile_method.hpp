@@ -131,11 +131,12 @@ class Compiled {
     });
   }
 
+  template <class Real>
   static constexpr int work_fields() {
     if constexpr (Key.of_rigid_bodies && requires { Family::work_fields_of_rigid_bodies; })
       return Family::work_fields_of_rigid_bodies;
     else
-      return Stepper<HostSpins, Cayley>::work_fields;
+      return Stepper<SpinField<Real>, Cayley>::work_fields;
   }
   template <class Real>
   static std::int64_t work_bytes_of(Lattice const& lattice, bool by_time_alone) {
@@ -143,7 +144,7 @@ class Compiled {
     if constexpr (requires { Of::work_bytes(lattice, by_time_alone, 1); })
       return static_cast<std::int64_t>(Of::work_bytes(lattice, by_time_alone, expected_threads()));
     auto const layout = cayspin::detail::RowLayout::of<Real>(lattice);
-    return static_cast<std::int64_t>(work_fields() * layout.allocation(3) * sizeof(Real));
+    return static_cast<std::int64_t>(work_fields<Real>() * layout.allocation(3) * sizeof(Real));
   }
   static std::int64_t work_bytes(Lattice const& lattice, bool by_time_alone, Precision precision) {
     return precision == Precision::double_precision ? work_bytes_of<double>(lattice, by_time_alone)
@@ -202,7 +203,7 @@ class Compiled {
             .evaluations = evaluations(),
             .remembers = remembers_steps<Stepper<HostSpins, Cayley>>,
             .ghosts = cayspin::detail::ghosts_of<Stepper<HostSpins, Cayley>>,
-            .work_fields = work_fields(),
+            .work_fields = work_fields<double>(),
             .work_bytes = work_bytes,
             .stable_step = stable_step,
             .open = open};
