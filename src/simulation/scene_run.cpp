@@ -6,6 +6,8 @@
 
 #include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/relax.hpp>
+#include <cayspin/minimize.hpp>
+#include <cayspin/spin_field.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
@@ -205,8 +207,10 @@ Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
 }
 
 Minimum SceneRun::relax(RelaxSettings const& settings) {
-  if (!(settings.torque > 0) || !std::isfinite(settings.torque))
-    throw UsageError(fmt::format("torque {}; accepted: a number > 0", settings.torque));
+  double const least = Minimizer<SpinField<double>>::least_bound * scene_.units.field;
+  if (!(settings.torque >= least) || !std::isfinite(settings.torque))
+    throw UsageError(
+        fmt::format("torque {}; accepted: a number of at least {}", settings.torque, least));
   if (settings.evaluations < 1)
     throw UsageError(
         fmt::format("{} evaluations; accepted: a whole number >= 1", settings.evaluations));

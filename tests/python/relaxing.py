@@ -146,6 +146,7 @@ class Relaxing(PackageTest):
         sim = cayspin.Simulation(scene())
         before = sim.spins.copy()
         for keys, says in (({"torque": 0}, "torque 0"), ({"torque": "x"}, "relax: torque"),
+                           ({"torque": 1e-151}, "accepted: a number of at least 1e-150"),
                            ({"torque": float("nan")}, "torque nan"),
                            ({"evaluations": 0}, "0 evaluations"),
                            ({"evaluations": 1.5}, "relax: evaluations"),
