@@ -67,9 +67,7 @@ TEST_F(Relax, FollowsAHysteresis) {
   }
 }
 
-// In SI: a field along z of half of Ms turns a thin film by half: m_z = H / Ms.
-TEST_F(Relax, InSi) {
-  auto const outcome = relax(R"toml(units = "SI"
+std::string const si_scene = R"toml(units = "SI"
 [material]
 Ms = 8e5
 A = 1.3e-11
@@ -80,11 +78,15 @@ kind = "llg"
 [lattice]
 shape = [8, 6]
 spacing = 5e-9
-[field]
-applied = [0.0, 1e-4, 0.502654824574367]
-slab_demag = { normal = [0, 0, 1] }
 [initial]
 uniform = [1, 0.1, 0.2]
+)toml";
+
+// In SI: a field along z of half of Ms turns a thin film by half: m_z = H / Ms.
+TEST_F(Relax, InSi) {
+  auto const outcome = relax(si_scene + R"toml([field]
+applied = [0.0, 1e-4, 0.502654824574367]
+slab_demag = { normal = [0, 0, 1] }
 )toml",
                              {"--torque", "1e-9"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
@@ -153,21 +155,8 @@ TEST_F(Relax, IsChecked) {
 }
 
 TEST_F(Relax, IsCheckedInSi) {
-  auto const file = write("scene.toml", R"toml(units = "SI"
-[material]
-Ms = 8e5
-A = 1.3e-11
-alpha = 0.02
-damping_form = "gilbert"
-[system]
-kind = "llg"
-[lattice]
-shape = [8, 6]
-spacing = 5e-9
-[field]
+  auto const file = write("scene.toml", si_scene + R"toml([field]
 applied = [[0.02, 0.0, 0.0], [-0.05, 0.0, 0.0]]
-[initial]
-uniform = [1, 0.1, 0.2]
 )toml");
   auto const outcome = start({"check", file});
   EXPECT_TRUE(
