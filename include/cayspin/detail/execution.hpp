@@ -71,6 +71,11 @@ CAYSPIN_DETAIL_NOINLINE void run_tasks(Exec const& exec, std::string const& labe
                                        HostTask const& task) {
 #if defined(KOKKOS_ENABLE_SERIAL)
   if (runs_on_calling_thread<Exec>(sites)) {
+    if (!Kokkos::Tools::profileLibraryLoaded()) {
+      // A launch by Kokkos would cost as much as a small kernel.
+      for (std::int64_t i = 0; i < count; ++i) task(i);
+      return;
+    }
     Kokkos::parallel_for(label, Kokkos::RangePolicy<Kokkos::Serial, TaskIndex>(0, count), task);
     return;
   }

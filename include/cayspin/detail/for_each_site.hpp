@@ -64,6 +64,9 @@ class RowBlocks {
   std::int64_t count() const { return std::int64_t(rows_.nz()) * parts_of_plane_ * parts_of_row_; }
 
   RowBlock operator()(std::int64_t task) const {
+    if (parts_of_row_ == 1 && parts_of_plane_ == 1)  // a division takes as long as some packs
+      return {static_cast<std::int32_t>(rows_.z_begin + task), rows_.y_begin, rows_.y_end, 0,
+              packs_};
     auto const cut = [](std::int32_t extent, std::int64_t part, std::int32_t parts) {
       return static_cast<std::int32_t>(extent * part / parts);
     };

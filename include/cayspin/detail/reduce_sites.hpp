@@ -237,7 +237,7 @@ std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::strin
     using Body = ReduceBlock<Combine, Count, Functor>;
     for_each_task(exec, label, blocks, layout.sites(),
                   Body{functor, layout, per_row, tasks, blocks, &total});
-    exec.fence(label);
+    if constexpr (!is_synchronous<Exec>) exec.fence(label);
   } else {
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
     using Body = ReduceOnDevice<Combine, Count, Functor>;

@@ -5,6 +5,7 @@
 #include <cayspin/spin_field.hpp>
 
 #include <cmath>
+#include <string>
 
 // Vector operations on whole fields of three components, for iterative solvers.
 namespace cayspin::detail {
@@ -49,7 +50,8 @@ template <class Exec, class Spins>
 void combine(Exec const& exec, double a, Spins const& x, double b, Spins const& y,
              Spins const& to) {
   using Real = typename Spins::value_type;
-  for_each_site<Real>(exec, "cayspin::field_algebra::combine", x.layout(),
+  static std::string const label = "cayspin::field_algebra::combine";
+  for_each_site<Real>(exec, label, x.layout(),
                       LinearCombination<Real>{static_cast<Real>(a), static_cast<Real>(b), x.array(),
                                               y.array(), to.output(false)});
 }
@@ -57,7 +59,8 @@ void combine(Exec const& exec, double a, Spins const& x, double b, Spins const& 
 /// The sum of <x, y> over the sites; waits.
 template <class Exec, class Spins>
 double inner_product(Exec const& exec, Spins const& x, Spins const& y) {
-  return reduce_sites<Sum, 1>(exec, "cayspin::field_algebra::inner_product", x.layout(),
+  static std::string const label = "cayspin::field_algebra::inner_product";
+  return reduce_sites<Sum, 1>(exec, label, x.layout(),
                               DotOfSites<typename Spins::value_type>{x.array(), y.array()})[0];
 }
 
@@ -69,8 +72,9 @@ double length(Exec const& exec, Spins const& x) {
 /// The largest |x - y| of any component; NaN when there is one; waits.
 template <class Exec, class Spins>
 double largest_difference(Exec const& exec, Spins const& x, Spins const& y) {
+  static std::string const label = "cayspin::field_algebra::largest_difference";
   return reduce_sites<Maximum, 1>(
-      exec, "cayspin::field_algebra::largest_difference", x.layout(),
+      exec, label, x.layout(),
       LargestDifference<typename Spins::value_type>{x.array(), y.array()})[0];
 }
 
