@@ -45,7 +45,7 @@
 #include <cayspin/stepper/multirate.hpp>
 #include <cayspin/stepper/red_black.hpp>
 #include <cayspin/stepper/series4.hpp>
-#include <cayspin/stepper/stiff_midpoint.hpp>
+#include <cayspin/stepper/stiff_gauss.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
 #include <cayspin/stepper/two_point.hpp>
 #include <cayspin/units.hpp>

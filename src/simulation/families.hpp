@@ -10,7 +10,7 @@
 #include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/red_black.hpp>
 #include <cayspin/stepper/series4.hpp>
-#include <cayspin/stepper/stiff_midpoint.hpp>
+#include <cayspin/stepper/stiff_gauss.hpp>
 #include <cayspin/stepper/two_point.hpp>
 
 #include <cayspin_paper/rkmk4_as_printed.hpp>
@@ -94,7 +94,7 @@ struct ImplicitMidpoint {
 template <int Order>
 struct Stiff {
   template <class Spins, class, class>
-  using Stepper = StiffMidpoint<Spins, Order>;
+  using Stepper = StiffGauss<Spins, Order>;
 };
 template <int Order>
 struct FieldExtrapolation {

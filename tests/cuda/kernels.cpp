@@ -37,8 +37,7 @@ struct Steppers {
       Series4Paper<S>, EnergyProjection<LieHeun<S>>, ImplicitLieEuler<S>,
       ImplicitLieEuler<S, isotropy::Analytic>, ImplicitMidpoint<S>, ClassicalEuler<S>,
       ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>, ProjectedHeun<S>, ProjectedRk4<S>,
-      ProjectedRungeKutta<S, tableau::Oscillatory74>, RedBlack2<S>, StiffMidpoint2<S>,
-      StiffMidpoint4<S>>
+      ProjectedRungeKutta<S, tableau::Oscillatory74>, RedBlack2<S>, StiffGauss2<S>, StiffGauss4<S>>
       of_spins;
   std::tuple<LieHeun<S, isotropy::Energy>, Rkmk4<S, isotropy::Energy>, Series4<S, isotropy::Energy>,
              Series4Paper<S, isotropy::Energy>>

@@ -56,8 +56,22 @@ std::vector<Problem> lines() {
       add("z ", Lattice::cubic(5, 2, n), {0, 0, 2e4});
     }
   problems.push_back({"one site", Lattice::chain(1), {700, 0, 0}});
-  problems.push_back({"no coupling", Lattice::square(5, 4), {0, -3, 0}});
+  problems.push_back({"no coupling", Lattice::square(5, 4), {0, 0, 0}});
+  problems.push_back({"x 1031", Lattice::chain(1031), {700, 0, 0}});
+  problems.push_back({"x 1030 periodic", closed(Lattice::chain(1030)), {700, 0, 0}});
   return problems;
+}
+
+/// Neighbours that want to be opposite along some axes.
+std::vector<Problem> alternating() {
+  auto mixed = Lattice::cubic(9, 14, 5);
+  mixed.boundary[1] = Boundary::periodic;
+  return {{"x 9", Lattice::chain(9), {-700, 0, 0}},
+          {"x 10 periodic", closed(Lattice::chain(10)), {-700, 0, 0}},
+          {"y 2 periodic", closed(Lattice::cubic(9, 2, 3)), {0, -30, 0}},
+          {"y 8", Lattice::cubic(9, 8, 3), {0, -30, 0}},
+          {"33 x 47", Lattice::square(33, 47), {-80, -80, 0}},
+          {"9 x 14 x 5 mixed", mixed, {60, -40, -55}}};
 }
 
 /// (c + b K) u
@@ -74,13 +88,13 @@ Numbers applied(Problem const& problem, double c, Number b, Numbers const& u) {
           auto other = index;
           other[axis] += way;
           bool const outside = other[axis] < 0 || other[axis] >= shape[axis];
-          if (shape[axis] == 1 || !(problem.couplings[axis] > 0) ||
-              (outside && problem.lattice.boundary[axis] == Boundary::open))
+          if (shape[axis] == 1 || (outside && problem.lattice.boundary[axis] == Boundary::open))
             continue;
           other[axis] = (other[axis] + shape[axis]) % shape[axis];
           std::int64_t const there = (other[2] * shape[1] + other[1]) * shape[0] + other[0];
-          sum += problem.couplings[axis] *
-                 (u[here] - u[static_cast<std::size_t>(3 * there + component)]);
+          double const coupling = problem.couplings[axis];
+          sum += std::abs(coupling) * u[here] -
+                 coupling * u[static_cast<std::size_t>(3 * there + component)];
         }
       result[here] = c * u[here] + b * sum;
     }
@@ -251,6 +265,16 @@ TYPED_TEST(Helmholtz, CyclesConvergeOnGridsOfAnySize) {
   }
 }
 
+TYPED_TEST(Helmholtz, AlternatingSigns) {
+  for (Problem const& problem : alternating()) {
+    SCOPED_TRACE(problem.name);
+    auto couplings = problem.couplings;
+    bool const is_exact = detail::only_coupled_axis(problem.lattice, couplings).has_value();
+    EXPECT_LT(TestFixture::left_of(problem, 1, is_exact ? 1 : 6),
+              is_exact ? 1e5 * epsilon<typename TypeParam::Real> : 0.5);
+  }
+}
+
 TYPED_TEST(Helmholtz, CyclesConvergeOnSpinWaves) {
   for (Problem const& problem : grids()) {
     SCOPED_TRACE(problem.name);
@@ -301,7 +325,8 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
 TYPED_TEST(Helmholtz, RealFormIsSymmetricAndPositive) {
   using Real = typename TypeParam::Real;
   auto problems = grids();
-  for (Problem const& problem : lines()) problems.push_back(problem);
+  for (auto const& more : {lines(), alternating()})
+    problems.insert(problems.end(), more.begin(), more.end());
   for (Problem const& problem : problems) {
     SCOPED_TRACE(problem.name);
     typename TestFixture::Solver solver("Helmholtz", problem.lattice, problem.couplings);

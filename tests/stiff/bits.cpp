@@ -3,7 +3,7 @@
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
-#include <cayspin/stepper/stiff_midpoint.hpp>
+#include <cayspin/stepper/stiff_gauss.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -37,8 +37,10 @@ TYPED_TEST(StiffBits, AreTheSameOnSerialAndOpenMP) {
   for (Lattice const& lattice :
        {Lattice::chain(3000), Lattice::square(53, 41, 1, Boundary::periodic),
         Lattice::square(130, 131)}) {
-    EXPECT_EQ((end_of<Kokkos::Serial, StiffMidpoint2<Field>>(lattice, {})),
-              (end_of<Kokkos::OpenMP, StiffMidpoint2<Field>>(lattice, {})));
+    EXPECT_EQ((end_of<Kokkos::Serial, StiffGauss2<Field>>(lattice, {})),
+              (end_of<Kokkos::OpenMP, StiffGauss2<Field>>(lattice, {})));
+    EXPECT_EQ((end_of<Kokkos::Serial, StiffGauss4<Field>>(lattice, {})),
+              (end_of<Kokkos::OpenMP, StiffGauss4<Field>>(lattice, {})));
   }
 }
 #endif

@@ -3,7 +3,7 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
-#include <cayspin/stepper/stiff_midpoint.hpp>
+#include <cayspin/stepper/stiff_gauss.hpp>
 
 #include <cstdlib>
 
@@ -55,8 +55,9 @@ int scenes() {
 
 template <class Stepper>
 class Conservation : public ::testing::Test {};
-using Steppers = ::testing::Types<StiffMidpoint2<Spins>, StiffMidpoint4<Spins>,
-                                  StiffMidpoint2<SpinField<float, Space::memory_space>>>;
+using Steppers = ::testing::Types<StiffGauss2<Spins>, StiffGauss4<Spins>,
+                                  StiffGauss2<SpinField<float, Space::memory_space>>,
+                                  StiffGauss4<SpinField<float, Space::memory_space>>>;
 TYPED_TEST_SUITE(Conservation, Steppers);
 
 TYPED_TEST(Conservation, OfRandomScenes) {

@@ -3,7 +3,7 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
-#include <cayspin/stepper/stiff_midpoint.hpp>
+#include <cayspin/stepper/stiff_gauss.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -29,22 +29,29 @@ ScalarField<double, Space::memory_space> numbers(Lattice const& lattice, double 
   return field;
 }
 
-/// Steps four times those that explicit ones can take, the error falls by 4 where they are halved.
+/// Steps four times those that explicit ones can take; the error falls by 4, and by 16, where they
+/// are halved.
 template <class Generator>
 void expect_converges(Generator const& generator, double rate = 200) {
   auto const start = wavy(film());
   double const end = 0.5;
   int const steps = static_cast<int>(end * rate / 11);
   auto const exact = run<Rkmk4<Spins>>(generator, start, end / (16 * steps), 16 * steps);
-  auto const error = [&](int factor) {
-    auto const spins =
-        run<StiffMidpoint2<Spins>>(generator, start, end / (factor * steps), factor * steps);
+  auto const error = [&]<class Stepper>(int factor) {
+    auto const spins = run<Stepper>(generator, start, end / (factor * steps), factor * steps);
     return largest_distance(spins, exact);
   };
-  double const coarse = error(4), fine = error(8);
-  EXPECT_LT(coarse, 2e-2);
-  std::printf("    errors %.2e, %.2e\n", coarse, fine);
-  EXPECT_NEAR(coarse / fine, 4, 1);
+  auto const two = [&](int factor) {
+    return error.template operator()<StiffGauss2<Spins>>(factor);
+  };
+  auto const four = [&](int factor) {
+    return error.template operator()<StiffGauss4<Spins>>(factor);
+  };
+  std::printf("    errors %.2e, %.2e, order 4 %.2e, %.2e\n", two(4), two(8), four(4), four(8));
+  EXPECT_LT(two(4), 2e-2);
+  EXPECT_NEAR(two(4) / two(8), 4, 1);
+  EXPECT_LT(four(4), 0.2 * two(4));
+  EXPECT_NEAR(std::log2(four(4) / four(8)), 4, 0.75);
 }
 
 TEST(StiffFields, Vacancies) {
@@ -95,7 +102,7 @@ TEST(StiffFields, Antiferromagnet) {
   auto const start = random_spins(film(), 3);
   LandauLifshitz const generator(EffectiveField(Exchange(film(), -1)), 0.1);
   auto const exact = run<Rkmk4<Spins>>(generator, start, 0.5e-3, 1000);
-  auto const end = run<StiffMidpoint2<Spins>>(generator, start, 5e-3, 100);
+  auto const end = run<StiffGauss2<Spins>>(generator, start, 5e-3, 100);
   EXPECT_LT(largest_distance(end, exact), 1e-3);
 }
 

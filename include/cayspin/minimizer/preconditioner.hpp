@@ -11,22 +11,8 @@
 #include <optional>
 
 // A first guess of the inverse Hessian: (K + c)^-1 with the exchange K that a field is found to
-// have. Where neighbours want to be opposite, turning every second spin over maps their exchange to
-// that of a ferromagnet.
+// have.
 namespace cayspin::detail {
-
-template <class Real>
-struct ChangeSigns {
-  AlternatingSigns signs;
-  SiteArray<Real, 3> vectors;
-  OutputArray<Real, 3> output;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    site.store(signs.template at<Value>(site) * Vec3<Value>(site.load(vectors)), output);
-  }
-};
 
 template <class Spins>
 class Preconditioner {
@@ -36,12 +22,7 @@ class Preconditioner {
   /// Allocates. Without exchange it is 1 / c.
   void set(Lattice const& lattice, FieldStrengths const& found, bool with_exchange) {
     couplings_ = with_exchange ? found.couplings : std::array<double, 3>{};
-    auto strengths = couplings_;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      signs_.along[axis] = strengths[axis] < 0;
-      strengths[axis] = std::abs(strengths[axis]);
-    }
-    exchange_.emplace("Minimizer::exchange", lattice, strengths);
+    exchange_.emplace("Minimizer::exchange", lattice, couplings_);
     double const strongest = found.strongest();
     first_shift_ = found.rest > 0 ? found.rest : strongest > 0 ? 1e-3 * strongest : 1;
     shift_ = first_shift_;
@@ -61,20 +42,11 @@ class Preconditioner {
   /// to <- (K + c)^-1 from
   template <class Exec>
   void apply(Exec const& exec, Spins const& from, Spins const& to) {
-    auto const change_signs = [&](Spins const& v) {
-      for_each_site<Real>(exec, "cayspin::minimize::change_signs", v.layout(),
-                          ChangeSigns<Real>{signs_, v.array(), v.output(false)});
-    };
-    if (signs_.any()) change_signs(from);
     exchange_->solve(exec, shift_, Real(1), from, to);
-    if (!signs_.any()) return;
-    change_signs(from);
-    change_signs(to);
   }
 
  private:
   std::array<double, 3> couplings_{};
-  AlternatingSigns signs_;
   std::optional<Helmholtz<Real, typename Spins::memory_space>> exchange_;
   double first_shift_ = 1, shift_ = 1;
 };

@@ -5,6 +5,7 @@
 #include <cayspin/detail/narrowing_store.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/optional_members.hpp>
+#include <cayspin/solver/alternating_signs.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -17,25 +18,6 @@
 // What a minimiser wants to know of a field of which it knows nothing: how strong the exchange is
 // along each axis, how strong the rest is, and which spins it leaves alone.
 namespace cayspin::detail {
-
-/// -1 where the indices along some axes have an odd sum, 1 elsewhere.
-struct AlternatingSigns {
-  bool along[3] = {false, false, false};
-
-  bool any() const { return along[0] || along[1] || along[2]; }
-
-  template <class Value, class Site>
-  KOKKOS_FORCEINLINE_FUNCTION Value at(Site const& site) const {
-    using Real = scalar_t<Value>;
-    std::int64_t const rows = (along[1] ? site.y() : 0) + (along[2] ? site.z() : 0);
-    Real const first = rows % 2 == 0 ? Real(1) : Real(-1);
-    if (!along[0]) return Value(first);
-    Real signs[std::size_t{lanes_of<Value>}];
-    for (int lane = 0; lane < lanes_of<Value>; ++lane)
-      signs[lane] = (site.x() + lane) % 2 == 0 ? first : -first;
-    return load<Value>(signs);
-  }
-};
 
 /// The same direction everywhere, or reversed from site to site.
 template <class Real>

@@ -7,33 +7,40 @@
 #include <cayspin/spin_field.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 
 namespace cayspin::detail {
 
-/// Approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap >= 0 over the neighbours
-/// of a lattice, b >= 0 and c > 0. Where one axis alone couples, z is the solution. Otherwise it is
-/// one multigrid cycle V(2, 2) in single precision, which leaves a fifth to a half of the residual.
-/// A cycle is a linear map, symmetric to its round-off, and positive definite.
+/// Approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the neighbours of a
+/// lattice, b >= 0 and c > 0. Along an axis with J < 0 it takes the sum with a neighbour in place
+/// of the difference, which is |J| between vectors of alternating sign: K >= 0. Where one axis
+/// alone couples, z is the solution. Otherwise it is one multigrid cycle V(2, 2) in single
+/// precision, which leaves a fifth to a half of the residual. A cycle is a linear map, symmetric to
+/// its round-off, and positive definite.
 template <class Real, class MemorySpace>
 class Helmholtz {
  public:
   using Field = SiteField<Real, 3, MemorySpace>;
 
   Helmholtz() = default;
-  /// `couplings`: J of each axis, A / spacing^2 for exchange; those that are not positive, and
-  /// those of axes without neighbours, are left out. Throws std::invalid_argument for a part of a
-  /// lattice.
+  /// `couplings`: J of each axis, A / spacing^2 for exchange, not negative on an odd ring; those of
+  /// axes without neighbours are left out. Throws std::invalid_argument for a part of a lattice.
   Helmholtz(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
-      : scale_label_("cayspin::" + name + "::scale") {
+      : scale_label_("cayspin::" + name + "::scale"), signs_label_("cayspin::" + name + "::signs") {
     require_whole("cayspin::Helmholtz", lattice);
     if (auto const axis = only_coupled_axis(lattice, couplings))
       lines_.emplace(name, RowLayout::of<Real>(lattice), *axis,
                      couplings[static_cast<std::size_t>(*axis)]);
-    else
+    else {
+      for (std::size_t i = 0; i < 3; ++i) {
+        signs_.along[i] = couplings[i] < 0;
+        couplings[i] = std::abs(couplings[i]);
+      }
       multigrid_ = {name, lattice, couplings};
+    }
   }
 
   /// `r` is not `z`. Does not wait.
@@ -41,14 +48,20 @@ class Helmholtz {
   void solve(Exec const& exec, double c, double b, Field const& r, Field const& z) {
     if (lines_) return lines_->solve(exec, c, static_cast<Real>(b), r, z);
     auto const& right = multigrid_.right();
-    LaunchEach<Exec>{exec}.template run<Real>(
-        scale_label_, right.layout(),
-        ScaleRightSide<Real, float>{cells_of<3>(r), cells_of<3>(right), static_cast<Real>(1 / c)});
+    LaunchEach<Exec> const launch{exec};
+    launch.template run<Real>(scale_label_, right.layout(),
+                              ScaleCells<Real, float>{cells_of<3>(r), cells_of<3>(right),
+                                                      static_cast<Real>(1 / c), signs_});
     multigrid_.solve(exec, b / c, cells_of<3>(z));
+    if (signs_.any())
+      launch.template run<Real>(
+          signs_label_, z.layout(),
+          ScaleCells<Real, Real>{cells_of<3>(z), cells_of<3>(z), Real(1), signs_});
   }
 
  private:
-  std::string scale_label_;
+  std::string scale_label_, signs_label_;
+  AlternatingSigns signs_;
   std::optional<LineSolver<Real, MemorySpace>> lines_;
   Multigrid<ShiftedExchange<float>, 2, true, float, MemorySpace> multigrid_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/memory.hpp>
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/solver/coefficient_scalar.hpp>
 
@@ -9,140 +11,188 @@
 
 namespace cayspin::detail {
 
-/// The factors of c + b K on a line, for kernels: y_i = inverse_i r_i + ratio_i y_(i-1) forwards,
-/// z_i = y_i + ratio_i z_(i+1) backwards; on a periodic line z - (z_0 + last z_last) closing.
+/// Lines are solved from both ends, with the same factors for either half:
+/// y_i = inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. In
+/// the middle z = same y + other y' + inverse r, where y' is the other half's, and r belongs to the
+/// site in the middle of an odd line. On a periodic line z + closing (z + sign z') comes last.
 template <class Scalar>
 struct LineFactors {
   Scalar const *inverse = nullptr, *ratio = nullptr, *closing = nullptr;
-  Scalar last{};
-  bool periodic = false;
+  Scalar same{}, other{}, middle{};
+  int sign = 0;  // 0 on an open line
 };
 
-/// Solves lines along one axis. A task is a bundle of lines that are neighbours along x, or one
-/// line along x.
+/// Where a number lies, and how far from there its mirror image.
+struct LinePlace {
+  std::ptrdiff_t at, to_mirror;
+};
+
+/// Three components at a place and three at its mirror image: of as many lines as Value has lanes,
+/// neighbours along x, or InLanes of packs, of one line.
+template <class Value, int Parts, bool InLanes>
+struct LineEnds {
+  using Real = scalar_t<Value>;
+  static constexpr int lanes = lanes_of<Value>, count = InLanes ? (6 + lanes - 1) / lanes : 6;
+
+  Value values[std::size_t{count}][std::size_t{Parts}];
+
+  LineEnds() = default;
+  KOKKOS_FORCEINLINE_FUNCTION static LineEnds zero() {
+    LineEnds ends;
+    for (auto& value : ends.values)
+      for (Value& part : value) part = Value(Real(0));
+    return ends;
+  }
+
+  template <class Array>
+  KOKKOS_FORCEINLINE_FUNCTION LineEnds(Array const& array, LinePlace const& place) {
+    for (int part = 0; part < Parts; ++part) {
+      Real const* const from = array.data + 3 * part * array.stride + place.at;
+      for (int i = 0; i < count; ++i) {
+        if constexpr (InLanes)
+          values[i][part] = Value([&](auto lane) {
+            int const number = i * lanes + static_cast<int>(lane());
+            return number < 6 ? from[offset(number, array.stride, place)] : Real(0);
+          });
+        else
+          values[i][part] = load<Value>(from + offset(i, array.stride, place));
+      }
+    }
+  }
+
+  template <class Array>
+  KOKKOS_FORCEINLINE_FUNCTION void store_in(Array const& array, LinePlace const& place) const {
+    for (int part = 0; part < Parts; ++part) {
+      Real* const to = array.data + 3 * part * array.stride + place.at;
+      if constexpr (InLanes) {
+        Real numbers[std::size_t{count * lanes}];
+        for (int i = 0; i < count; ++i) store(values[i][part], numbers + i * lanes);
+        for (int i = 0; i < 6; ++i) to[offset(i, array.stride, place)] = numbers[i];
+      } else {
+        for (int i = 0; i < 6; ++i) store(values[i][part], to + offset(i, array.stride, place));
+      }
+    }
+  }
+
+  /// The imaginary part times sign.
+  KOKKOS_FORCEINLINE_FUNCTION LineEnds with_imaginary(Real sign) const {
+    LineEnds ends = *this;
+    if constexpr (Parts == 2)
+      for (auto& value : ends.values) value[1] = Value(sign) * value[1];
+    return ends;
+  }
+  /// += a x
+  template <class Scalar, int XParts>
+  KOKKOS_FORCEINLINE_FUNCTION void add(Scalar const& a, LineEnds<Value, XParts, InLanes> const& x) {
+    for (int i = 0; i < count; ++i) multiply_add_to(a, x.values[i], values[i]);
+  }
+
+ private:
+  KOKKOS_FORCEINLINE_FUNCTION static std::ptrdiff_t offset(int i, std::ptrdiff_t stride,
+                                                           LinePlace const& place) {
+    return i % 3 * stride + (i < 3 ? 0 : place.to_mirror);
+  }
+};
+
+/// Solves the lines along an axis.
 template <class Scalar, int RightHandComponents>
 struct SolveLines {
   using Real = real_part_t<Scalar>;
-  static constexpr int parts = real_parts<Scalar>;
+  static constexpr int parts = real_parts<Scalar>, right_parts = RightHandComponents / 3;
 
   LineFactors<Scalar> factors;
   RowLayout layout;
   int axis;
-  std::int32_t bundle;  // lines of a task
   SiteArray<Real, RightHandComponents> r;
   SiteArray<Real, 3 * parts> z;
+  Real imaginary_sign;  // of r
 
-  std::int32_t bundles() const { return axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle; }
-  std::int64_t tasks() const {
-    return axis == 0   ? layout.rows()
-           : axis == 1 ? std::int64_t(layout.nz) * bundles()
-                       : std::int64_t(layout.ny) * bundles();
+  /// A task is a line along x, or as many lines as there are lanes.
+  KOKKOS_FUNCTION std::int64_t tasks_across(int lanes) const {
+    return axis == 0 ? 1 : (layout.nx + lanes - 1) / lanes;
+  }
+  std::int64_t tasks(int lanes) const {
+    return tasks_across(lanes) * (axis == 0 ? layout.rows() : axis == 1 ? layout.nz : layout.ny);
   }
 
-  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
-    std::int64_t const across = axis == 0 ? 1 : (layout.nx + bundle - 1) / bundle;
-    std::ptrdiff_t const plane = layout.pitch * layout.ny;
-    std::int64_t const line = task / across;
-    auto const x = static_cast<std::int32_t>(task % across) * bundle;
-    std::ptrdiff_t const begin =
-        axis == 0 ? line * layout.pitch : x + line * (axis == 1 ? plane : layout.pitch);
-    std::int32_t const width = axis == 0 ? 1 : Kokkos::min(bundle, layout.nx - x);
-    if (axis == 0 && !factors.periodic) return solve_row(begin, layout.nx);
-    std::int32_t const extent = axis == 0 ? layout.nx : axis == 1 ? layout.ny : layout.nz;
-    std::ptrdiff_t const stride = axis == 0 ? 1 : axis == 1 ? layout.pitch : plane;
-    for (int component = 0; component < 3; ++component)
-      solve(component, begin, stride, extent, width);
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void run(std::int64_t task) const {
+    constexpr int lanes = lanes_of<Value>;
+    if constexpr (lanes > 1) {
+      if (axis == 0) return solve<Value, true>(task * layout.pitch);
+    }
+    std::int64_t const line = task / tasks_across(lanes), x = task % tasks_across(lanes) * lanes;
+    solve<Value, false>(x + line * (axis == 1 ? layout.pitch * layout.ny : layout.pitch));
   }
 
  private:
-  // The three components at once, since each is a chain of dependent operations.
-  KOKKOS_FORCEINLINE_FUNCTION void solve_row(std::ptrdiff_t begin, std::int32_t count) const {
-    constexpr std::size_t numbers = 3;
-    Real carried[numbers][std::size_t{parts}] = {};
-    Real const* const from = r.data + begin;
-    Real* const to = z.data + begin;
-    for (std::int32_t i = 0; i < count; ++i) {
-      Scalar const inverse = factors.inverse[i], ratio = i > 0 ? factors.ratio[i] : Scalar(0);
-      for (std::size_t component = 0; component < numbers; ++component) {
-        auto const row = static_cast<std::ptrdiff_t>(component);
-        Real right[std::size_t{parts}] = {}, sum[std::size_t{parts}] = {};
-        for (int part = 0; part < RightHandComponents / 3; ++part)
-          right[part] = from[(row + 3 * part) * r.stride + i];
-        multiply_add_to(inverse, right, sum);
-        multiply_add_to(ratio, carried[component], sum);
-        for (int part = 0; part < parts; ++part) {
-          carried[component][part] = sum[part];
-          to[(row + 3 * part) * z.stride + i] = sum[part];
-        }
-      }
+  template <class Value, bool InLanes>
+  KOKKOS_FORCEINLINE_FUNCTION void solve(std::ptrdiff_t begin) const {
+    using Ends = LineEnds<Value, parts, InLanes>;
+    using RightEnds = LineEnds<Value, right_parts, InLanes>;
+    std::int32_t const count = axis == 0 ? layout.nx : axis == 1 ? layout.ny : layout.nz;
+    std::int32_t const half = count / 2;
+    std::ptrdiff_t const step = axis == 0 ? 1 : axis == 1 ? layout.pitch : layout.pitch * layout.ny;
+    auto const place = [&](std::int32_t i) {
+      return LinePlace{begin + i * step, (count - 1 - 2 * i) * step};
+    };
+    // Short lines keep y as packs, rather than take them apart twice.
+    constexpr std::int32_t most_kept = InLanes ? 512 : 1;
+    Ends kept[std::size_t{most_kept}];
+    bool const keeps = InLanes && half <= most_kept;
+    Ends before = Ends::zero();
+    for (std::int32_t i = 0; i < half; ++i) {
+      Ends y = Ends::zero();
+      y.add(factors.inverse[i], RightEnds(r, place(i)).with_imaginary(imaginary_sign));
+      y.add(factors.ratio[i], before);
+      if (keeps)
+        kept[i] = y;
+      else
+        y.store_in(z, place(i));
+      before = y;
     }
-    for (std::int32_t i = count - 2; i >= 0; --i) {
-      Scalar const ratio = factors.ratio[i];
-      for (std::size_t component = 0; component < numbers; ++component) {
-        auto const row = static_cast<std::ptrdiff_t>(component);
-        Real sum[std::size_t{parts}];
-        for (int part = 0; part < parts; ++part) sum[part] = to[(row + 3 * part) * z.stride + i];
-        multiply_add_to(ratio, carried[component], sum);
-        for (int part = 0; part < parts; ++part) {
-          carried[component][part] = sum[part];
-          to[(row + 3 * part) * z.stride + i] = sum[part];
-        }
-      }
+    Ends after = Ends::zero();
+    after.add(factors.same, before);
+    if (half > 0) {
+      before.store_in(z, place(half - 1));
+      after.add(factors.other, Ends(z, place(count - half)));
+    }
+    if (count % 2 == 1) {
+      after.add(factors.middle, RightEnds(r, place(half)).with_imaginary(imaginary_sign));
+      after.store_in(z, place(half));
+    }
+    for (std::int32_t i = half - 1; i >= 0; --i) {
+      Ends here = keeps ? kept[i] : Ends(z, place(i));
+      here.add(factors.ratio[i], after);
+      here.store_in(z, place(i));
+      after = here;
+    }
+    if (factors.sign == 0) return;
+    after.add(Scalar(static_cast<Real>(factors.sign)), Ends(z, place(count - 1)));
+    for (std::int32_t i = 0; i < half; ++i) {
+      Ends here(z, place(i));
+      here.add(factors.closing[i], after);
+      here.store_in(z, place(i));
     }
   }
+};
 
-  KOKKOS_FORCEINLINE_FUNCTION void solve(int component, std::ptrdiff_t begin, std::ptrdiff_t stride,
-                                         std::int32_t count, std::int32_t width) const {
-    Real* to[std::size_t{parts}];
-    for (int part = 0; part < parts; ++part)
-      to[part] = z.data + (component + 3 * part) * z.stride + begin;
-    Real const* from[std::size_t{parts}] = {};
-    for (int part = 0; part < RightHandComponents / 3; ++part)
-      from[part] = r.data + (component + 3 * part) * r.stride + begin;
-    for (std::int32_t i = 0; i < count; ++i)
-      for (std::int32_t k = 0; k < width; ++k) {
-        std::ptrdiff_t const at = i * stride + k;
-        Real right[std::size_t{parts}] = {}, before[std::size_t{parts}] = {},
-             sum[std::size_t{parts}] = {};
-        for (int part = 0; part < RightHandComponents / 3; ++part) right[part] = from[part][at];
-        multiply_add_to(factors.inverse[i], right, sum);
-        if (i > 0) {
-          for (int part = 0; part < parts; ++part) before[part] = to[part][at - stride];
-          multiply_add_to(factors.ratio[i], before, sum);
-        }
-        for (int part = 0; part < parts; ++part) to[part][at] = sum[part];
-      }
-    for (std::int32_t i = count - 2; i >= 0; --i)
-      for (std::int32_t k = 0; k < width; ++k) {
-        std::ptrdiff_t const at = i * stride + k;
-        Real after[std::size_t{parts}], sum[std::size_t{parts}];
-        for (int part = 0; part < parts; ++part) {
-          after[part] = to[part][at + stride];
-          sum[part] = to[part][at];
-        }
-        multiply_add_to(factors.ratio[i], after, sum);
-        for (int part = 0; part < parts; ++part) to[part][at] = sum[part];
-      }
-    if (factors.periodic) close(to, stride, count, width);
+/// The body of host tasks.
+template <class Lines>
+struct SolveLinesOnHost {
+  Lines lines;
+
+  CAYSPIN_DETAIL_NOINLINE void operator()(std::int64_t task) const {
+    Lines const local = lines;
+    local.template run<Pack<typename Lines::Real>>(task);
   }
+};
+template <class Lines>
+struct SolveLinesOnDevice {
+  Lines lines;
 
-  KOKKOS_FORCEINLINE_FUNCTION void close(Real* const (&to)[std::size_t{parts}],
-                                         std::ptrdiff_t stride, std::int32_t count,
-                                         std::int32_t width) const {
-    for (std::int32_t k = 0; k < width; ++k) {
-      Real ends[std::size_t{parts}], end[std::size_t{parts}];
-      for (int part = 0; part < parts; ++part) {
-        ends[part] = to[part][k];
-        end[part] = to[part][(count - 1) * stride + k];
-      }
-      multiply_add_to(factors.last, end, ends);
-      for (std::int32_t i = 0; i < count; ++i) {
-        Real sum[std::size_t{parts}];
-        for (int part = 0; part < parts; ++part) sum[part] = to[part][i * stride + k];
-        multiply_subtract_from(factors.closing[i], ends, sum);
-        for (int part = 0; part < parts; ++part) to[part][i * stride + k] = sum[part];
-      }
-    }
+  KOKKOS_FUNCTION void operator()(std::int64_t task) const {
+    lines.template run<typename Lines::Real>(task);
   }
 };
 

@@ -6,20 +6,21 @@
 #include <cayspin/spin_field.hpp>
 
 #include <array>
+#include <cmath>
 #include <complex>
 #include <optional>
 #include <vector>
 
 namespace cayspin::detail {
 
-/// The axis along which alone a lattice couples, or any one where none does. Couplings that are not
-/// positive, and those of axes without neighbours, become 0.
+/// The axis along which alone a lattice couples, or any one where none does. Couplings of axes
+/// without neighbours become 0.
 inline std::optional<int> only_coupled_axis(Lattice const& lattice,
                                             std::array<double, 3>& couplings) {
   int only = 0, count = 0;
   for (int axis = 0; axis < 3; ++axis) {
     double& coupling = couplings[static_cast<std::size_t>(axis)];
-    if (!lattice.has_neighbors(axis) || !(coupling > 0)) coupling = 0;
+    if (!lattice.has_neighbors(axis)) coupling = 0;
     if (coupling == 0) continue;
     only = axis;
     ++count;
@@ -27,8 +28,9 @@ inline std::optional<int> only_coupled_axis(Lattice const& lattice,
   return count <= 1 ? std::optional(only) : std::nullopt;
 }
 
-/// z = (c + b K)^-1 r where one axis alone couples: tridiagonal lines, on a periodic axis by
-/// Sherman and Morrison. Factors are kept for the last few pairs (c, b).
+/// z = (c + b K)^-1 r, K as Helmholtz has it, where one axis alone couples: tridiagonal lines, the
+/// bond that closes a periodic one by Sherman and Morrison. Factors are kept for the last few pairs
+/// (c, b).
 template <class Scalar, class MemorySpace>
 class LineSolver {
   using Real = real_part_t<Scalar>;
@@ -43,34 +45,40 @@ class LineSolver {
     periodic_ = layout.periodic[axis] && count_ > 2;
     // A periodic axis of two sites has its bond twice.
     coupling_ = layout.periodic[axis] && count_ == 2 ? 2 * coupling : coupling;
-    for (Kept& kept : kept_)
-      kept.factors = Kokkos::View<Scalar*, MemorySpace>(
+    auto const half = count_ / 2;
+    for (Kept& kept : kept_) {
+      kept.memory = Kokkos::View<Scalar*, MemorySpace>(
           Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::factors"),
-          3 * count_);
+          3 * half);
+      Scalar const* const data = kept.memory.data();
+      kept.factors = {
+          data, data + half, data + 2 * half, {}, {}, {}, !periodic_ ? 0 : coupling < 0 ? 1 : -1};
+    }
   }
 
   template <class Exec, int RightHandComponents>
   void solve(Exec const& exec, double c, Scalar b,
              SiteField<Real, RightHandComponents, MemorySpace> const& r,
-             SiteField<Real, 3 * parts, MemorySpace> const& z) {
+             SiteField<Real, 3 * parts, MemorySpace> const& z, bool conjugated = false) {
     Kept const& kept = factors_of(c, b);
-    Scalar const* const data = kept.factors.data();
-    SolveLines<Scalar, RightHandComponents> const lines{
-        {data, data + count_, data + 2 * count_, kept.last, periodic_},
-        layout_,
-        axis_,
-        is_host_execution<Exec> ? 32 : 1,
-        r.array(),
-        z.array()};
-    for_each_task(exec, label_, lines.tasks(), layout_.sites(), lines);
+    using Lines = SolveLines<Scalar, RightHandComponents>;
+    Lines const lines{kept.factors, layout_,   axis_,
+                      r.array(),    z.array(), conjugated ? Real(-1) : Real(1)};
+    if constexpr (is_host_execution<Exec>)
+      for_each_task(exec, label_, lines.tasks(host_lanes<Real>), layout_.sites(),
+                    SolveLinesOnHost<Lines>{lines});
+    else
+      for_each_task(exec, label_, lines.tasks(1), layout_.sites(),
+                    SolveLinesOnDevice<Lines>{lines});
   }
 
  private:
   using Number = std::complex<double>;
   struct Kept {
     double c = 0;
-    Scalar b{}, last{};
-    Kokkos::View<Scalar*, MemorySpace> factors;
+    Scalar b{};
+    LineFactors<Scalar> factors;
+    Kokkos::View<Scalar*, MemorySpace> memory;
   };
 
   static Number number(Scalar const& value) {
@@ -96,40 +104,44 @@ class LineSolver {
   }
 
   void factorize(Kept& kept, double c, Scalar b) const {
-    Number const e = number(b) * coupling_;  // less what is beside the diagonal
-    Number const inner = c + 2.0 * e;
-    auto const n = count_;
-    std::vector<Number> diagonal(n, inner), inverse(n), ratio(n), closing(n);
-    if (!periodic_) {
-      diagonal.front() -= e;
-      diagonal.back() -= e;
+    double const sign = coupling_ < 0 ? -1 : 1;
+    Number const e = number(b) * std::abs(coupling_),
+                 beside = sign * e;  // less what is beside the diagonal
+    auto const half = count_ / 2;
+    std::vector<Number> inverse(half), ratio(half), closing(half);
+    Number reduced = count_ > 1 ? c + e : c;  // the diagonal, less what elimination takes from it
+    for (std::size_t i = 0; i < half; ++i) {
+      inverse[i] = 1.0 / reduced;
+      ratio[i] = beside * inverse[i];
+      reduced = c + 2.0 * e - beside * ratio[i];
     }
-    // c + b K = T + (inner, .., -e)^T (-1, .., e / inner), T tridiagonal.
+    LineFactors<Scalar>& factors = kept.factors;
+    Number const last = half > 0 ? ratio.back() : 0;
+    if (count_ % 2 == 1) {
+      Number const middle = 1.0 / (reduced - beside * last);
+      factors.middle = scalar(middle);
+      factors.same = factors.other = scalar(beside * middle);
+    } else {
+      Number const other = 1.0 / (1.0 - last * last);
+      factors.other = scalar(other);
+      factors.same = scalar(last * other);
+    }
     if (periodic_) {
-      diagonal.front() += inner;
-      diagonal.back() += e * e / inner;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      inverse[i] = 1.0 / (i == 0 ? diagonal[i] : diagonal[i] - e * ratio[i - 1]);
-      ratio[i] = e * inverse[i];
-    }
-    if (periodic_) {
-      for (std::size_t i = 0; i < n; ++i) {
-        Number const right = i == 0 ? -inner : i + 1 == n ? -e : Number(0);
-        closing[i] = inverse[i] * right + (i == 0 ? Number(0) : ratio[i] * closing[i - 1]);
-      }
-      for (std::size_t i = n - 1; i-- > 0;) closing[i] += ratio[i] * closing[i + 1];
-      Number const last = e / inner, scale = 1.0 / (1.0 + closing.front() + last * closing.back());
+      // c + b K = T + e w w^T with T of the open line, w = (1, 0, .., 0, -sign), T^-1 w like w.
+      closing[0] = inverse[0];
+      for (std::size_t i = 1; i < half; ++i) closing[i] = ratio[i] * closing[i - 1];
+      Number after = count_ % 2 == 1 ? 0 : -sign * closing.back() / (1.0 + sign * last);
+      for (std::size_t i = half; i-- > 0;) after = closing[i] += ratio[i] * after;
+      Number const scale = -e / (1.0 + 2.0 * e * after);
       for (Number& value : closing) value *= scale;
-      kept.last = scalar(last);
     }
-    auto const factors = Kokkos::create_mirror_view(kept.factors);
-    for (std::size_t i = 0; i < n; ++i) {
-      factors(i) = scalar(inverse[i]);
-      factors(n + i) = scalar(ratio[i]);
-      factors(2 * n + i) = scalar(closing[i]);
+    auto const numbers = Kokkos::create_mirror_view(kept.memory);
+    for (std::size_t i = 0; i < half; ++i) {
+      numbers(i) = scalar(inverse[i]);
+      numbers(half + i) = scalar(ratio[i]);
+      numbers(2 * half + i) = scalar(closing[i]);
     }
-    if (factors.data() != kept.factors.data()) Kokkos::deep_copy(kept.factors, factors);
+    if (numbers.data() != kept.memory.data()) Kokkos::deep_copy(kept.memory, numbers);
     kept.c = c;
     kept.b = b;
   }

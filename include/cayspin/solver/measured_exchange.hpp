@@ -53,7 +53,8 @@ struct ResponseToWaves {
 
 /// How a generator A = precession H + damping m x H answers to the shortest waves of each axis
 /// beside uniform spins: as an exchange field H = sum of couplings times second differences would.
-/// What is local cancels out. Vacancies and constants that differ between sites give means.
+/// What is local cancels out. Vacancies and constants that differ between sites give means. (For
+/// minimisers `probe` takes m.H instead: couplings of either sign, of a field alone.)
 struct MeasuredExchange {
   std::array<double, 3> couplings{};
   double precession = 1, damping = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/solver/alternating_signs.hpp>
 #include <cayspin/solver/cell_grid.hpp>
 
 #include <complex>
@@ -179,20 +180,24 @@ struct RelaxZero {
   }
 };
 
-/// to = scale r. Beside the rows the solver's numbers stay zero.
+/// to = scale r, with signs; `to` may be r. Beside the rows the solver's numbers stay zero.
 template <class FromReal, class Real>
-struct ScaleRightSide {
+struct ScaleCells {
   CellArray<FromReal, 3> r;
   CellArray<Real, 3> to;
   FromReal scale;
+  AlternatingSigns signs;
 
   KOKKOS_FORCEINLINE_FUNCTION void row(CellPlace const& place, std::int32_t nx) const {
+    FromReal const first = scale * signs.first_of_row<FromReal>(place.y, place.z);
+    FromReal const other = signs.along[0] ? -first : first;
+    FromReal const even = place.x % 2 == 0 ? first : other, odd = place.x % 2 == 0 ? other : first;
     for (int component = 0; component < 3; ++component) {
       FromReal const* const from = r.at(place) + component * r.stride;
       Real* const out = to.at(place) + component * to.stride;
-      FromReal const factor = scale;
       CAYSPIN_DETAIL_INDEPENDENT
-      for (std::int32_t x = 0; x < nx; ++x) out[x] = static_cast<Real>(factor * from[x]);
+      for (std::int32_t x = 0; x < nx; ++x)
+        out[x] = static_cast<Real>((x % 2 == 0 ? even : odd) * from[x]);
     }
   }
   template <class Value>
@@ -202,11 +207,13 @@ struct ScaleRightSide {
 };
 
 /// to = (r x m, m) with m of length 1, or 0 where there is no spin: the right side of
-/// ShiftedSpinWaves whose solution d makes m x d of r.
-template <class FromReal, class Real>
+/// ShiftedSpinWaves whose solution d makes m x d of r. Six components of r are r' + sign m x r''.
+template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;
-  CellArray<FromReal, 3> r, m;
+  FromReal sign;
+  CellArray<FromReal, Components> r;
+  CellArray<FromReal, 3> m;
   CellArray<Real, 6> to;
 
   template <class Value>
@@ -214,7 +221,10 @@ struct TurnRightSide {
     Vec3<Value> const a = r.template load<Value>(place), spin = m.template load<Value>(place);
     Value const square = dot(spin, spin) + as_value<Value>(1e-30);
     Vec3<Value> const n = Value(as_value<Value>(1) / square_root(square)) * spin;
-    to.store(cross(a, n), place, nx);
+    Vec3<Value> right = cross(a, n);
+    if constexpr (Components == 6)
+      right = multiply_add(as_value<Value>(sign), r.template load<Value>(place, 3), right);
+    to.store(right, place, nx);
     to.store(n, place, nx, 3);
   }
 };

@@ -25,7 +25,7 @@ class SpinWaveSolver {
   using Solution = SiteField<Real, 6, MemorySpace>;
 
   SpinWaveSolver() = default;
-  /// Throws std::invalid_argument for a part of a lattice.
+  /// `couplings`: J of each axis, at least 0. Throws std::invalid_argument for a part of a lattice.
   SpinWaveSolver(std::string const& name, Lattice const& lattice, std::array<double, 3> couplings)
       : turn_label_("cayspin::" + name + "::turn") {
     require_whole("cayspin::SpinWaveSolver", lattice);
@@ -37,19 +37,22 @@ class SpinWaveSolver {
   }
 
   /// z = (v', v'') with v = v' + m x v''. Always by lines, or never: v' is not written by
-  /// multigrid, and has to be zero. Does not wait.
-  template <class Exec>
-  void solve(Exec const& exec, std::complex<double> b, Vectors const& r, Vectors const& m,
-             Solution const& z) {
+  /// multigrid, and has to be zero. A right side of 6 components is (r', r'') likewise, or
+  /// (r', -r'') where it is `conjugated`. Does not wait.
+  template <class Exec, int RightComponents>
+  void solve(Exec const& exec, std::complex<double> b,
+             SiteField<Real, RightComponents, MemorySpace> const& r, Vectors const& m,
+             Solution const& z, bool conjugated = false) {
     if (lines_)
       return lines_->solve(
           exec, 1, Kokkos::complex<Real>(static_cast<Real>(b.real()), static_cast<Real>(b.imag())),
-          r, z);
+          r, z, conjugated);
     auto const& right = multigrid_.right();
     LaunchEach<Exec>{exec}.template run<Real>(
         turn_label_, right.layout(),
-        TurnRightSide<Real, float>{right.layout().nx, cells_of<3>(r), cells_of<3>(m),
-                                   cells_of<6>(right)});
+        TurnRightSide<RightComponents, Real, float>{
+            right.layout().nx, conjugated ? Real(-1) : Real(1), cells_of<RightComponents>(r),
+            cells_of<3>(m), cells_of<6>(right)});
     multigrid_.solve(exec, b, cells_of<3>(z, 3));
   }
 

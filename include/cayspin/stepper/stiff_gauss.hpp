@@ -6,8 +6,8 @@
 #include <cayspin/solver/spin_wave_solver.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
+#include <cayspin/stepper/stiff_gauss_stage.hpp>
 #include <cayspin/stepper/stiff_history.hpp>
-#include <cayspin/stepper/stiff_midpoint_stage.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,37 +21,41 @@
 
 namespace cayspin {
 
-/// Implicit midpoint in Cayley coordinates for stiff exchange, order 2 (or 4, as five steps of
-/// Suzuki's composition): m1 = cay(f) m0, f = dt A((m0 + m1) / 2). f is extrapolated from earlier
-/// steps and corrected by (1 + b K)^-1 of the residual, b = (dt / 2) (damping - i): with K = -J
-/// Lap, as it is measured at the first step, that is Newton's method for exchange, on lines of
-/// spins that are nearly parallel. One or two evaluations a step are usual. A correction that does
-/// not converge halves the step. Keeps |m| and, where the generator is conservative and H affine,
-/// the energy to round-off; with isotropic exchange alone the total spin too. Any generator; not
-/// for parts of a lattice.
+/// Gauss's collocation method for stiff exchange. Order 2 is implicit midpoint in Cayley
+/// coordinates: m1 = cay(f) m0, f = dt A((m0 + m1) / 2). Order 4 has two such stages, which move
+/// together. A at the stages is extrapolated from earlier steps and corrected by (1 + b K)^-1 of
+/// the residual, b = dt (damping - i) times an eigenvalue of the tableau: with K = -J Lap, as it is
+/// measured at the first step, that is Newton's method for exchange, on lines of spins that are
+/// nearly parallel. One or two corrections a step are usual. A step whose corrections do not
+/// converge is halved. Keeps |m| and, where the generator is conservative and H affine, the energy
+/// to round-off; with isotropic exchange alone the total spin too. Any generator; not for parts of
+/// a lattice.
 template <class Spins, int Order>
-class StiffMidpoint : public detail::StepperBase<Spins> {
-  static_assert(Order == 2 || Order == 4, "StiffMidpoint has order 2 or 4.");
+class StiffGauss : public detail::StepperBase<Spins> {
+  static_assert(Order == 2 || Order == 4, "StiffGauss has order 2 or 4.");
   using MemorySpace = typename Spins::memory_space;
+  static constexpr std::size_t count = Order / 2;
+  using History = detail::StiffHistory<Spins, Order / 2>;
+  using Gauss = detail::GaussLegendre<Order / 2>;
 
  public:
   using typename detail::StepperBase<Spins>::Real;
   static constexpr int order = Order;
-  static constexpr int stages = Order == 2 ? 1 : 5;
+  static constexpr int stages = Order / 2;
   // The grids' are of single precision.
-  static constexpr int work_fields = 7 + 3 * stages + (sizeof(Real) == 8 ? 4 : 8);
+  static constexpr int work_fields = 2 + 5 * stages + History::fields + (sizeof(Real) == 8 ? 4 : 8);
 
-  explicit StiffMidpoint(Spins const& like, StiffOptions options = {})
+  explicit StiffGauss(Spins const& like, StiffOptions options = {})
       : detail::StepperBase<Spins>(name, like.lattice()), options_(options) {
     std::string const prefix = std::string(name) + "::";
-    for (auto& [field, label] : {std::pair<Spins&, char const*>(x_, "generator"),
-                                 {middle_, "middle"},
-                                 {residual_, "residual"},
-                                 {end_, "end"},
-                                 {start_, "start"}})
-      field = Spins(prefix + label, like.lattice());
-    for (History& history : histories_) history = {prefix + "earlier", like.lattice()};
-    solution_ = Solution(prefix + "solution", like.lattice());
+    auto const& lattice = like.lattice();
+    x_ = detail::numbered_fields<Spins, count>(prefix + "generator", lattice);
+    stage_ = detail::numbered_fields<Spins, count>(prefix + "stage", lattice);
+    end_ = Spins(prefix + "end", lattice);
+    start_ = Spins(prefix + "start", lattice);
+    residual_ = Residual(prefix + "residual", lattice);
+    solution_ = detail::numbered_fields<Solution, count>(prefix + "solution", lattice);
+    history_ = {prefix + "earlier", lattice};
   }
 
   /// Evaluations of the generator so far.
@@ -62,7 +66,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
   /// Forgets the steps so far.
   void reset() {
     exchange_ = {};
-    forget();
+    history_.forget();
   }
 
   /// For cayspin::exchange_memory.
@@ -78,8 +82,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
     visit("unmeasured", unmeasured_);
     visit("evaluations", evaluations_done_);
     visit("halvings", halvings_done_);
-    for (std::size_t i = 0; i < histories_.size(); ++i)
-      histories_[i].visit_memory("stage_" + std::to_string(i) + "_", visit);
+    history_.visit_memory(visit);
     if (exchange_.known) make_solver();
   }
 
@@ -90,50 +93,35 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
-    for (Spins const* own : {&x_, &middle_, &residual_, &end_, &start_})
-      this->require_other_memory(spins, *own);
+    for (Spins const* own : {&end_, &start_}) this->require_other_memory(spins, *own);
+    for (auto const* own : {&x_, &stage_})
+      for (Spins const& field : *own) this->require_other_memory(spins, field);
     if (!exchange_.known) {
-      evaluations_done_ += exchange_.measure(exec, measure_label_, generator, middle_, t);
+      evaluations_done_ += exchange_.measure(exec, measure_label_, generator, stage_[0], t);
       make_solver();
       contraction_ = 1;
     }
-    if (dt != last_dt_) forget();
+    if (dt != last_dt_) history_.forget();
     last_dt_ = dt;
     moved_ = false;
-    double begin = t;
-    for (std::size_t i = 0; i < histories_.size(); ++i) {
-      double const part = dt * shares[i];
-      if (!advance(exec, generator, spins, begin, part, &histories_[i], options_.halvings)) {
-        if (moved_) swap(spins, start_);
-        forget();
-        throw NotConverged(this->label("::step: the equation of the step from t = ") +
-                           detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
-                           " is too large");
-      }
-      begin += part;
+    if (!advance(exec, generator, spins, t, dt, &history_, options_.halvings)) {
+      if (moved_) swap(spins, start_);
+      throw NotConverged(this->label("::step: the equation of the step from t = ") +
+                         detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
+                         " is too large");
     }
   }
 
  private:
   using Solver = detail::SpinWaveSolver<Real, MemorySpace>;
   using Solution = typename Solver::Solution;
-  using History = detail::StiffHistory<Spins>;
+  using Residual = SiteField<Real, 3 * stages, MemorySpace>;
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-  static constexpr auto name = Order == 2 ? "StiffMidpoint2" : "StiffMidpoint4";
-  static constexpr double suzuki = 0.4144907717943757;  // 1 / (4 - 4^(1/3))
-  static constexpr std::array<double, std::size_t{stages}> shares = [] {
-    if constexpr (Order == 2)
-      return std::array{1.0};
-    else
-      return std::array{suzuki, suzuki, 1 - 4 * suzuki, suzuki, suzuki};
-  }();
+  static constexpr auto name = Order == 2 ? "StiffGauss2" : "StiffGauss4";
 
-  void forget() {
-    for (auto& history : histories_) history.forget();
-  }
   void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
 
-  /// One step of order 2, or two of half the length where it is not solved.
+  /// One step, or two of half the length where it is not solved.
   template <class Exec, class Generator>
   bool advance(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
                History* history, int halvings) {
@@ -151,7 +139,7 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
            advance(exec, generator, spins, t + 0.5 * dt, 0.5 * dt, nullptr, halvings - 1);
   }
 
-  /// Leaves the spins after the step in end_, and A in its middle in x_.
+  /// Leaves the spins after the step in end_, and A at its stages in x_.
   template <class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
              History* history) {
@@ -160,9 +148,8 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
     double change = 0, tolerance = 0, smallest = std::numeric_limits<double>::infinity();
     int stalled = 0;
     for (int i = 0; i < options_.iterations; ++i) {
-      bool const to_end = i > 0 || has_history;  // it may be the last one
       double const before = change;
-      change = correct(exec, generator, spins, to_end ? end_ : middle_, t, dt, to_end);
+      change = correct(exec, generator, spins, t, dt);
       if (!(change < 1)) return false;  // out of the reach of its solution, or not a number
       if (i == 0) {
         tolerance = tolerance_of(generator, has_history ? history : nullptr, change);
@@ -179,7 +166,6 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
         if (change > 10 * smallest) return false;
       }
       smallest = std::min(smallest, change);
-      if (to_end) detail::combine(exec, 0.5, spins, 0.5, end_, middle_);
     }
     return false;
   }
@@ -190,46 +176,67 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
     if (options_.tolerance > 0) return options_.tolerance;
     if constexpr (requires { generator.is_conservative(); })
       if (generator.is_conservative()) return 4 * epsilon;
-    if (history != nullptr) return history->tolerance(first, Order);
+    if (history != nullptr) return history->tolerance(first);
     // It is the whole rotation.
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, Order + 1)), 16 * epsilon);
   }
 
   template <class Exec>
   void guess(Exec const& exec, Spins const& spins, History const* history, double dt) const {
-    detail::GuessStage<Real> kernel{
-        {}, {}, 0, spins.array(), x_.output(false), middle_.output(false), static_cast<Real>(dt)};
+    typename History::Guess kernel{{}, {}, 0, spins.array(), {}, {}, static_cast<Real>(dt)};
+    for (std::size_t s = 0; s < count; ++s) {
+      kernel.x[s] = x_[s].output(false);
+      kernel.stage[s] = stage_[s].output(false);
+    }
     if (history != nullptr) history->extrapolate_in(kernel);
     detail::for_each_site<Real>(exec, guess_label_, spins.layout(), kernel);
   }
 
-  /// A correction of x_, with the spins at the end or in the middle of the step in `to`. Returns
-  /// the largest change of dt x_.
+  /// A correction of x_, with the spins at the stages and at the end of the step. Returns the
+  /// largest change of dt x_.
   template <class Exec, class Generator>
-  double correct(Exec const& exec, Generator const& generator, Spins const& spins, Spins const& to,
-                 double t, double dt, bool to_end) {
-    auto prepared = detail::prepare_term(generator, exec, middle_, t + 0.5 * dt);
-    using Residual = detail::ResidualStage<decltype(prepared), Real>;
-    detail::for_each_site<Real>(exec, residual_label_, spins.layout(),
-                                Residual{std::move(prepared), middle_.array(), x_.array(),
-                                         x_.output(false), residual_.output(false)});
-    ++evaluations_done_;
-    std::complex<double> const b(0.5 * dt * exchange_.damping, -0.5 * dt * exchange_.precession);
-    solver_.solve(exec, b, residual_, middle_, solution_);
-    double const square = detail::reduce_sites<detail::Maximum, 1>(
-        exec, correct_label_, spins.layout(),
-        detail::CorrectStage<Real, Solution::components>{
-            solution_.array(), spins.array(), middle_.array(), x_.array(), to.array(),
-            static_cast<Real>(dt), to_end ? Real(1) : Real(0.5)})[0];
+  double correct(Exec const& exec, Generator const& generator, Spins const& spins, double t,
+                 double dt) {
+    for (std::size_t s = 0; s < count; ++s) residual(exec, generator, s, t, dt);
+    detail::CorrectStage<stages, Real> kernel{{}, spins.array(), {},
+                                              {}, end_.array(),  static_cast<Real>(dt)};
+    std::complex<double> const step(dt * exchange_.damping, -dt * exchange_.precession);
+    for (std::size_t s = 0; s < count; ++s) {
+      auto const eigenvalue = s == 0 ? Gauss::eigenvalue : std::conj(Gauss::eigenvalue);
+      solver_.solve(exec, step * eigenvalue, residual_, stage_[0], solution_[s], s == 1);
+      kernel.solution[s] = solution_[s].array();
+      kernel.x[s] = x_[s].array();
+      kernel.stage[s] = stage_[s].array();
+    }
+    double const square =
+        detail::reduce_sites<detail::Maximum, 1>(exec, correct_label_, spins.layout(), kernel)[0];
     return std::abs(dt) * std::sqrt(square);
+  }
+
+  /// Of one stage, as a part of the right side of an eigenvector of the tableau.
+  template <class Exec, class Generator>
+  void residual(Exec const& exec, Generator const& generator, std::size_t s, double t, double dt) {
+    auto prepared = detail::prepare_term(generator, exec, stage_[s], t + Gauss::nodes[s] * dt);
+    auto const all = residual_.array();
+    detail::OutputArray<Real, 3> const part{
+        {all.data + 3 * static_cast<std::ptrdiff_t>(s) * all.stride, all.stride}, false};
+    double share = 1;
+    if constexpr (stages == 2) share = s == 0 ? 0.5 : -0.5 / Gauss::turned;
+    detail::for_each_site<Real>(exec, residual_label_, residual_.layout(),
+                                detail::ResidualStage<decltype(prepared), Real>{
+                                    std::move(prepared), stage_[s].array(), x_[s].array(),
+                                    x_[s].output(false), part, static_cast<Real>(share)});
+    ++evaluations_done_;
   }
 
   std::string guess_label_ = this->label("::guess"), residual_label_ = this->label("::residual"),
               correct_label_ = this->label("::correct"), measure_label_ = this->label("::measure");
   StiffOptions options_;
-  Spins x_, middle_, residual_, end_, start_;
-  Solution solution_;
-  std::array<History, std::size_t{stages}> histories_;
+  std::array<Spins, count> x_, stage_;
+  Spins end_, start_;
+  Residual residual_;
+  std::array<Solution, count> solution_;
+  History history_;
   Solver solver_;
   detail::MeasuredExchange exchange_;
   double last_dt_ = 0;
@@ -240,8 +247,8 @@ class StiffMidpoint : public detail::StepperBase<Spins> {
 };
 
 template <class Spins>
-using StiffMidpoint2 = StiffMidpoint<Spins, 2>;
+using StiffGauss2 = StiffGauss<Spins, 2>;
 template <class Spins>
-using StiffMidpoint4 = StiffMidpoint<Spins, 4>;
+using StiffGauss4 = StiffGauss<Spins, 4>;
 
 }  // namespace cayspin

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/memory.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cayspin::detail {
+
+/// -1 where the indices along some axes have an odd sum, 1 elsewhere.
+struct AlternatingSigns {
+  bool along[3] = {false, false, false};
+
+  bool any() const { return along[0] || along[1] || along[2]; }
+
+  /// Of site 0 of a row.
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Real first_of_row(std::int32_t y, std::int32_t z) const {
+    return ((along[1] ? y : 0) + (along[2] ? z : 0)) % 2 == 0 ? Real(1) : Real(-1);
+  }
+
+  template <class Value, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION Value at(Site const& site) const {
+    using Real = scalar_t<Value>;
+    auto const first = first_of_row<Real>(site.y(), site.z());
+    if (!along[0]) return Value(first);
+    Real signs[std::size_t{lanes_of<Value>}];
+    for (int lane = 0; lane < lanes_of<Value>; ++lane)
+      signs[lane] = (site.x() + lane) % 2 == 0 ? first : -first;
+    return load<Value>(signs);
+  }
+};
+
+}  // namespace cayspin::detail

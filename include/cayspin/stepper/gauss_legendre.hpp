@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <array>
+#include <complex>
+#include <cstddef>
+
+namespace cayspin::detail {
+
+/// Gauss's collocation method for m' = a(t) x m on one site, given f_i = dt a(nodes_i):
+/// Y_i = m + sum_j a_ij f_j x Y_j, m' = m + sum_j b_j f_j x Y_j. The linear equations are solved
+/// exactly, so |m| stays for any f. (Hairer, Lubich, Wanner 2006, Sec. II.1.3 and IV.2.1)
+template <int Stages>
+struct GaussLegendre;
+
+template <>
+struct GaussLegendre<1> {
+  static constexpr std::array nodes{0.5};
+  /// Of the matrix a. Its conjugate is the other one, where there are two.
+  static constexpr std::complex<double> eigenvalue{0.5, 0};
+
+  /// Returns m', which is cay(f) m.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[1],
+                                                       Vec3<Value> const& m,
+                                                       Vec3<Value> (&stage)[1]) {
+    auto const step = Cayley::displacement(f[0], m);
+    stage[0] = multiply_add(Value(Value(0.5) * step.scale), step.direction, m);
+    return step.from(m);
+  }
+};
+
+template <>
+struct GaussLegendre<2> {
+  static constexpr double sqrt3 = 1.7320508075688772;
+  static constexpr std::array nodes{0.5 - sqrt3 / 6, 0.5 + sqrt3 / 6};
+  /// With the eigenvector (1, i turned).
+  static constexpr std::complex<double> eigenvalue{0.25, sqrt3 / 12};
+  static constexpr double turned = -2 - sqrt3;
+
+  /// Returns m'.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> solve(Vec3<Value> const (&f)[2],
+                                                       Vec3<Value> const& m,
+                                                       Vec3<Value> (&stage)[2]) {
+    // With u = f_1 / 4, v = f_2 / 4, p_1 = u x Y_1, p_2 = v x Y_2:
+    // Y_1 = m + p_1 + (1 - 2/sqrt3) p_2, Y_2 = m + (1 + 2/sqrt3) p_1 + p_2.
+    // (1 - u x)^-1 = s R with s = 1 / (1 + |u|^2), R = 1 + u x + u u^T. Without Y_1:
+    // Y_2 - p_2 + (s R - 1) p_2 / 3 = m + (1 + 2/sqrt3) (s R - 1) m, of rows a, b, c.
+    auto const plus = as_value<Value>(1 + 2 / sqrt3), minus = as_value<Value>(1 - 2 / sqrt3);
+    Vec3<Value> const u = Value(0.25) * f[0], v = Value(0.25) * f[1];
+    Value const s = Value(1) / (Value(1) + dot(u, u));
+    Value const third = as_value<Value>(1.0 / 3) * s;
+    Value const one(1), none(0);
+    Value const xy = u.x * u.y, xz = u.x * u.z, yz = u.y * u.z;
+    Vec3<Value> const a = row(third, v, {multiply_add(u.x, u.x, one), xy - u.z, xz + u.y},
+                              {one, none, none}, {none, Value(-v.z), v.y}),
+                      b = row(third, v, {xy + u.z, multiply_add(u.y, u.y, one), yz - u.x},
+                              {none, one, none}, {v.z, none, Value(-v.x)}),
+                      c = row(third, v, {xz - u.y, yz + u.x, multiply_add(u.z, u.z, one)},
+                              {none, none, one}, {Value(-v.y), v.x, none});
+    Vec3<Value> const right = multiply_add(plus, turned_by(s, u, m), m), bc = cross(b, c);
+    stage[1] =
+        Value(one / dot(a, bc)) *
+        multiply_add(right.x, bc, multiply_add(right.y, cross(c, a), Value(right.z) * cross(a, b)));
+    Vec3<Value> const p2 = cross(v, stage[1]), w = multiply_add(minus, p2, m);
+    stage[0] = w + turned_by(s, u, w);
+    Vec3<Value> const change = Value(2) * (cross(u, stage[0]) + p2);
+    // Round-off changes the length by |f| epsilon, which this takes back.
+    Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / dot(m, m);
+    return m + multiply_add(Value(-longer), m + change, change);
+  }
+
+ private:
+  /// (s R - 1) w
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> turned_by(Value const& s, Vec3<Value> const& u,
+                                                           Vec3<Value> const& w) {
+    Vec3<Value> const c = cross(u, w);
+    return s * (c + cross(u, c));
+  }
+  /// unit - 4/3 (unit x v) + s/3 (r x v), for a row r of R and unit x v as `beside`.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> row(Value const& third, Vec3<Value> const& v,
+                                                     Vec3<Value> const& r, Vec3<Value> const& unit,
+                                                     Vec3<Value> const& beside) {
+    return multiply_add(third, cross(r, v), multiply_add(as_value<Value>(-4.0 / 3), beside, unit));
+  }
+};
+
+}  // namespace cayspin::detail
