@@ -3,6 +3,7 @@
 // and bits that do not depend on where and in how many pieces a run takes place. Seeds are fixed;
 // statistical limits are five standard errors.
 #include "../support/backends.hpp"
+#include "kept_of_direction.hpp"
 
 #include <cayspin/cayspin.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
@@ -36,83 +37,6 @@ class Thermal : public ::testing::Test {
   }
 };
 TYPED_TEST_SUITE(Thermal, Backends, BackendName);
-
-/// What a half turn leaves of <m, m_0> on average: all for 2 in 5 spins, the others turn by one
-/// angle.
-double kept_of_direction(double u) {
-  double const angle = std::sqrt(5 * (u - u * u / 12));
-  return 0.4 + 0.6 * (1 + 2 * std::cos(angle)) / 3;
-}
-
-// exp(-u) is what diffusion keeps; an error of the third order in u is one of weak order 2.
-TEST(ThermalTurn, IsDiffusionToTheThirdOrder) {
-  double last = 0;
-  for (double const u : {0.1, 0.05, 0.025, 0.0125}) {
-    double const error = std::abs(kept_of_direction(u) - std::exp(-u));
-    if (last > 0) {
-      EXPECT_GT(std::log2(last / error), 2.9) << u;
-      EXPECT_LT(std::log2(last / error), 3.1) << u;
-    }
-    last = error;
-  }
-}
-
-// The images of the three axes are the columns of each site's rotation.
-TYPED_TEST(Thermal, TurnsAreThoseOfTheIcosahedronsCorners) {
-  using Spins = typename TypeParam::Spins;
-  using Half = typename TestFixture::Half;
-  auto const lattice = Lattice::cubic(77, 31, 41);
-  auto const sites = static_cast<std::size_t>(lattice.sites());
-  double const u = 0.3, angle = std::sqrt(5 * (u - u * u / 12)), golden = (1 + std::sqrt(5)) / 2;
-  auto const turns_of = [&](Half half) {
-    std::vector<double> columns[3];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::vector<double> start(3 * sites, 0);
-      for (std::size_t i = axis; i < start.size(); i += 3) start[i] = 1;
-      auto const spins = spins_of<Spins>(lattice, start);
-      ThermalNoise<Spins>(spins, 0.5, {.temperature = 2, .seed = 77})
-          .turn(this->exec, 5, half, u, spins);
-      this->exec.fence();
-      columns[axis] = numbers_of(spins);
-    }
-    // 0 for no turn, otherwise 1 + the number of the corner.
-    std::vector<std::size_t> corners(sites);
-    for (std::size_t i = 0; i < sites; ++i) {
-      auto const at = [&](std::size_t row, std::size_t column) {
-        return columns[column][3 * i + row];
-      };
-      double const axis[3] = {at(2, 1) - at(1, 2), at(0, 2) - at(2, 0), at(1, 0) - at(0, 1)};
-      double const length = std::hypot(axis[0], axis[1], axis[2]);
-      if (length < 1e-5) continue;
-      EXPECT_NEAR(length, 2 * std::sin(angle), 1e-5);
-      std::size_t zero = 0;
-      for (std::size_t c = 1; c < 3; ++c)
-        if (std::abs(axis[c]) < std::abs(axis[zero])) zero = c;
-      double const first = axis[(zero + 1) % 3], second = axis[(zero + 2) % 3];
-      EXPECT_NEAR(std::abs(second / first), golden, 1e-4);
-      EXPECT_NEAR(axis[zero], 0, 1e-5);
-      corners[i] = 1 + 4 * zero + 2 * (first < 0) + (second < 0);
-    }
-    return corners;
-  };
-  auto const before = turns_of(Half::before), after = turns_of(Half::after);
-  // Pairs of corners that should be independent: of both halves, and of sites so far apart.
-  auto const expect_independent = [&](auto const& first, auto const& second, std::size_t apart) {
-    std::vector<double> found(169);
-    for (std::size_t i = 0; i < sites; ++i) ++found[13 * first[i] + second[(i + apart) % sites]];
-    double chi_square = 0;
-    for (std::size_t a = 0; a < 13; ++a)
-      for (std::size_t b = 0; b < 13; ++b) {
-        double const expected =
-            static_cast<double>(sites) * (a == 0 ? 0.4 : 0.05) * (b == 0 ? 0.4 : 0.05);
-        chi_square += std::pow(found[13 * a + b] - expected, 2) / expected;
-      }
-    EXPECT_NEAR(chi_square, 168, 5 * std::sqrt(2 * 168.0)) << apart;
-  };
-  expect_independent(before, after, 0);
-  for (std::size_t const apart : {1, 4, 8, 16, 32, 77, 77 * 31})
-    expect_independent(after, after, apart);
-}
 
 TYPED_TEST(Thermal, DirectionsAreForgottenAtTheRateOfDiffusion) {
   using Spins = typename TypeParam::Spins;
@@ -256,39 +180,6 @@ TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsCut) {
   EXPECT_EQ(run({{0, 5}, {5, 5}, {5, 12}}, 9, true), whole);
   EXPECT_NE(run({{0, 12}}, 10), whole);
   EXPECT_NE(run({{0, 12}}, 9 + (1ULL << 40U)), whole);
-}
-
-// Devices work on one site at a time: each draws the words that packs of sites share.
-template <class Real>
-class ThermalSites : public ::testing::Test {};
-TYPED_TEST_SUITE(ThermalSites, Precisions, PrecisionName);
-
-TYPED_TEST(ThermalSites, TurnOneByOneAsInPacks) {
-  using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
-  auto const lattice = Lattice::cubic(77, 5, 3);
-  auto const start = random_directions(lattice.sites(), 3);
-  auto const packs = spins_of<Spins>(lattice, start), sites = spins_of<Spins>(lattice, start);
-  detail::TurnAtRandom<TypeParam> kernel{};
-  kernel.seed = 0x123456789abcdefULL;
-  kernel.draw = 1ULL << 40U;
-  kernel.after = kernel.before = true;
-  kernel.blocks = 3;
-  kernel.ny = 5;
-  kernel.nz = 3;
-  kernel.set_variance(0.2);
-  auto const on = [&](Spins const& spins) {
-    kernel.spins = spins.array();
-    kernel.output = spins.output(false);
-    return kernel;
-  };
-  Kokkos::DefaultHostExecutionSpace const exec;
-  detail::for_each_site<TypeParam>(exec, "packs", packs.layout(), on(packs));
-  detail::SiteLoop<TypeParam, decltype(kernel)> const loop{on(sites), sites.layout(),
-                                                           sites.layout().all()};
-  for (std::int64_t site = 0; site < lattice.sites(); ++site) loop(site);
-  exec.fence();
-  EXPECT_EQ(numbers_of(sites), numbers_of(packs));
-  EXPECT_NE(numbers_of(sites), start);
 }
 
 TEST(ThermalBits, AreThoseOfEveryHostSpace) {

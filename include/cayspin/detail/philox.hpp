@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 namespace cayspin::detail {
 
@@ -20,9 +19,28 @@ struct LanesOf<Number, 1> {
   using type = Number;
 };
 
+/// What Philox makes of a key: two words for each round.
+struct PhiloxKeys {
+  static constexpr int rounds = 10;
+  std::uint64_t of_round[std::size_t{rounds}][2] = {};
+
+  PhiloxKeys() = default;
+  KOKKOS_FORCEINLINE_FUNCTION explicit PhiloxKeys(std::uint64_t key) {
+    constexpr std::uint64_t low_half = 0xFFFFFFFF, step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
+    std::uint64_t key_0 = key & low_half, key_1 = key >> 32U;
+    for (auto& words : of_round) {
+      words[0] = key_0;
+      words[1] = key_1;
+      key_0 = (key_0 + step_0) & low_half;
+      key_1 = (key_1 + step_1) & low_half;
+    }
+  }
+};
+
 /// Philox4x32-10 of J. Salmon, M. Moraes, R. Dror and D. Shaw, "Parallel random numbers: as easy as
 /// 1, 2, 3" (2011): four random words for each counter of four words, under a key of two. Several
-/// counters side by side; of each number the upper half is 0.
+/// counters side by side. The words are the lower halves of the numbers; the upper ones are of no
+/// account.
 template <int Lanes>
 struct Philox {
   using Words = typename LanesOf<std::uint64_t, Lanes>::type;
@@ -30,46 +48,65 @@ struct Philox {
 
   /// Counters (number + lane, draw).
   KOKKOS_FORCEINLINE_FUNCTION Philox(std::uint64_t number, std::uint64_t draw) {
-    std::uint64_t numbers[std::size_t{Lanes}];
-    for (int lane = 0; lane < Lanes; ++lane)
-      numbers[lane] = number + static_cast<std::uint64_t>(lane);
-    Words all;
-    std::memcpy(&all, numbers, sizeof all);
-    word[0] = all & low_half;
-    word[1] = all >> 32;
-    word[2] = (all ^ all) + (draw & low_half);
-    word[3] = (all ^ all) + (draw >> 32U);
+    Words numbers{};
+    if constexpr (Lanes == 1) {
+      numbers = number;
+    } else {
+      for (int lane = 0; lane < Lanes; ++lane) numbers[lane] = static_cast<std::uint64_t>(lane);
+      numbers += number;
+    }
+    word[0] = numbers;
+    word[1] = numbers >> 32;
+    word[2] = (numbers ^ numbers) + draw;
+    word[3] = (numbers ^ numbers) + (draw >> 32U);
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION void encrypt(std::uint64_t key) {
-    constexpr std::uint64_t multiplier_0 = 0xD2511F53, multiplier_1 = 0xCD9E8D57;
-    constexpr std::uint64_t step_0 = 0x9E3779B9, step_1 = 0xBB67AE85;
-    std::uint64_t key_0 = key & low_half, key_1 = key >> 32U;
-    for (int round = 0; round < 10; ++round) {
-      // Upper halves are of no account until the end.
-      Words const a = product(word[0], multiplier_0), b = product(word[2], multiplier_1);
-      word[0] = (b >> 32) ^ word[1] ^ key_0;
-      word[1] = b;
-      word[2] = (a >> 32) ^ word[3] ^ key_1;
-      word[3] = a;
-      key_0 = (key_0 + step_0) & low_half;
-      key_1 = (key_1 + step_1) & low_half;
-    }
-    for (Words& one : word) one &= low_half;
+  KOKKOS_FORCEINLINE_FUNCTION void round(std::uint64_t const (&key)[2]) {
+    Words const a = product(word[0], 0xD2511F53), b = product(word[2], 0xCD9E8D57);
+    word[0] = mixed(b >> 32, word[1], key[0]);
+    word[1] = b;
+    word[2] = mixed(a >> 32, word[3], key[1]);
+    word[3] = a;
   }
 
  private:
-  static constexpr std::uint64_t low_half = 0xFFFFFFFF;
+  // The processor has an instruction for each of these that g++ does not find.
 
-  /// Of lower halves. The processor has an instruction for them that g++ does not find.
+  /// Of lower halves.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {
 #if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
     if constexpr (Lanes == 8)
       return reinterpret_cast<Words>(_mm512_maskz_mul_epu32(
           0xff, reinterpret_cast<__m512i>(a), _mm512_set1_epi64(static_cast<std::int64_t>(b))));
+#elif defined(CAYSPIN_DETAIL_AVX2) && !defined(__CUDACC__)
+    if constexpr (Lanes == 4)
+      return reinterpret_cast<Words>(_mm256_mul_epu32(
+          reinterpret_cast<__m256i>(a), _mm256_set1_epi64x(static_cast<std::int64_t>(b))));
 #endif
-    return (a & low_half) * b;
+    return (a & 0xFFFFFFFF) * b;
+  }
+  /// a ^ b ^ key
+  KOKKOS_FORCEINLINE_FUNCTION static Words mixed(Words const& a, Words const& b,
+                                                 std::uint64_t key) {
+#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
+    if constexpr (Lanes == 8)
+      return reinterpret_cast<Words>(
+          _mm512_ternarylogic_epi64(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b),
+                                    _mm512_set1_epi64(static_cast<std::int64_t>(key)), 0x96));
+#endif
+    return a ^ b ^ key;
   }
 };
+
+/// Turns counters into random words, several generators in step: each is a long chain of dependent
+/// operations.
+template <int Lanes, class... Others>
+KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& random,
+                                         Others&... others) {
+  for (auto const& key : keys.of_round) {
+    random.round(key);
+    (others.round(key), ...);
+  }
+}
 
 }  // namespace cayspin::detail

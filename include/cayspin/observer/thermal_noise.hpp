@@ -2,65 +2,53 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
-#include <cayspin/detail/philox.hpp>
+#include <cayspin/detail/random_bits.hpp>
 #include <cayspin/integrate.hpp>
 #include <cayspin/part.hpp>
+#include <cayspin/rotation/random_turn.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/step.hpp>
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 
 namespace cayspin {
 
 namespace detail {
 
-/// m <- exp(v) m. With a probability of 2/5 v is 0, otherwise sqrt(5) s times one of the twelve
-/// corners of the icosahedron. These have the moments of normal numbers of deviation s up to the
-/// fifth, which is all that a step of weak order 2 knows of them (Kloeden and Platen 1992,
-/// Sec. 14.2): the corners are a spherical design of strength 5 (Delsarte, Goethals and Seidel
-/// 1977).
-template <class Real>
+/// Both halves of the noise between two steps, or one of them.
+template <class Real, bool OnHost>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
-  std::uint64_t seed, draw;
+  RandomBits<OnHost> random;
+  RandomTurn<Real, OnHost> turn;
   bool after, before;                     // which halves
   std::int64_t first_y, first_z, ny, nz;  // of the part in the whole lattice, and that
-  std::uint64_t blocks;                   // of 32 sites in a row
-  // The quaternion of exp(v) is cosine + w, with +-small, +-large and 0 for the components of w.
-  Real cosine, small, large;
+  std::uint64_t places;                   // for random bits, in a row
 
-  // A counter has a word for each of four sites, eight counters those of a block.
-  static constexpr std::uint32_t counters = 8, block = 4 * counters;
-
-  /// s^2: the variance of each component.
-  void set_variance(double variance) {
-    double const half_angle = std::sqrt(5 * variance) / 2, golden = (1 + std::sqrt(5.0)) / 2;
-    double const radius = std::hypot(1, golden);
-    cosine = static_cast<Real>(std::cos(half_angle));
-    small = static_cast<Real>(std::sin(half_angle) / radius);
-    large = static_cast<Real>(std::sin(half_angle) * golden / radius);
+  static std::uint64_t places_of_row(std::int64_t nx) {
+    constexpr auto lanes = RandomBits<OnHost>::most_lanes;
+    return (static_cast<std::uint64_t>(nx) + lanes - 1) / lanes * lanes;
   }
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
+    using Bits = typename RandomTurn<Real, OnHost>::Bits;
     std::int64_t const y = wrapped(first_y + site.y(), ny), z = wrapped(first_z + site.z(), nz);
-    auto const x = static_cast<std::uint32_t>(site.x());
-    auto const of_block = (static_cast<std::uint64_t>(z * ny + y) * blocks + x / block) * counters;
-    auto const random = Turns<lanes_of<Value>>(words<lanes_of<Value>>(of_block, x % block));
+    auto const row = static_cast<std::uint64_t>(z * ny + y) * places;
+    auto const bits =
+        random.template get<Bits, lanes_of<Value>>(row + static_cast<std::uint64_t>(site.x()));
     Vec3<Value> m = site.load(spins);
     if (after) {
-      // The quaternion's own round-off is the same in each step: left alone, lengths would drift.
-      m = turned(random, 0, m);
-      m = (Value(Real(1.5)) - Value(Real(0.5)) * dot(m, m)) * m;
+      // The turn's own round-off is the same in each step: left alone, lengths would drift.
+      m = turn.template turned<0>(bits, m);
+      m = multiply_add(Value(Real(-0.5)), dot(m, m), Value(Real(1.5))) * m;
     }
-    if (before) m = turned(random, 1, m);
+    if (before) m = turn.template turned<5>(bits, m);
     site.store(m, output);
   }
 
@@ -69,89 +57,6 @@ struct TurnAtRandom {
   KOKKOS_FORCEINLINE_FUNCTION static std::int64_t wrapped(std::int64_t at, std::int64_t extent) {
     return at < 0 ? at + extent : at < extent ? at : at - extent;
   }
-
-  using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
-
-  /// Random numbers of sites side by side. 28 bits of a word are two digits to the base 5, which
-  /// say what is 0; the others are signs.
-  template <int Lanes>
-  struct Turns {
-    using Numbers = typename LanesOf<Bits, Lanes>::type;
-    Numbers signs[2], zero[2];
-
-    KOKKOS_FORCEINLINE_FUNCTION explicit Turns(Numbers const& words) : signs{words, words >> 2} {
-      constexpr Bits fraction = (Bits{1} << 28) - 1;
-      Numbers const number = words >> 4, first = number + (number << 2);
-      Numbers const rest = first & fraction, second = rest + (rest << 2);
-      zero[0] = first >> 28;
-      zero[1] = second >> 28;
-    }
-  };
-
-  /// The words of site `x` of a block and those beside it.
-  template <int Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION auto words(std::uint64_t of_block, std::uint32_t x) const {
-    if constexpr (Lanes == 1) {
-      Philox<1> random(of_block + x % counters, draw);
-      random.encrypt(seed);
-      // By constant indices: an array on the stack of a device is slow.
-      auto const& word = random.word;
-      auto const even = x < 2 * counters ? word[0] : word[2];
-      auto const odd = x < 2 * counters ? word[1] : word[3];
-      return static_cast<Bits>(x / counters % 2 == 0 ? even : odd);
-    } else {
-      if (block_drawn != of_block) draw_block(of_block);
-      typename LanesOf<std::uint32_t, Lanes>::type found;
-      std::memcpy(&found, drawn + x, sizeof found);
-      return __builtin_convertvector(found, typename LanesOf<Bits, Lanes>::type);
-    }
-  }
-  KOKKOS_FORCEINLINE_FUNCTION void draw_block(std::uint64_t of_block) const {
-    Philox<counters> random(of_block, draw);
-    random.encrypt(seed);
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      auto const narrow =
-          __builtin_convertvector(random.word[k], typename LanesOf<std::uint32_t, counters>::type);
-      std::memcpy(drawn + k * counters, &narrow, sizeof narrow);
-    }
-    block_drawn = of_block;
-  }
-
-  template <class Value, int Lanes>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> turned(Turns<Lanes> const& random, int half,
-                                                 Vec3<Value> const& m) const {
-    constexpr int top = 8 * sizeof(Bits) - 1;
-    constexpr Bits sign = Bits{1} << top;
-    auto const of_small = Kokkos::bit_cast<Bits>(small) | (random.signs[half] << top);
-    auto const of_large =
-        Kokkos::bit_cast<Bits>(large) | ((random.signs[half] << (top - 1)) & sign);
-    auto const& zero = random.zero[half];
-    auto const x_zero = mask(zero == 0), y_zero = mask(zero == 1), z_zero = mask(zero == 2);
-    Vec3<Value> const w{value<Value>((y_zero & of_large) | (z_zero & of_small)),
-                        value<Value>((z_zero & of_large) | (x_zero & of_small)),
-                        value<Value>((x_zero & of_large) | (y_zero & of_small))};
-    Vec3<Value> const c = cross(w, m);
-    return multiply_add(Value(2), multiply_add(Value(cosine), c, cross(w, c)), m);
-  }
-
-  // All bits where a condition holds.
-  KOKKOS_FORCEINLINE_FUNCTION static Bits mask(bool condition) {
-    return condition ? ~Bits{0} : Bits{0};
-  }
-  template <class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION static auto mask(Numbers const& conditions) {
-    return conditions;
-  }
-  template <class Value, class Numbers>
-  KOKKOS_FORCEINLINE_FUNCTION static Value value(Numbers const& bits) {
-    Real numbers[std::size_t{lanes_of<Value>}];
-    std::memcpy(numbers, &bits, sizeof numbers);
-    return load<Value>(numbers);
-  }
-
-  // Of the block drawn last: packs of a row follow one another. Not used on devices.
-  mutable std::uint64_t block_drawn = ~std::uint64_t{0};
-  mutable std::uint32_t drawn[block] = {};
 };
 
 }  // namespace detail
@@ -234,19 +139,19 @@ class ThermalNoise {
     if (u == 0) return;
     auto const& all = whole(lattice_);
     auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
-    detail::TurnAtRandom<Real> kernel{};
-    kernel.spins = spins.array();
-    kernel.output = spins.output(false);
-    kernel.seed = options_.seed;
-    kernel.draw = static_cast<std::uint64_t>(step);
-    kernel.after = after;
-    kernel.before = before;
-    kernel.first_y = begin[1];
-    kernel.first_z = begin[2];
-    kernel.blocks = (static_cast<std::uint64_t>(all.shape[0]) + kernel.block - 1) / kernel.block;
-    kernel.ny = all.shape[1];
-    kernel.nz = all.shape[2];
-    kernel.set_variance(u - u * u / 12);
+    constexpr bool on_host = detail::is_host_execution<Exec>;
+    using Kernel = detail::TurnAtRandom<Real, on_host>;
+    Kernel const kernel{spins.array(),
+                        spins.output(false),
+                        {options_.seed, static_cast<std::uint64_t>(step)},
+                        detail::RandomTurn<Real, on_host>(u - u * u / 12),
+                        after,
+                        before,
+                        begin[1],
+                        begin[2],
+                        all.shape[1],
+                        all.shape[2],
+                        Kernel::places_of_row(all.shape[0])};
     detail::for_each_site<Real>(exec, "cayspin::ThermalNoise", spins.layout(), kernel);
   }
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/philox.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace cayspin::detail {
+
+/// 16 random bits for each of numbered places, by Philox with 64 places to eight counters. One
+/// place gets the same bits alone as in a register. Devices draw for one place at a time.
+template <bool OnHost>
+class RandomBits {
+ public:
+  /// Places side by side in a register start at a multiple of their number.
+  static constexpr std::uint64_t most_lanes = 16;
+
+  RandomBits() = default;
+  RandomBits(std::uint64_t seed, std::uint64_t draw) : keys_(seed), draw_(draw) {}
+
+  /// The lower 16 bits of each number are those of `place` and of the places after it. The upper
+  /// ones are of no account.
+  template <class Number, int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION typename LanesOf<Number, Lanes>::type get(std::uint64_t place) const {
+    if constexpr (Lanes == 1) {
+      return static_cast<Number>(alone(place));
+    } else {
+      static_assert(most_lanes % Lanes == 0);
+      if (auto const block = place / drawn_at_once; block != last_.block) draw(block);
+      return widened<Number, Lanes>(last_.drawn + place % drawn_at_once);
+    }
+  }
+
+ private:
+  // Place p of 64 has half p / 32 of word p / 16 % 2 * 2 + p % 2 of counter p % 16 / 2: with two
+  // words in each number, they lie in memory as the places do.
+  static constexpr int lanes = host_lanes<double>, counters = 8;
+  static constexpr std::uint64_t places = 64, drawn_at_once = 2 * places;
+
+  KOKKOS_FORCEINLINE_FUNCTION std::uint64_t alone(std::uint64_t place) const {
+    Philox<1> random(place / places * counters + place % 16 / 2, draw_);
+    encrypt(keys_, random);
+    // By constant indices: an array on the stack of a device is slow.
+    auto const& word = random.word;
+    auto const even = place % 32 < 16 ? word[0] : word[2];
+    auto const odd = place % 32 < 16 ? word[1] : word[3];
+    return (place % 2 == 0 ? even : odd) >> place % places / 32 * 16;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION void draw(std::uint64_t block) const {
+    for (int counter = 0; counter < 2 * counters; counter += 2 * lanes) {
+      auto const number = 2 * block * counters + static_cast<std::uint64_t>(counter);
+      Philox<lanes> first(number, draw_), second(number + lanes, draw_);
+      encrypt(keys_, first, second);
+      keep(first, counter);
+      keep(second, counter + lanes);
+    }
+    last_.block = block;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void keep(Philox<lanes> const& random, int counter) const {
+    std::uint32_t* const to = last_.drawn + counter / counters * 64 + counter % counters * 2;
+    for (int k = 0; k < 2; ++k) {
+      auto const words = (random.word[2 * k] & 0xFFFFFFFF) | (random.word[2 * k + 1] << 32);
+      auto const upper = words >> 16;
+      std::memcpy(to + 16 * k, &words, sizeof words);
+      std::memcpy(to + 16 * k + 32, &upper, sizeof upper);
+    }
+  }
+
+  template <class Number, int Lanes>
+  KOKKOS_FORCEINLINE_FUNCTION static auto widened(std::uint32_t const* from) {
+    using Numbers = typename LanesOf<Number, Lanes>::type;
+#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
+    if constexpr (sizeof(Number) == 8 && Lanes == 8)  // g++ takes five instructions for it
+      return reinterpret_cast<Numbers>(_mm512_maskz_cvtepu32_epi64(
+          0xff, _mm256_loadu_si256(reinterpret_cast<__m256i const*>(from))));
+#endif
+    typename LanesOf<std::uint32_t, Lanes>::type found;
+    std::memcpy(&found, from, sizeof found);
+    return __builtin_convertvector(found, Numbers);
+  }
+
+  // Registers of a row follow one another.
+  struct Last {
+    std::uint64_t block = ~std::uint64_t{0};
+    alignas(64) std::uint32_t drawn[std::size_t{drawn_at_once}] = {};
+  };
+  struct Nothing {};
+
+  PhiloxKeys keys_;
+  std::uint64_t draw_ = 0;
+  mutable std::conditional_t<OnHost, Last, Nothing> last_;
+};
+
+}  // namespace cayspin::detail

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cmath>
+
+namespace cayspin::test {
+
+/// What a half of the noise leaves of <m, m_0> on average: 12 of 32 spins stay, 12 turn by 2 s, and
+/// 8 by sqrt(6) s.
+inline double kept_of_direction(double u) {
+  auto const kept_by = [](double angle) { return (1 + 2 * std::cos(angle)) / 3; };
+  double const s = std::sqrt(u - u * u / 12);
+  return (12 + 12 * kept_by(2 * s) + 8 * kept_by(std::sqrt(6.0) * s)) / 32;
+}
+
+}  // namespace cayspin::test
