@@ -83,7 +83,7 @@ concept counts_evaluations = requires(Stepper const& stepper) {
 ///
 /// | member | says | left out |
 /// |---|---|---|
-/// | `check_spins(spins)` | throws for spins of another lattice | takes any spins |
+/// | `check_spins(spins)` | throws for other spins and wrong numbers | takes any spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
 /// | `auto prepare_rate(exec, rates, t, dt)` | the same for dH/dt | prepare |
 /// | `auto prepare_local(exec, spins, t)` | the local part, from no spin | prepare, if local |

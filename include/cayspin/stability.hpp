@@ -7,6 +7,7 @@
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/stage/data_flow.hpp>
 #include <cayspin/stage/update.hpp>
+#include <cayspin/vec3.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, known before a run:
 // the method's own stages act on one transverse mode of a nearly uniform state,
@@ -197,10 +199,20 @@ double first_amplifying_step(Grows const& grows, double unit, double limit, doub
   return std::min(stable, limit);
 }
 
+/// Throws std::invalid_argument when no mode has these.
+inline void check_bound(double field_bound, double damping) {
+  if (!(field_bound >= 0) || !(damping >= 0) ||
+      !std::isfinite(field_bound * std::hypot(damping, 1.0)))
+    throw std::invalid_argument(
+        "cayspin::largest_stable_step: the field bound and the damping must be >= 0 and finite");
+}
+
 }  // namespace detail
 
 /// The largest eigenvalue of -constant Lap on the lattice: the exchange's part of a field bound.
+/// Throws std::invalid_argument when the constant is not finite.
 inline double exchange_bound(Lattice const& of_spins, double constant) {
+  detail::finite(constant, "cayspin::exchange_bound: the constant");
   Lattice const& lattice = whole(of_spins);
   double bound = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -219,11 +231,14 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
 /// The largest dt at which no mode of a nearly uniform state grows by more than round-off, an
 /// a-priori bound that is never above the linear limit. 0 when every dt amplifies, infinity when
 /// none does.
+/// Throws std::invalid_argument for a bound or a damping that is negative or not finite.
 /// A stepper that is no Runge-Kutta method has a function of its own, of the first three arguments.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
 template <class Stepper>
 double largest_stable_step(double field_bound, double damping, bool precession = true,
                            double sigma = 0) {
+  detail::check_bound(field_bound, damping);
+  detail::finite(sigma, "cayspin::largest_stable_step: sigma");
   if constexpr (requires { Stepper::largest_stable_step(field_bound, damping, precession); }) {
     return Stepper::largest_stable_step(field_bound, damping, precession);
   } else {

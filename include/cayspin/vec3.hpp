@@ -94,6 +94,12 @@ inline Vec3<double> normalized(Vec3<double> const& axis, char const* what) {
 
 namespace detail {
 
+/// `number`; throws std::invalid_argument when it is not finite.
+inline double finite(double number, char const* what) {
+  if (!std::isfinite(number)) throw std::invalid_argument(std::string(what) + " must be finite");
+  return number;
+}
+
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask const& condition,
                                                Vec3<Value> const& yes, Vec3<Value> const& no) {

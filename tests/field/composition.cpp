@@ -173,5 +173,47 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(energy(this->exec, on_host, other), std::invalid_argument);
 }
 
+TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
+  using Spins = typename TypeParam::Spins;
+  using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
+  auto const lattice = Lattice::square(4, 3);
+  auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 5));
+  Spins const output("output", lattice);
+  auto const refuses = [](char const* sentence, auto const& work) {
+    try {
+      work();
+      ADD_FAILURE() << "no \"" << sentence << "\"";
+    } catch (std::invalid_argument const& error) {
+      EXPECT_STREQ(error.what(), sentence);
+    }
+  };
+  for (double const bad :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+    refuses("cayspin::Exchange: the constant must be finite", [&] { Exchange(lattice, bad); });
+    refuses("cayspin::InterfacialDmi: the constant must be finite",
+            [&] { InterfacialDmi(lattice, bad); });
+    refuses("cayspin::UniaxialAnisotropy: the constant must be finite", [&] {
+      UniaxialAnisotropy(bad, {0, 0, 1});
+    });
+    refuses("cayspin::SlabDemag: the strength must be finite", [&] { SlabDemag({0, 0, 1}, bad); });
+    refuses("cayspin::SlabDemagOnHost: the strength must be finite", [&] {
+      SlabDemagOnHost({0, 0, 1}, bad);
+    });
+    refuses("cayspin::LayerAveragedSlabDemag: the strength must be finite",
+            [&] { Layers(lattice, 1, bad); });
+    for (Zeeman const zeeman : {Zeeman{{bad, 0, 1}}, Zeeman{{0, bad, 1}}, Zeeman{{1, 0, bad}}}) {
+      EffectiveField const field(Exchange(lattice, 1), zeeman);
+      char const* const sentence = "cayspin::Zeeman: the applied field must be finite";
+      refuses(sentence, [&] { energy(this->exec, zeeman, spins); });
+      refuses(sentence, [&] { energy(this->exec, field, spins); });
+      refuses(sentence, [&] { evaluate_field(this->exec, field, spins, 0, output); });
+      refuses(sentence, [&] {
+        auto moved = spins_of<Spins>(lattice, random_directions(lattice.sites(), 5));
+        Rkmk4<Spins>(moved).step(this->exec, LandauLifshitz(field, 0.1), moved, 0, 0.01);
+      });
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cayspin::test

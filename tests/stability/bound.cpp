@@ -215,4 +215,34 @@ TEST(StepLimit, NoneAndZero) {
   EXPECT_NEAR(7 * largest_stable_step<Rkmk4<Spins>>(7, 0), std::sqrt(8), 1e-9);
 }
 
+TEST(StepLimit, BoundsThatAreNone) {
+  using Fx3 = FieldExtrapolation3<Spins>;
+  double const nan = std::nan("");
+  auto const refuses = [](double bound, double damping) {
+    std::string const sentence =
+        "cayspin::largest_stable_step: the field bound and the damping must be >= 0 and finite";
+    for (bool const precession : {true, false}) {
+      try {
+        largest_stable_step<Rkmk4<Spins>>(bound, damping, precession);
+        ADD_FAILURE() << bound << ", " << damping;
+      } catch (std::invalid_argument const& error) {
+        EXPECT_EQ(error.what(), sentence);
+      }
+      EXPECT_THROW(largest_stable_step<Fx3>(bound, damping, precession), std::invalid_argument);
+      EXPECT_THROW(Fx3::largest_stable_step(bound, damping, precession), std::invalid_argument);
+    }
+  };
+  for (double const wrong : {nan, -1.0, -1e-300, infinity, -infinity}) {
+    refuses(wrong, 0.05);
+    refuses(1, wrong);
+  }
+  refuses(1e200, 1e200);  // the rate overflows
+  EXPECT_THROW((largest_stable_step<Rkmk4<Spins, isotropy::Constant>>(1, 0.1, true, nan)),
+               std::invalid_argument);
+  EXPECT_GT(largest_stable_step<Rkmk4<Spins>>(1e300, 0.05), 0);
+  EXPECT_EQ(largest_stable_step<Rkmk4<Spins>>(-0.0, 0.05), infinity);
+  for (double const wrong : {nan, infinity})
+    EXPECT_THROW(exchange_bound(Lattice::chain(4), wrong), std::invalid_argument);
+}
+
 }  // namespace

@@ -143,8 +143,10 @@ class UniformExchange {
 /// E = sum over bonds of (A/2) |m_q - m_n|^2 / spacing^2.
 class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
  public:
+  /// Throws std::invalid_argument when the constant is not finite.
   Exchange(Lattice const& lattice, double constant)
-      : TermOnLattice("cayspin::Exchange", lattice, constant) {}
+      : TermOnLattice("cayspin::Exchange", lattice,
+                      detail::finite(constant, "cayspin::Exchange: the constant")) {}
 };
 
 }  // namespace cayspin

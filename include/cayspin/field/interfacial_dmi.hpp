@@ -85,9 +85,11 @@ class UniformInterfacialDmi {
 /// Rohart and Thiaville 2013.
 class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDmi> {
  public:
-  /// `normal` is normalised. Throws std::invalid_argument when it is zero.
+  /// `normal` is normalised. Throws std::invalid_argument when it is zero, or the constant not
+  /// finite.
   InterfacialDmi(Lattice const& lattice, double constant, Vec3<double> const& normal = {0, 0, 1})
-      : TermOnLattice("cayspin::InterfacialDmi", lattice, constant, normal) {}
+      : TermOnLattice("cayspin::InterfacialDmi", lattice,
+                      detail::finite(constant, "cayspin::InterfacialDmi: the constant"), normal) {}
 };
 
 }  // namespace cayspin

@@ -141,10 +141,11 @@ struct LayerField {
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class LayerAveragedSlabDemag {
  public:
-  /// `axis`: 0, 1 or 2 for a normal along x, y or z.
+  /// `axis`: 0, 1 or 2 for a normal along x, y or z. Throws std::invalid_argument for another axis
+  /// or a strength that is not finite.
   LayerAveragedSlabDemag(Lattice const& lattice, int axis, double strength = 1)
       : axis_(checked(axis)),
-        strength_(strength),
+        strength_(detail::finite(strength, "cayspin::LayerAveragedSlabDemag: the strength")),
         lattice_(detail::validated(lattice)),
         averages_("cayspin::LayerAveragedSlabDemag::averages",
                   static_cast<std::size_t>(layers(lattice) + detail::cache_line_bytes)) {

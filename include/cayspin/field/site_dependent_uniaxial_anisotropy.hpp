@@ -4,7 +4,6 @@
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/uniaxial_anisotropy.hpp>
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
@@ -72,8 +71,7 @@ class SiteDependentUniaxialAnisotropy {
                                   std::type_identity_t<Axis> axis)
       : constant_(std::move(constant)), axis_(std::move(axis)) {
     if constexpr (std::is_same_v<Constant, double>) {
-      if (!std::isfinite(constant_))
-        throw std::invalid_argument(std::string(name) + ": the constant must be finite");
+      detail::finite(constant_, "cayspin::SiteDependentUniaxialAnisotropy: the constant");
     } else {
       detail::signs_of(constant_, "cayspin::SiteDependentUniaxialAnisotropy: the constant");
     }

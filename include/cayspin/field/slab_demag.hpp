@@ -9,8 +9,10 @@ namespace cayspin {
 /// E = strength (m.n)^2 / 2 per site. The normal n is normalised.
 class SlabDemag : public detail::AlongAxis {
  public:
+  /// Throws std::invalid_argument when the strength is not finite, or the normal is zero.
   explicit SlabDemag(Vec3<double> const& normal, double strength = 1)
-      : AlongAxis(-strength, normal, "cayspin::SlabDemag: the normal") {}
+      : AlongAxis(-detail::finite(strength, "cayspin::SlabDemag: the strength"), normal,
+                  "cayspin::SlabDemag: the normal") {}
 };
 
 }  // namespace cayspin

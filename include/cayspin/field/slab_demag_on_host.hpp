@@ -18,7 +18,8 @@ class SlabDemagOnHost {
 
   explicit SlabDemagOnHost(Vec3<double> const& normal, double strength = 1,
                            bool average_over_layers = false)
-      : normal_(normalized(normal, "cayspin::SlabDemagOnHost: the normal")), strength_(strength) {
+      : normal_(normalized(normal, "cayspin::SlabDemagOnHost: the normal")),
+        strength_(detail::finite(strength, "cayspin::SlabDemagOnHost: the strength")) {
     if (!average_over_layers) return;
     double const component[3] = {normal_.x, normal_.y, normal_.z};
     for (int axis = 0; axis < 3; ++axis)

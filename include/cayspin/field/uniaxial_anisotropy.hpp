@@ -8,8 +8,10 @@ namespace cayspin {
 /// Uniaxial anisotropy: H = K (m.e) e, E = -K (m.e)^2 / 2 per site. The axis e is normalised.
 class UniaxialAnisotropy : public detail::AlongAxis {
  public:
+  /// Throws std::invalid_argument when the constant is not finite, or the axis is zero.
   UniaxialAnisotropy(double constant, Vec3<double> const& axis)
-      : AlongAxis(constant, axis, "cayspin::UniaxialAnisotropy: the axis") {}
+      : AlongAxis(detail::finite(constant, "cayspin::UniaxialAnisotropy: the constant"), axis,
+                  "cayspin::UniaxialAnisotropy: the axis") {}
 };
 
 }  // namespace cayspin

@@ -8,11 +8,18 @@
 
 namespace cayspin {
 
-/// A uniform applied field: H = applied, E = -m.H per site.
+/// A uniform applied field: H = applied, E = -m.H per site. What evaluates it throws
+/// std::invalid_argument when it is not finite.
 struct Zeeman {
   static constexpr int degree = 1;  // H does not depend on the spins
   static constexpr bool is_local = true;
   Vec3<double> applied;
+
+  template <class Spins>
+  void check_spins(Spins const&) const {
+    for (double const component : {applied.x, applied.y, applied.z})
+      detail::finite(component, "cayspin::Zeeman: the applied field");
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {

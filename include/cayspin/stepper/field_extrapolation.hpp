@@ -73,6 +73,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   /// The result of cayspin::largest_stable_step, if the field of the other spins is exchange
   /// between neighbours. If the whole field is extrapolated, the limit is 0.5 to 0.75 of it.
   static double largest_stable_step(double field_bound, double damping, bool precession) {
+    detail::check_bound(field_bound, damping);
     return detail::largest_stable_extrapolation<Order>(field_bound, damping, precession);
   }
 
