@@ -95,6 +95,7 @@ class Advice:
     dt: float
     steps: int
     tolerance: float | None  #: of adaptive methods
+    warning: str | None  #: what is too large about dt, as `run` warns
     horizon: float  #: the time up to which the error is predicted
     units: str  #: of dt and horizon, the scene's: "reduced" or "SI"
     scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
@@ -110,8 +111,8 @@ def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
 
 def advise(scene: Scene, error: float, precision: str | None = None, space: str | None = None,
            threads: int | None = None) -> Advice:
-    """The cheapest method for a largest distance `error` of any spin, 1e-13 to 1. Raises
-    NumbersFailed where no method gets there."""
+    """The cheapest method for a largest distance `error` of any spin, 1e-13 to 1, seen at a dozen
+    times from the first step on. Raises NumbersFailed where no method gets there."""
     answer = _ask("advise", scene, "--error", repr(arguments.real(error, "error")),
                   *_options(precision, space, threads))
     return Advice(scene=scene._with(answer.pop("overrides")), **answer)

@@ -2,6 +2,7 @@
 #include "survives.hpp"
 
 #include "error.hpp"
+#include "files/available_memory.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <new>
@@ -47,20 +47,10 @@ void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t most, rlim_t spare = 0) {
   ::setrlimit(resource, &limit);
 }
 
-// Memory that is still free, and what is in use already: in bytes.
-std::uint64_t room_in_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string word;
-  for (std::uint64_t kilobytes = 0; file >> word;)
-    if (word == "MemAvailable:" && file >> kilobytes) return 1024 * kilobytes;
-  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
-
-std::uint64_t address_space() {
-  std::uint64_t pages = 0;
+rlim_t address_space() {
+  rlim_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
 }
 
 // A megabyte may be a gigabyte that was compressed, but not a hundred of them.
@@ -87,7 +77,8 @@ void settle_signals(pid_t parent) {
 void limit_resources(std::filesystem::path const& path) {
   std::ofstream("/proc/self/oom_score_adj") << 1000;  // the first to go where memory runs out
 #ifndef CAYSPIN_SHADOW_MEMORY
-  lower_limit(RLIMIT_AS, address_space() + room_in_memory());
+  auto const room = static_cast<rlim_t>(available_memory()), used = address_space();
+  if (room < RLIM_INFINITY - used) lower_limit(RLIMIT_AS, used + room);
 #endif
   lower_limit(RLIMIT_CPU, most_seconds(path), 5);
   lower_limit(RLIMIT_CORE, 0);

@@ -4,6 +4,7 @@
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
+#include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cayspin::program {
 namespace {
@@ -113,7 +115,7 @@ std::string stability_text(io::Units const& units, Plan const& plan) {
   if (!has_stable_dt(plan)) return "no limit known beforehand";
   if (plan.stable_dt == 0) return "none: at this damping the method amplifies at every dt";
   return fmt::format("{}; dt is {:.3g} of it{}", both(units, plan.stable_dt, 6),
-                     plan.times.dt / plan.stable_dt,
+                     std::min(plan.times.dt / plan.stable_dt, std::numeric_limits<double>::max()),
                      plan.times.dt > plan.stable_dt ? ", which is too large" : "");
 }
 
@@ -126,9 +128,9 @@ std::string noise_text(io::Scene const& scene, Plan const& plan) {
 
 std::string output_text(io::Scene const& scene, Plan const& plan) {
   auto const& output = scene.output;
-  auto text = fmt::format("{} frame{}, {}, to {}", plan.frames, plan.frames == 1 ? "" : "s",
-                          bytes_text(plan.file_bytes),
-                          output.file ? output.file->string() : "the file that --output names");
+  auto text =
+      fmt::format("{}, {}, to {}", counted(plan.frames, "frame"), bytes_text(plan.file_bytes),
+                  output.file ? output.file->string() : "the file that --output names");
   if (output.compression > 0) text += fmt::format(", compressed at level {}", output.compression);
   if (output.xdmf) text += ", described by an XDMF file";
   if (output.table) text += ", samples also in a text table";
@@ -149,6 +151,11 @@ void check_start(io::Scene const& scene) {
 
 void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
 
+void print_output(io::Scene const& scene, Plan const& plan) {
+  print("output", output_text(scene, plan));
+  if (auto const refusal = output_refusal(scene.output)) print("", "as it stands: " + *refusal);
+}
+
 void print_memory(Plan const& plan, Precision precision, char const* work) {
   auto const& memory = plan.memory;
   print("memory", fmt::format("{:.6g} bytes per site in {} precision: spins {}, {} {}, fields "
@@ -165,22 +172,24 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   for (auto const& [name, text] : describe(scene)) print(name, text);
   print("method", fmt::format("{}, order {}, {} per step", describe_method(scene),
                               order(scene, plan.variant), evaluations_text(scene, plan.variant)));
-  print("time", fmt::format("{} steps of {}, to t = {}", plan.times.steps,
+  print("time", fmt::format("{} of {}, to t = {}", counted(plan.times.steps, "step"),
                             both(scene.units, plan.times.dt, 9),
                             both(scene.units, plan.times.at(plan.times.steps), 9)));
   print("stable dt", stability_text(scene.units, plan));
   if (is_thermal(scene)) print("noise", noise_text(scene, plan));
-  print("cost",
-        fmt::format(
-            "{} per step, {:.4g} spin updates in all", evaluations_text(scene, plan.variant),
-            static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites())));
+  auto const updates =
+      static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites());
+  auto cost = evaluations_text(scene, plan.variant);
+  if (!plan.variant.method->adaptive)
+    cost += fmt::format(" per step, {:.4g} spin updates in all", updates);
+  print("cost", cost);
   print_memory(plan, precision, "method");
   if (repeated)
     print("ranks",
           fmt::format("each repeats {:.3g} % of its work, and has {} rows or planes of its "
                       "neighbours at each inner end",
                       100 * *repeated, plan.variant.ghosts));
-  print("output", output_text(scene, plan));
+  print_output(scene, plan);
 }
 
 // The field itself decides on the rest when the search begins.
@@ -203,7 +212,7 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   for (auto const& [name, text] : describe(scene)) print(name, text);
   print("relax", search_text(scene));
   print_memory(plan, options.precision, "search");
-  print("output", output_text(scene, plan));
+  print_output(scene, plan);
   return Status::done;
 }
 

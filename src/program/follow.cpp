@@ -28,24 +28,29 @@ constexpr double quiet_seconds = 10;
 
 enum class Fate { under_way, complete, ended_early, killed };
 
-/// What a file says of its run.
-struct Report {
-  Fate fate = Fate::under_way;
-  std::int64_t steps = 0;               // planned; 0 where that is not known
-  double idle = 0;                      // seconds since the file was written
-  std::optional<double> elapsed, rate;  // seconds, and steps per second
+/// What the scene in a file says, which a newer version may have written.
+struct Planned {
+  std::int64_t steps = 0;   // 0 where that is not known
+  bool equal_steps = true;  // those of the method are those of the run
 };
 
-// Planned steps by the scene in the file, which a newer version may have written.
-std::int64_t planned_steps(FollowedTrajectory const& run) {
+/// What a file says of its run.
+struct Report : Planned {
+  Fate fate = Fate::under_way;
+  double idle = 0;                                // seconds since the file was written
+  std::optional<double> elapsed = {}, rate = {};  // seconds, and steps per second
+};
+
+Planned planned(FollowedTrajectory const& run) {
   auto const& header = run.header();
   io::Scene scene;
   scene.path = run.path();
   scene.text = header.resolved_scene.empty() ? header.scene_text : header.resolved_scene;
   try {
-    return io::with_overrides(scene, {}).integrator.steps;
+    auto const integrator = io::with_overrides(scene, {}).integrator;
+    return {integrator.steps, !integrator.tolerance};
   } catch (std::exception const&) {
-    return 0;
+    return {};
   }
 }
 
@@ -56,9 +61,8 @@ Fate fate_of(FollowedTrajectory const& run, double idle) {
   return Fate::under_way;
 }
 
-Report report_on(FollowedTrajectory const& run, std::int64_t steps) {
-  Report report;
-  report.steps = steps;
+Report report_on(FollowedTrajectory const& run, Planned const& plan) {
+  Report report{plan};
   report.idle = std::max(0.0, Seconds(FollowedTrajectory::Clock::now() - run.written()).count());
   report.fate = fate_of(run, report.idle);
   if (run.cost().wall_seconds > 0)
@@ -139,7 +143,8 @@ std::vector<std::string> lines_of(FollowedTrajectory const& run, Report const& r
   add("progress", steps_text(run, report));
   if (report.elapsed) {
     auto text = duration_text(*report.elapsed);
-    if (report.rate) text += fmt::format(", {}spin updates/s", rate_text(*report.rate * sites));
+    if (report.rate && report.equal_steps)
+      text += fmt::format(", {}spin updates/s", rate_text(*report.rate * sites));
     if (auto const left = left_text(run, report); !left.empty()) text += ", " + left;
     add("time", text);
   }
@@ -233,8 +238,8 @@ int watch(WatchOptions const& options) {
   // The second one knows what to believe.
   std::this_thread::sleep_for(std::chrono::milliseconds(run.complete() ? 0 : 50));
   look_patiently(run, 10);
-  auto steps = planned_steps(run);
-  auto report = report_on(run, steps);
+  auto plan = planned(run);
+  auto report = report_on(run, plan);
   if (options.once) {
     for (auto const& line : lines_of(run, report)) fmt::print("{}\n", line);
     return Status::done;
@@ -248,9 +253,9 @@ int watch(WatchOptions const& options) {
     look_patiently(run, 100);
     if (text != run.header().scene_text) {
       text = run.header().scene_text;
-      steps = planned_steps(run);
+      plan = planned(run);
     }
-    report = report_on(run, steps);
+    report = report_on(run, plan);
   }
   if (report.fate == Fate::complete) return Status::done;
   throw NumbersFailed(fmt::format("{}: {}", options.file.string(), fate_text(report)));

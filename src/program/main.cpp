@@ -38,6 +38,140 @@ void add_space_options(CLI::App& command, auto& options) {
       ->check(CLI::Range(1, 65536));
 }
 
+// Of what runs on one device: where it computes and what it writes.
+void add_run_options(CLI::App& command, auto& options) {
+  add_scene_options(command, options, "double (default) or single");
+  command.add_option("--output", options.output, "The file to write; wins over output.file");
+  command.add_flag("--overwrite", options.overwrite, "Replace a file that exists");
+  add_space_options(command, options);
+  command.add_option("--device", options.device, "Number of the device")
+      ->check(CLI::Range(0, 65536));
+}
+
+void add_ranks_option(CLI::App& command, auto& options, char const* what) {
+  command.add_option("--ranks", options.ranks, what)->type_name("Y,Z");
+}
+
+void add_quiet_flag(CLI::App& command, auto& options, char const* what = "No progress") {
+  command.add_flag("--quiet", options.quiet, what);
+}
+
+CLI::App* add_run(CLI::App& app, RunOptions& options) {
+  auto* command = app.add_subcommand("run", "Run a scene and write its trajectory (HDF5)");
+  add_run_options(*command, options);
+  add_ranks_option(*command, options, "Parts of the lattice along y and z, on ranks of MPI");
+  command->add_option("--restart", options.restart,
+                      "Go on from the last frame of a trajectory file");
+  command->add_flag_callback(
+      "--quiet", [&] { options.listener = Listener::nobody; }, "No progress");
+  command->add_flag_callback("--report-progress", [&] { options.listener = Listener::program; })
+      ->group("");  // what `sweep` starts its runs with
+  return command;
+}
+
+CLI::App* add_relax(CLI::App& app, RelaxOptions& options) {
+  auto* command = app.add_subcommand(
+      "relax", "Find the state of rest of a scene, or one for each of its fields (HDF5)");
+  add_run_options(*command, options);
+  command->add_option("--torque", options.torque, "Largest |m x H| (default: 1e-6)");
+  command
+      ->add_option("--evaluations", options.evaluations,
+                   "Most evaluations of a field (default: 100000)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  add_quiet_flag(*command, options);
+  return command;
+}
+
+CLI::App* add_sweep(CLI::App& app, SweepOptions& options) {
+  auto* command = app.add_subcommand(
+      "sweep", "Run a scene with all combinations of some keys' values, into one file (HDF5)");
+  add_scene_options(*command, options, "double (default) or single");
+  command
+      ->add_option("--over", options.over,
+                   "A key and its values: key.path=VALUE,VALUE,..., TOML values")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUES");
+  command->add_option("--output", options.output, "The file of all runs")->required();
+  command->add_option("--jobs", options.jobs, "Runs at a time")->check(CLI::Range(1, 65536));
+  add_space_options(*command, options);
+  command->add_flag("--overwrite", options.overwrite,
+                    "Start again where the file has a sweep, or replace another file");
+  add_quiet_flag(*command, options, "No progress and no table");
+  return command;
+}
+
+CLI::App* add_watch(CLI::App& app, WatchOptions& options) {
+  auto* command = app.add_subcommand("watch", "Follow a run by its trajectory file");
+  command->add_option("FILE", options.file, "Trajectory file (HDF5)")->required();
+  command->add_flag("--once", options.once, "Say how far it is, and end");
+  return command;
+}
+
+CLI::App* add_check(CLI::App& app, CheckOptions& options) {
+  auto* command = app.add_subcommand(
+      "check", "Validate a scene and say what it models, the stable dt, memory and cost");
+  add_scene_options(*command, options, "double (default) or single");
+  command->add_flag("--json", options.json, "The numbers as JSON");
+  add_ranks_option(*command, options, "Say what a run with so many parts along y and z repeats");
+  return command;
+}
+
+// Of commands that try methods.
+void add_try_options(CLI::App& command, TryOptions& options) {
+  add_scene_options(command, options, "double or single alone (default: both)");
+  add_space_options(command, options);
+  add_quiet_flag(command, options);
+}
+
+CLI::App* add_trade(CLI::App& app, TradeOptions& options) {
+  auto* command = app.add_subcommand(
+      "trade", "Measure error against time and evaluations for every method on a scene");
+  add_try_options(*command, options);
+  command->add_option("--seconds", options.seconds, "Longest run (default: 10)");
+  auto* json = command->add_flag("--json", options.json, "The numbers as JSON");
+  command->add_flag("--advice", options.advice, "Also judge what `advise` says of the scene")
+      ->excludes(json);
+  return command;
+}
+
+CLI::App* add_advise(CLI::App& app, AdviseOptions& options) {
+  auto* command =
+      app.add_subcommand("advise", "Name the cheapest method and its dt or tolerance for an error");
+  add_try_options(*command, options);
+  command->add_option("--error", options.error, "Largest distance of any spin")->required();
+  command->add_option("--budget", options.budget, "Time that the run may take")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
+                                CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
+      ->type_name("TIME");
+  command->add_flag("--json", options.json, "The answer as JSON");
+  return command;
+}
+
+CLI::App* add_info(CLI::App& app, std::filesystem::path& file) {
+  auto* command = app.add_subcommand("info", "Say what a trajectory file holds");
+  command->add_option("FILE", file, "Trajectory file (HDF5)")->required();
+  return command;
+}
+
+CLI::App* add_export(CLI::App& app, ExportOptions& options) {
+  auto* command =
+      app.add_subcommand("export", "Write frames of a trajectory file for other programs");
+  command->add_option("FILE", options.file, "Trajectory file (HDF5)")->required();
+  command->add_option("--ovf", options.folder, "Folder for OVF 2.0 files, one per frame")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option_function<std::string>(
+          "--format", [&](std::string const& name) { options.format = ovf_format(name); },
+          "text, binary4 or binary8 (default: the binary one that keeps the bits)")
+      ->type_name("NAME");
+  command->add_option("--frames", options.frames, "last (default), all or a number");
+  command->add_flag("--overwrite", options.overwrite, "Replace files that exist");
+  return command;
+}
+
 // CLI11 would only say that there is none.
 void require_command(CLI::App const& app, int argc, char** argv) {
   std::string_view const first = argc > 1 ? argv[1] : "";
@@ -58,125 +192,25 @@ int perform(int argc, char** argv) {
   app.require_subcommand(1);
 
   RunOptions run_options;
-  auto* run_command = app.add_subcommand("run", "Run a scene and write its trajectory (HDF5)");
-  add_scene_options(*run_command, run_options, "double (default) or single");
-  run_command->add_option("--output", run_options.output, "Trajectory file; wins over output.file");
-  run_command->add_flag("--overwrite", run_options.overwrite, "Replace a file that exists");
-  add_space_options(*run_command, run_options);
-  run_command->add_option("--device", run_options.device, "Number of the device")
-      ->check(CLI::Range(0, 65536));
-  run_command
-      ->add_option("--ranks", run_options.ranks,
-                   "Parts of the lattice along y and z, on ranks of MPI")
-      ->type_name("Y,Z");
-  run_command->add_option("--restart", run_options.restart,
-                          "Go on from the last frame of a trajectory file");
-  run_command->add_flag_callback(
-      "--quiet", [&] { run_options.listener = Listener::nobody; }, "No progress");
-  run_command
-      ->add_flag_callback("--report-progress", [&] { run_options.listener = Listener::program; })
-      ->group("");  // what `sweep` starts its runs with
-
   RelaxOptions relax_options;
-  auto* relax_command = app.add_subcommand(
-      "relax", "Find the state of rest of a scene, or one for each of its fields (HDF5)");
-  add_scene_options(*relax_command, relax_options, "double (default) or single");
-  relax_command->add_option("--output", relax_options.output, "The file; wins over output.file");
-  relax_command->add_option("--torque", relax_options.torque, "Largest |m x H| (default: 1e-6)")
-      ->check(CLI::PositiveNumber);
-  relax_command
-      ->add_option("--evaluations", relax_options.evaluations,
-                   "Most evaluations of a field (default: 100000)")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
-  relax_command->add_flag("--overwrite", relax_options.overwrite, "Replace a file that exists");
-  add_space_options(*relax_command, relax_options);
-  relax_command->add_option("--device", relax_options.device, "Number of the device")
-      ->check(CLI::Range(0, 65536));
-  relax_command->add_flag("--quiet", relax_options.quiet, "No progress");
-
   SweepOptions sweep_options;
-  auto* sweep_command = app.add_subcommand(
-      "sweep", "Run a scene with all combinations of some keys' values, into one file (HDF5)");
-  add_scene_options(*sweep_command, sweep_options, "double (default) or single");
-  sweep_command
-      ->add_option("--over", sweep_options.over,
-                   "A key and its values: key.path=VALUE,VALUE,..., TOML values")
-      ->required()
-      ->allow_extra_args(false)
-      ->type_name("KEY=VALUES");
-  sweep_command->add_option("--output", sweep_options.output, "The file of all runs")->required();
-  sweep_command->add_option("--jobs", sweep_options.jobs, "Runs at a time")
-      ->check(CLI::Range(1, 65536));
-  add_space_options(*sweep_command, sweep_options);
-  sweep_command->add_flag("--overwrite", sweep_options.overwrite,
-                          "Start again where the file has a sweep, or replace another file");
-  sweep_command->add_flag("--quiet", sweep_options.quiet, "No progress and no table");
-
   WatchOptions watch_options;
-  auto* watch_command = app.add_subcommand("watch", "Follow a run by its trajectory file");
-  watch_command->add_option("FILE", watch_options.file, "Trajectory file (HDF5)")->required();
-  watch_command->add_flag("--once", watch_options.once, "Say how far it is, and end");
-
   CheckOptions check_options;
-  auto* check_command = app.add_subcommand(
-      "check", "Validate a scene and say what it models, the stable dt, memory and cost");
-  add_scene_options(*check_command, check_options, "double (default) or single");
-  check_command->add_flag("--json", check_options.json, "The numbers as JSON");
-  check_command
-      ->add_option("--ranks", check_options.ranks,
-                   "Say what a run with so many parts along y and z repeats")
-      ->type_name("Y,Z");
-
   TradeOptions trade_options;
-  auto* trade_command = app.add_subcommand(
-      "trade", "Measure error against time and evaluations for every method on a scene");
-  add_scene_options(*trade_command, trade_options, "double or single alone (default: both)");
-  add_space_options(*trade_command, trade_options);
-  trade_command->add_flag("--quiet", trade_options.quiet, "No progress");
-  trade_command->add_option("--seconds", trade_options.seconds, "Longest run (default: 10)")
-      ->check(CLI::PositiveNumber);
-  auto* json = trade_command->add_flag("--json", trade_options.json, "The numbers as JSON");
-  trade_command
-      ->add_flag("--advice", trade_options.advice, "Also judge what `advise` says of the scene")
-      ->excludes(json);
-
   AdviseOptions advise_options;
-  auto* advise_command =
-      app.add_subcommand("advise", "Name the cheapest method and its dt or tolerance for an error");
-  add_scene_options(*advise_command, advise_options, "double or single alone (default: both)");
-  advise_command->add_option("--error", advise_options.error, "Largest distance of any spin")
-      ->required()
-      ->check(CLI::Range(1e-13, 1.0));
-  advise_command->add_option("--budget", advise_options.budget, "Time that the run may take")
-      ->transform(
-          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
-                                CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
-      ->type_name("TIME");
-  advise_command->add_flag("--json", advise_options.json, "The answer as JSON");
-  add_space_options(*advise_command, advise_options);
-  advise_command->add_flag("--quiet", advise_options.quiet, "No progress");
-
-  auto* methods_command = app.add_subcommand("methods", "List the integrators and their options");
-
   std::filesystem::path info_file;
-  auto* info_command = app.add_subcommand("info", "Say what a trajectory file holds");
-  info_command->add_option("FILE", info_file, "Trajectory file (HDF5)")->required();
-
   ExportOptions export_options;
-  auto* export_command =
-      app.add_subcommand("export", "Write frames of a trajectory file for other programs");
-  export_command->add_option("FILE", export_options.file, "Trajectory file (HDF5)")->required();
-  export_command
-      ->add_option("--ovf", export_options.folder, "Folder for OVF 2.0 files, one per frame")
-      ->required()
-      ->type_name("DIR");
-  export_command
-      ->add_option_function<std::string>(
-          "--format", [&](std::string const& name) { export_options.format = ovf_format(name); },
-          "text, binary4 or binary8 (default: the binary one that keeps the bits)")
-      ->type_name("NAME");
-  export_command->add_option("--frames", export_options.frames, "last (default), all or a number");
-  export_command->add_flag("--overwrite", export_options.overwrite, "Replace files that exist");
+  auto* const run_command = add_run(app, run_options);
+  auto* const relax_command = add_relax(app, relax_options);
+  auto* const sweep_command = add_sweep(app, sweep_options);
+  auto* const watch_command = add_watch(app, watch_options);
+  auto* const check_command = add_check(app, check_options);
+  auto* const trade_command = add_trade(app, trade_options);
+  auto* const advise_command = add_advise(app, advise_options);
+  auto* const methods_command =
+      app.add_subcommand("methods", "List the integrators and their options");
+  add_info(app, info_file);
+  auto* const export_command = add_export(app, export_options);
 
   // Programs of their own, which read their own options.
   app.add_subcommand("reproduce",

@@ -14,9 +14,11 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, Listener listener)
+Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool equal_steps,
+                   Listener listener)
     : listener_(listener),
       terminal_(is_terminal(stdout)),
+      equal_steps_(equal_steps),
       first_(first),
       steps_(steps),
       sites_(sites),
@@ -49,9 +51,10 @@ void Progress::show(Step const& step) {
     return;
   }
   double const done = static_cast<double>(step.number) / static_cast<double>(steps_);
-  auto const text = fmt::format("{:5.1f} %  step {} of {}  {}spin updates/s  {} left", 100 * done,
-                                step.number, steps_, rate_text(rate * static_cast<double>(sites_)),
-                                duration_text(static_cast<double>(steps_ - step.number) / rate));
+  auto text = fmt::format("{:5.1f} %  step {} of {}", 100 * done, step.number, steps_);
+  if (equal_steps_)
+    text += fmt::format("  {}spin updates/s", rate_text(rate * static_cast<double>(sites_)));
+  text += fmt::format("  {} left", duration_text(static_cast<double>(steps_ - step.number) / rate));
   if (terminal_) {
     draw(done, text);
   } else {
@@ -64,14 +67,16 @@ void Progress::close(Summary const& summary, std::int64_t frames, std::string co
   if (listener_ != Listener::user) return;
   if (on_line_) fmt::print("\r\x1b[K");
   std::chrono::duration<double> const total = Clock::now() - begin_;
-  auto const updates = static_cast<double>(summary.steps) * static_cast<double>(sites_);
+  auto const steps = equal_steps_ ? summary.steps : summary.own_steps;
+  auto const updates = static_cast<double>(steps) * static_cast<double>(sites_);
   std::string rate;
-  if (summary.steps > 0)
+  if (steps > 0)
     rate = fmt::format(", stepping at {}spin updates/s",
                        rate_text(updates / std::max(summary.step_seconds, 1e-9)));
   if (summary.own_steps > 0)
-    rate += fmt::format(", {} steps of its own, {} rejected", summary.own_steps, summary.rejected);
-  fmt::print("{}: {} steps, {} frames in {}{}\n", file, summary.steps, frames,
+    rate += fmt::format(", {} of its own, {} rejected", counted(summary.own_steps, "step"),
+                        summary.rejected);
+  fmt::print("{}: {}, {} in {}{}\n", file, counted(summary.steps, "step"), counted(frames, "frame"),
              duration_text(total.count()), rate);
   std::fflush(stdout);
 }

@@ -23,7 +23,9 @@ enum class Listener { nobody, user, program };
 /// For a program, a line "STEP STEPS" some times a second.
 class Progress {
  public:
-  Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, Listener listener);
+  /// `equal_steps`: those of the method are those of the run.
+  Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool equal_steps,
+           Listener listener);
 
   bool due(Step const& step) const { return step.number >= next_; }
   void show(Step const& step);
@@ -37,7 +39,7 @@ class Progress {
   void draw(double done, std::string const& text);
 
   Listener listener_;
-  bool terminal_;
+  bool terminal_, equal_steps_;
   std::int64_t first_, steps_, sites_, next_;
   Clock::time_point begin_ = Clock::now(), shown_ = begin_;
   bool on_line_ = false;

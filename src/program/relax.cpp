@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
-#include "files/file_beside.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
@@ -16,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -38,7 +38,7 @@ class Relaxation {
     // That of another run would be taken for one of this file.
     auto const path = output_file(scene, options.output);
     auto const checkpoint = io::checkpoint_beside(path);
-    io::require_free(checkpoint, options.overwrite);
+    require_free_output(path, options.overwrite);
     file_.emplace(path, header, run_output_options(scene, options.overwrite));
     std::filesystem::remove(checkpoint);
   }
@@ -117,9 +117,9 @@ int relax(RelaxOptions const& options) {
   output_file(scene, options.output);
   io::check_files(scene);
   constexpr double least = Minimizer<SpinField<double>>::least_bound;
-  if (!(options.torque / scene.units.field >= least))
-    throw UsageError(fmt::format("--torque {}: too small to be told from 0; accepted: at least {}",
-                                 options.torque, least * scene.units.field));
+  if (!(options.torque / scene.units.field >= least) || !std::isfinite(options.torque))
+    throw UsageError(fmt::format("--torque {}; accepted: a number of at least {}", options.torque,
+                                 least * scene.units.field));
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, options.device);
   auto const plan = make_plan_to_relax(scene, options.precision);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
-#include "files/file_beside.hpp"
 #include "simulation/checkpoint_of_ranks.hpp"
 #include "simulation/command_line.hpp"
 #include "simulation/failure.hpp"
@@ -111,7 +110,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   Watch<Real, Space> watch(
       scene, simulation.generator, simulation.spins, times.first,
       [&] {
-        io::require_free(checkpoint_path, options.overwrite);
+        require_free_output(path, options.overwrite);
         auto const& exec = simulation.exec;
         int const threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
         auto header =
@@ -194,7 +193,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   if (!watch.interrupted()) return Status::done;
   if (ranks.is_first())
     fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
-               summary.steps, plan.times.steps, kept());
+               times.first + summary.steps, plan.times.steps, kept());
   return Status::interrupted;
 }
 

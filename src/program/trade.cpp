@@ -157,7 +157,15 @@ std::string command_of(AdviseOptions const& options, Resolved const& resolved,
   return command;
 }
 
-nlohmann::json as_json(io::Units const& units, Advised const& advised, Resolved const& resolved) {
+// What `run` warns of.
+std::optional<std::string> warning_of(io::Scene const& scene, Resolved const& resolved,
+                                      Precision precision) {
+  auto const plan = make_plan(io::with_overrides(scene, resolved.overrides), precision);
+  return dt_warning(plan, scene.units);
+}
+
+nlohmann::json as_json(io::Scene const& scene, Advised const& advised, Resolved const& resolved) {
+  auto const& units = scene.units;
   auto const& choice = *advised.choice;
   nlohmann::json all{{"method", choice.candidate.name()},
                      {"precision", to_string(choice.candidate.precision)},
@@ -170,7 +178,10 @@ nlohmann::json as_json(io::Units const& units, Advised const& advised, Resolved 
                      {"horizon", advised.horizon * units.time},
                      {"units", units.si ? "SI" : "reduced"},
                      {"overrides", resolved.overrides},
+                     {"warning", nullptr},
                      {"others", nlohmann::json::array()}};
+  if (auto const reason = warning_of(scene, resolved, choice.candidate.precision))
+    all["warning"] = *reason;
   if (choice.candidate.method->adaptive) all["tolerance"] = choice.steps.tolerance;
   for (std::size_t i = 1; i < advised.others.size(); ++i)
     all["others"].push_back(
@@ -178,8 +189,9 @@ nlohmann::json as_json(io::Units const& units, Advised const& advised, Resolved 
   return all;
 }
 
-void print_text(AdviseOptions const& options, io::Units const& units, Advised const& advised,
+void print_text(AdviseOptions const& options, io::Scene const& scene, Advised const& advised,
                 Resolved const& resolved) {
+  auto const& units = scene.units;
   auto const& choice = *advised.choice;
   auto const& candidate = choice.candidate;
   fmt::print("method      {}\n", candidate.name());
@@ -188,10 +200,12 @@ void print_text(AdviseOptions const& options, io::Units const& units, Advised co
   else
     fmt::print("dt          {:.9g}{}, {} steps\n", resolved.dt, units.si ? " s" : "",
                resolved.steps);
-  fmt::print("error       {:.2g}, predicted{}\n", choice.error,
-             advised.why_shorter.empty() ? "" : " at the horizon");
+  fmt::print("error       {:.2g}, predicted, at a dozen times{}\n", choice.error,
+             advised.why_shorter.empty() ? "" : " up to the horizon");
   fmt::print("time        {}, predicted, without files\n", duration_text(choice.seconds));
   fmt::print("memory      {}\n", bytes_text(choice.memory));
+  if (auto const reason = warning_of(scene, resolved, candidate.precision))
+    fmt::print("run warns   dt {}; the error takes that into account\n", *reason);
   fmt::print("run it      {}\n", command_of(options, resolved, candidate.precision));
   fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
   for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
@@ -213,6 +227,8 @@ io::Scene scene_to_try(std::filesystem::path const& path,
 }  // namespace
 
 int trade_off(TradeOptions const& options) {
+  if (!(options.seconds > 0) || !std::isfinite(options.seconds))
+    throw UsageError(fmt::format("--seconds {}; accepted: a number > 0", options.seconds));
   auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
@@ -247,6 +263,8 @@ int trade_off(TradeOptions const& options) {
 }
 
 int advise_on(AdviseOptions const& options) {
+  if (!(options.error >= 1e-13) || options.error > 1)
+    throw UsageError(fmt::format("--error {}; accepted: a number from 1e-13 to 1", options.error));
   auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
@@ -270,9 +288,9 @@ int advise_on(AdviseOptions const& options) {
   }
   auto const resolved = resolve(scene, *advised.choice);
   if (options.json)
-    fmt::print("{}\n", as_json(scene.units, advised, resolved).dump(1));
+    fmt::print("{}\n", as_json(scene, advised, resolved).dump(1));
   else
-    print_text(options, scene.units, advised, resolved);
+    print_text(options, scene, advised, resolved);
   return Status::done;
 }
 

@@ -55,7 +55,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
         open_file_(std::move(open_file)),
         checkpoints_(scene.output.checkpoint_every, first),
         guard_(scene, std::numeric_limits<Real>::epsilon()),
-        progress_(first, scene.integrator.steps, io::sites(scene), listener),
+        progress_(first, scene.integrator.steps, io::sites(scene), !scene.integrator.tolerance,
+                  listener),
         frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())),
         part_("cayspin::part_of_frame",
               ranks.many() ? static_cast<std::size_t>(spins.sites()) : 0) {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace cayspin::io::detail {
 namespace {
@@ -29,11 +28,10 @@ ExpressionStart read_expressions(Item const& item) {
 }
 
 RandomStart read_random(Item const& item, Scene& scene) {
-  constexpr std::string_view accepted = "a whole number";
+  constexpr std::string_view accepted = "a whole number >= 0";
   Table const table(item, scene);
   table.accept_only({"seed"});
-  return {integer(table.required("seed", accepted), std::numeric_limits<std::int64_t>::min(),
-                  accepted)};
+  return {integer(table.required("seed", accepted), 0, accepted)};
 }
 
 GivenStart read_given(Item const& item, Scene const& scene) {

@@ -27,6 +27,9 @@ std::int64_t steps_until(Item const& end, double dt) {
     end.fail(fmt::format("{} is {:.12g} steps of dt = {}, not a whole number", time, quotient, dt),
              fmt::format("dt = {} or {}", time / fewer, time / (fewer + 1)));
   }
+  if (whole == 0 && time > 0)
+    end.fail(fmt::format("{} is less than a step of dt = {}", time, dt),
+             "a smaller dt, or steps = 0");
   return static_cast<std::int64_t>(whole);
 }
 
@@ -135,11 +138,14 @@ void read_error(Table const& table, Integrator& integrator) {
     error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
 }
 
-// An adaptive run that does not say how often to look does so at its end.
+// How often a run looks whose method takes steps of its own and that does not say. By a power of
+// two the end stays the same to the last bit.
+constexpr double usual_looks = 128;
+
 double read_dt(Table const& table, Integrator const& integrator) {
   auto const end = table.find("end");
   if (!integrator.method->has_equal_steps() && end && !table.contains("dt"))
-    return positive_number(*end);
+    return positive_number(*end) / usual_looks;
   return positive_number(table.required("dt", "a number > 0"));
 }
 

@@ -9,6 +9,9 @@
 namespace cayspin::io::detail {
 namespace {
 
+// Of cayspin::Lattice::validate.
+constexpr std::int64_t most_extent = std::numeric_limits<std::int32_t>::max() / 4;
+
 // One entry per axis of the shape, or one value for every axis.
 template <class Value, class Read>
 void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& values, Read read,
@@ -36,6 +39,9 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / std::int64_t{3 * sizeof(double)};
   for (std::size_t axis = 0; axis < extents.size(); ++axis) {
     auto const extent = integer(extents[axis], 1, "a whole number >= 1");
+    if (extent > most_extent)
+      extents[axis].fail(fmt::format("{} is too large", extent),
+                         fmt::format("a whole number from 1 to {}", most_extent));
     if (extent > room) shape.fail("more sites than memory can address", "a smaller shape");
     room /= extent;
     lattice.shape[axis] = extent;

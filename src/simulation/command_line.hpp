@@ -7,10 +7,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <optional>
+#include <stdexcept>
 
 // What the mains of the programs share.
 namespace cayspin::simulation {
@@ -46,10 +49,20 @@ inline int report(std::exception_ptr const& thrown) {
   return status_of(thrown);
 }
 
+/// Throws if something of standard output was lost.
+inline void require_output_written() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw std::runtime_error(fmt::format("standard output: cannot write: {}",
+                                       errno == 0 ? "some of it was lost" : std::strerror(errno)));
+}
+
 /// The exit status of perform(argc, argv), which may throw.
 inline int perform_and_report(int (*perform)(int, char**), int argc, char** argv) {
   try {
-    return perform(argc, argv);
+    int const status = perform(argc, argv);
+    if (status == 0) require_output_written();
+    return status;
   } catch (...) {
     return report(std::current_exception());
   }

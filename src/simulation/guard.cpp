@@ -26,7 +26,7 @@ std::optional<std::string> Guard::judge(Step const& step, Energy const& energy,
   if (!first_) first_ = last_;
   if (!energy_must_fall_ || !before) return std::nullopt;
   double const rise = energy.value - before->energy;
-  if (!(rise > 64 * epsilon_ * energy.magnitude)) return std::nullopt;
+  if (!(rise > most_rise_ * energy.magnitude)) return std::nullopt;
   return fmt::format(
       "step {}, t = {}: the energy rose by {}, from {} at step {} to {}, where "
       "damping lets it only fall",

@@ -6,6 +6,7 @@
 #include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,7 +22,8 @@ inline bool energy_must_fall(io::Scene const& scene) {
 /// Watches the numbers of a run: all must be finite; a length that is kept must be 1 to 64 epsilon
 /// at the start, and later to 64 epsilon a step, of which there may be a million between two looks,
 /// but at most to 0.01; an energy that can only fall must not rise by more than round-off, 64
-/// epsilon times the sum of its terms' absolute values.
+/// epsilon times the sum of its terms' absolute values. Where steps follow a tolerance, which is an
+/// angle of the spins, the energy may rise by as much of that sum.
 class Guard {
  public:
   /// `epsilon`: of the run's precision. Few sites are looked at in every step, many in every tenth.
@@ -29,6 +31,7 @@ class Guard {
       : energy_must_fall_(energy_must_fall(scene)),
         keeps_norm_(scene.integrator.method->keeps_length),
         epsilon_(epsilon),
+        most_rise_(std::max(64 * epsilon, scene.integrator.tolerance.value_or(0))),
         units_(scene.units),
         period_(period_of(io::sites(scene))) {}
 
@@ -64,7 +67,7 @@ class Guard {
     double energy;
   };
   bool energy_must_fall_, keeps_norm_;
-  double epsilon_;
+  double epsilon_, most_rise_;
   io::Units units_;
   std::int64_t period_;
   std::optional<Look> first_, last_;

@@ -4,6 +4,7 @@
 #include "applied_field.hpp"
 #include "dear_method.hpp"
 #include "failure.hpp"
+#include "files/available_memory.hpp"
 #include "ranks.hpp"
 #include "text.hpp"
 #include "thermal.hpp"
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 namespace cayspin::simulation {
@@ -145,12 +145,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
 
 }  // namespace
 
-std::int64_t available_memory() {
-  std::ifstream file("/proc/meminfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("MemAvailable:")) return std::stoll(line.substr(13)) * 1024;
-  return std::numeric_limits<std::int64_t>::max();
-}
+std::int64_t available_memory() { return io::available_memory(); }
 
 Plan make_plan(io::Scene const& scene, Precision precision) {
   auto const lattice = make_lattice(scene);
@@ -187,10 +182,15 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   }
   require_dear_field_fits(scene, plan.variant);
   auto const substeps = static_cast<double>(integrator.substeps);
-  if (scene.system.kind == io::SystemKind::llg)
-    plan.stable_dt = substeps * plan.variant.stable_step(field_bound(scene, lattice, plan.times),
-                                                         scene.system.damping,
+  if (scene.system.kind == io::SystemKind::llg) {
+    double const bound = field_bound(scene, lattice, plan.times);
+    if (!std::isfinite(bound))
+      throw io::scene_error(scene, "field",
+                            "its largest value is not finite; accepted: smaller constants, or a "
+                            "larger lattice.spacing");
+    plan.stable_dt = substeps * plan.variant.stable_step(bound, scene.system.damping,
                                                          scene.system.precession, plan.options);
+  }
   bool const in_double = precision == Precision::double_precision;
   plan.memory = in_double ? memory_of<double>(scene, lattice, plan.variant, precision, 0)
                           : memory_of<float>(scene, lattice, plan.variant, precision, 0);
@@ -199,8 +199,9 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   std::int64_t const sample_bytes = 8 * 7;
   plan.file_bytes = plan.frames * (lattice.sites() * 3 * (in_double ? 8 : 4) + sample_bytes) +
                     count(scene.output.scalars_every) * sample_bytes;
-  io::Scene followed = scene;  // what a step has to follow
-  if (plan.variant.method->stiff) followed.field.exchange.reset();
+  // What a step has to follow. Its fastest modes are those of exchange: a stable dt guards them.
+  io::Scene followed = scene;
+  if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) followed.field.exchange.reset();
   plan.turn = integrator.dt / substeps * largest_rate(followed, lattice, plan.times);
   return plan;
 }

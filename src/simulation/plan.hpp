@@ -31,7 +31,7 @@ struct Plan {
   MethodOptions options;
   Times times;
   double stable_dt;  // infinity where there is no limit, 0 when every dt amplifies
-  double turn;       // the most that a spin can turn in a step, in radians
+  double turn;       // the most that a spin can turn in a step, in radians; some without exchange
   Memory memory;
   std::int64_t frames;
   std::int64_t file_bytes;
@@ -43,11 +43,11 @@ struct Plan {
 /// Throws io::SceneError, among others for a lattice that cannot be.
 Plan make_plan(io::Scene const& scene, Precision precision);
 
-/// Why dt is too large, if it is: above the stable one, or, where none is known, so that a step
-/// turns spins by more than 2 radians.
+/// Why dt is too large, if it is: above the stable one; or so that a step turns spins by more than
+/// 2 radians, or 3 where a stable dt is known.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units = {});
 
-/// Bytes of memory that are free.
+/// Bytes of memory that are free, of the machine and of its control groups.
 std::int64_t available_memory();
 
 /// Is there memory for the run?

@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "run_files.hpp"
 
+#include "files/file_beside.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <system_error>
 
 namespace cayspin::simulation {
+namespace {
+
+bool is_whole_checkpoint(std::filesystem::path const& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  try {
+    return io::is_checkpoint(path);
+  } catch (std::runtime_error const&) {
+    return false;
+  }
+}
+
+}  // namespace
 
 io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& space, int threads,
@@ -33,6 +55,30 @@ io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite) 
           .xdmf = output.xdmf,
           .table = output.table,
           .spacing = spacing};
+}
+
+void require_free_output(std::filesystem::path const& path, bool overwrite) {
+  io::require_free(path, overwrite);
+  auto const checkpoint = io::checkpoint_beside(path);
+  io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
+}
+
+std::optional<std::string> output_refusal(io::Output const& output) {
+  if (!output.file) return std::nullopt;
+  auto const& path = *output.file;
+  auto const beside = [&](char const* extension) {
+    return std::filesystem::path(path).replace_extension(extension);
+  };
+  try {
+    require_free_output(path, false);
+    if (output.xdmf) io::require_free(beside(".xdmf"), false);
+    if (output.table) io::require_free(beside(".txt"), false);
+  } catch (std::runtime_error const& error) {
+    return error.what();
+  }
+  auto const folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return std::nullopt;
+  return fmt::format("{}: cannot create the file: {}", path.string(), std::strerror(errno));
 }
 
 io::Scalars as_scalars(Sample const& sample, io::Units const& units) {

@@ -7,6 +7,8 @@
 #include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <filesystem>
+#include <optional>
 #include <string>
 
 // What every run of a scene puts into its files, in the units of the scene.
@@ -17,6 +19,13 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& git_commit);
 
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite);
+
+/// Throws if the trajectory `path`, or what is named like its checkpoint, must not be replaced. A
+/// checkpoint whose trajectory is gone may be.
+void require_free_output(std::filesystem::path const& path, bool overwrite);
+
+/// Why a run could not write the files that its scene names, in one line, or nothing.
+std::optional<std::string> output_refusal(io::Output const& output);
 
 io::Scalars as_scalars(Sample const& sample, io::Units const& units);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "run_recorder.hpp"
 
-#include "files/file_beside.hpp"
 #include "run_files.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
@@ -14,9 +13,8 @@ namespace {
 constexpr std::int64_t most_steps = 4096;  // from one look at the clock to the next
 
 std::filesystem::path free_checkpoint(std::filesystem::path const& path, bool overwrite) {
-  auto checkpoint = io::checkpoint_beside(path);
-  io::require_free(checkpoint, overwrite);
-  return checkpoint;
+  require_free_output(path, overwrite);
+  return io::checkpoint_beside(path);
 }
 
 }  // namespace

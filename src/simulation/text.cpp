@@ -34,6 +34,10 @@ std::string duration_text(double seconds) {
   return fmt::format("{} d {} h", total / 86400, total / 3600 % 24);
 }
 
+std::string counted(std::int64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string rate_text(double per_second) {
   auto const [value, prefix] = prefixed(per_second);
   return fmt::format("{:.3g} {}", value, prefix);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace cayspin::simulation {
 
@@ -12,6 +13,8 @@ namespace cayspin::simulation {
 std::string bytes_text(std::int64_t bytes);
 /// "3 min 20 s"
 std::string duration_text(double seconds);
+/// "1 step", "2 steps"
+std::string counted(std::int64_t count, std::string_view what);
 /// With a decimal prefix: "12.3 M" for 12300000.
 std::string rate_text(double per_second);
 /// A time or an energy as the scene has them: a number, in SI with its unit.

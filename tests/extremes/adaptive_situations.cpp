@@ -14,9 +14,8 @@ Section adaptive_steps() {
 The tolerance is 1e-4 and the field 1 unless the table says otherwise; dt is from one look to the
 next, and t runs from 0 to 6 or 6/128. The error stays below 30 times the tolerance, also where
 the field is switched on within a step. A run stops when a step would have to be below min_dt,
-when numbers are too large for the precision, when the energy rises because damping takes less
-than the error, and when the start is wrong. Damping of 1e12 takes steps of 1e-12: only min_dt
-bounds their number.)",
+when numbers are too large for the precision, and when the start is wrong. Damping of 1e12 takes
+steps of 1e-12: only min_dt bounds their number.)",
                   {exact, bounded, refused, detected},
                   {},
                   {}};

@@ -72,6 +72,17 @@ TYPED_TEST(GuardIn, SmallRisesDoNotAddUp) {
   EXPECT_TRUE(this->damped.judge(at(20), {energy, 0.5}, 0));
 }
 
+// Steps by a tolerance are as exact as that, and at rest their energy goes up and down by it.
+TYPED_TEST(GuardIn, EnergiesMayRiseByTheToleranceOfTheSteps) {
+  double const rise = 5 * 0.0078125;
+  Guard guard(scene(0.5, "tsit5", "tolerance = 0.0078125\n"),
+              std::numeric_limits<TypeParam>::epsilon());
+  EXPECT_FALSE(guard.judge(at(0), {0, 5}, 0));
+  EXPECT_FALSE(guard.judge(at(1), {rise, 5}, 0));
+  EXPECT_FALSE(guard.judge(at(2), {0, 5}, 0));
+  EXPECT_TRUE(guard.judge(at(3), {std::nextafter(rise, 1), 5}, 0));
+}
+
 TYPED_TEST(GuardIn, FallsOfAnySizePass) {
   EXPECT_FALSE(this->damped.judge(at(0), {1e6, 1}, 0));
   EXPECT_FALSE(this->damped.judge(at(1), {-1e6, 1}, 0));

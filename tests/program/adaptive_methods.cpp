@@ -50,13 +50,68 @@ TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
   ASSERT_EQ(times.size(), 6U);
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_DOUBLE_EQ(times[i], 0.5 * double(i));
   auto const half = read_dataset("out.h5", "/spins").values;
-  auto const once = end({"--set", "integrator={" + method + "}"});
+  auto const once = end({"--set", "integrator={" + method + "}", "--set", "output.every=128"});
   EXPECT_EQ(read_dataset("out.h5", "/time").values.size(), 2U);
   EXPECT_EQ(often, once);
   auto const exact = end({"--set", "integrator.dt=0.0005", "--set", "integrator.steps=1000"});
   std::vector<double> const second(half.begin() + std::ptrdiff_t(once.size()),
                                    half.begin() + std::ptrdiff_t(2 * once.size()));
   EXPECT_LT(distance(second, exact), 30e-7);
+}
+
+// How often a run is looked at changes no bit of its end and costs no evaluation.
+TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
+  std::vector<double> ends[3];
+  std::int64_t evaluations[3];
+  std::string const looks[] = {"", ",dt=7.0", ",dt=0.25"};
+  for (int i = 0; i < 3; ++i) {
+    ends[i] = end({"--set", "integrator={method='tsit5',tolerance=1e-6,end=7.0" + looks[i] + "}",
+                   "--set", "output.every=128"});
+    auto const info = io::read_info(in_folder("out.h5"));
+    evaluations[i] = info.cost.evaluations;
+    EXPECT_EQ(info.frames, 2) << looks[i];
+    EXPECT_EQ(info.frame_times.back(), 7.0) << looks[i];
+    if (i == 0) {
+      EXPECT_EQ(info.frame_steps.back(), 128);
+    }
+  }
+  for (int i : {1, 2}) {
+    EXPECT_EQ(ends[i], ends[0]);
+    EXPECT_EQ(evaluations[i], evaluations[0]);
+  }
+}
+
+// Where spins come to rest the energy goes up and down within the tolerance.
+TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
+  for (std::string const method : {"tsit5", "bs3", "dp5"})
+    for (std::string const tolerance : {"1e-1", "1e-3"}) {
+      auto const outcome = start_with(
+          {"--set", "integrator={method='" + method + "',tolerance=" + tolerance + ",end=400.0}"},
+          macrospin_scene());
+      EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    }
+}
+
+// A look is no step: the rate is that of the method's own.
+TEST_F(AdaptiveMethods, TheRateCountsTheirOwnSteps) {
+  auto const outcome = start({"run", write("scene.toml", chain_scene()), "--output", "out.h5",
+                              "--set", "integrator={method='tsit5',tolerance=1e-6,dt=40,steps=1}"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.output, "out.h5: 1 step, 2 frames in "));
+  auto const number_at = [&](std::string const& after) {
+    return std::stod(outcome.output.substr(outcome.output.find(after) + after.size()));
+  };
+  auto const rate_at = outcome.output.find("stepping at ");
+  ASSERT_NE(rate_at, std::string::npos) << outcome.output;
+  double const own_steps = number_at("spin updates/s, ");
+  auto const unit = outcome.output.substr(outcome.output.find("spin updates/s") - 1, 1);
+  double const rate = number_at("stepping at ") * (unit == "M" ? 1e6 : unit == "k" ? 1e3 : 1);
+  auto const seconds = io::read_info(in_folder("out.h5")).cost.step_seconds;
+  EXPECT_GT(own_steps, 10);
+  EXPECT_NEAR(rate, own_steps * 60 / seconds, 0.01 * rate) << outcome.output;
+  auto const watched = start({"watch", "out.h5", "--once"});
+  EXPECT_TRUE(contains(watched.output, "\ntime "));
+  EXPECT_FALSE(contains(watched.output, "updates/s"));
 }
 
 TEST_F(AdaptiveMethods, NumbersThatOverflowEndTheRunWithTheLastFrame) {

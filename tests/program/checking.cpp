@@ -119,6 +119,30 @@ TEST_F(Checking, IterationsHaveNoCountBeforehand) {
   }
 }
 
+// `run` would refuse it; a scene may still be checked beside its file.
+TEST_F(Checking, SaysWhatIsWrongWithTheOutputFile) {
+  auto const last_line = [&](std::string const& file) {
+    auto const outcome =
+        start({"check", write("scene.toml", chain_scene()), "--set", "output.file='" + file + "'"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors, "");
+    auto const begin = outcome.output.rfind('\n', outcome.output.size() - 2) + 1;
+    return outcome.output.substr(begin);
+  };
+  EXPECT_TRUE(last_line("free.h5").starts_with("output "));
+  for (std::string const extension : {"there.h5", "left.checkpoint.h5"}) write(extension, "kept");
+  std::string const begin = "            as it stands: ";
+  EXPECT_EQ(last_line("there.h5"),
+            begin +
+                "there.h5: cannot write the file: it exists (choose another name, or overwrite "
+                "with --overwrite)\n");
+  EXPECT_TRUE(last_line("left.h5").starts_with(begin + "left.checkpoint.h5: cannot write"));
+  EXPECT_EQ(last_line("no/folder.h5"),
+            begin + "no/folder.h5: cannot create the file: No such file or directory\n");
+  EXPECT_EQ(last_line("/dev/full"),
+            begin + "/dev/full: cannot write the file: it exists and is not a regular file\n");
+}
+
 TEST_F(Checking, CountsCostAndFrames) {
   auto const numbers = check(chain_scene());
   EXPECT_EQ(numbers.at("evaluations_per_step"), 4);

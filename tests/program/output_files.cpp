@@ -29,6 +29,19 @@ TEST_F(OutputFiles, StandBesideTheTrajectoryWhenAskedFor) {
   EXPECT_EQ(std::ranges::count(text_of("out.txt"), '\n'), 27);
 }
 
+// A device that takes nothing stands for a disk that is full.
+TEST_F(OutputFiles, StandardOutputThatCannotBeWrittenIsAnError) {
+  write("chain.toml", chain_scene());
+  run(chain_scene());
+  for (std::string const command : {"check chain.toml", "check chain.toml --json", "info out.h5",
+                                    "methods", "export out.h5 --ovf frames"}) {
+    auto const outcome = start({"-c", "exec '" CAYSPIN_PROGRAM "' " + command + " > /dev/full"},
+                               {.program = "/bin/sh"});
+    EXPECT_EQ(outcome.status, 2) << command;
+    EXPECT_TRUE(is_one_line(outcome.errors)) << command << ": " << outcome.errors;
+  }
+}
+
 TEST_F(OutputFiles, AreKeptUnlessOverwritten) {
   write("chain.toml", chain_scene());
   write("chain.txt", "kept");

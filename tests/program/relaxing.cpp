@@ -203,8 +203,9 @@ TEST_F(Relax, RefusesInOneLine) {
             {"--set", "system={ kind = \"rigid_body\", inertia = [1, 2, 3] }"},
             "lattice.shape"},
            {scene, {"--set", "integrator.dt=-1"}, "integrator"},
-           {scene, {"--torque", "0"}, "--torque"},
-           {scene, {"--torque", "1e-200"}, "--torque 1e-200: too small to be told from 0"}}) {
+           {scene, {"--torque", "0"}, "--torque 0; accepted: a number of at least 1e-150"},
+           {scene, {"--torque", "nan"}, "--torque nan; accepted: a number of at least 1e-150"},
+           {scene, {"--torque", "1e-200"}, "--torque 1e-200; accepted: a number of at least"}}) {
     auto const outcome = relax(text, more);
     EXPECT_EQ(outcome.status, 2) << says;
     EXPECT_TRUE(is_one_line(outcome.errors));

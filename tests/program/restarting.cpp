@@ -126,6 +126,12 @@ TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
   run_to("12", "never.h5",
          {"--set", "integrator.method='ab2'", "--set", "output.checkpoint_every=0"});
   EXPECT_FALSE(std::filesystem::exists(in_folder("never.checkpoint.h5")));
+  // One that a deleted trajectory left is in nobody's way.
+  run_to("12", "third.h5", {"--set", "integrator.method='ab2'"});
+  std::filesystem::remove(in_folder("third.h5"));
+  ASSERT_TRUE(std::filesystem::exists(in_folder("third.checkpoint.h5")));
+  run_to("5", "third.h5", {"--set", "integrator.method='ab2'"});
+  EXPECT_EQ(io::CheckpointReader(in_folder("third.checkpoint.h5")).header().step, 5);
   write("second.checkpoint.h5", "kept");
   expect_refused({}, "second.checkpoint.h5: cannot write the file: it exists");
 }

@@ -107,5 +107,25 @@ TEST_F(Running, DtAboveTheStableOneIsWarnedOf) {
   EXPECT_TRUE(contains(outcome.errors, "warning: spin.toml:12: integrator.dt"));
 }
 
+// Order 8 is stable up to dt 6 in this field. On a chain the fast modes are those of exchange.
+TEST_F(Running, TurnsBelowTheStableDtAreWarnedOfUnlessTheyAreThoseOfExchange) {
+  write("spin.toml", macrospin_scene());
+  auto const warning = [&](char const* dt, Arguments const& more) {
+    Arguments arguments{
+        "run",      "spin.toml",
+        "--quiet",  "--overwrite",
+        "--output", "out.h5",
+        "--set",    std::string("integrator={method='projected_rk8',steps=4,dt=") + dt + "}",
+        "--set",    "system.damping=0.02"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start(arguments).errors;
+  };
+  EXPECT_TRUE(contains(warning("3.5", {}), "turns spins by up to 3.5"));
+  EXPECT_EQ(warning("2.5", {}), "");
+  Arguments const chain{"--set", "field.exchange=1", "--set", "lattice={shape=[16]}"};
+  EXPECT_EQ(warning("0.9", chain), "");
+  EXPECT_TRUE(contains(warning("1.5", chain), "is above the stable 1.2"));
+}
+
 }  // namespace
 }  // namespace cayspin::program::test

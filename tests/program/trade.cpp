@@ -11,6 +11,21 @@
 namespace cayspin::program::test {
 namespace {
 
+/// Of the command that an advice names, behind the scene.
+Arguments advised_arguments(std::string const& advice) {
+  std::istringstream lines(advice);
+  Arguments arguments;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("run it")) continue;
+    std::istringstream words(line.substr(line.find(".toml") + 5));
+    for (std::string word; words >> word;) {
+      std::erase(word, '\'');
+      arguments.push_back(word);
+    }
+  }
+  return arguments;
+}
+
 struct Trading : ProgramTest {
   static std::string scene() {
     return R"toml([system]
@@ -158,16 +173,7 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
               : "integrator.energy_guard=false",
          "--set", "output={every=10,scalars_every=4}"});
     ASSERT_EQ(outcome.status, 0) << outcome.errors;
-    std::istringstream lines(outcome.output);
-    Arguments arguments;
-    for (std::string line; std::getline(lines, line);) {
-      if (!line.starts_with("run it")) continue;
-      std::istringstream words(line.substr(line.find(".toml") + 5));
-      for (std::string word; words >> word;) {
-        std::erase(word, '\'');
-        arguments.push_back(word);
-      }
-    }
+    auto const arguments = advised_arguments(outcome.output);
     ASSERT_FALSE(arguments.empty()) << outcome.output;
     EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << outcome.output;
     // As the scene has it, whatever the steps are.
@@ -176,6 +182,80 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
     auto const text = io::read_info(in_folder("out.h5")).header.scene_text;
     EXPECT_EQ(text.find("energy_guard = false") != text.npos, !fine) << text;
   }
+}
+
+/// A scene that is advised on, and seen at each of its frames.
+struct Watched : Trading {
+  Outcome run_it(std::string const& text, std::string const& name, Arguments const& more) const {
+    Arguments arguments{
+        "run",        write("scene.toml", text), "--quiet", "--threads", "1", "--output", name,
+        "--overwrite"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return start(arguments);
+  }
+  /// Over that asked for: the largest at any frame.
+  double error(std::string const& text, std::string const& asked) const {
+    auto const exact = run_it(text, "exact.h5", {});
+    EXPECT_EQ(exact.status, 0) << exact.errors;
+    auto const advice =
+        start({"advise", write("scene.toml", text), "--error", asked, "--threads", "1", "--quiet"});
+    EXPECT_EQ(advice.status, 0) << advice.errors;
+    auto const advised = run_it(text, "out.h5", advised_arguments(advice.output));
+    EXPECT_EQ(advised.status, 0) << advice.output << advised.errors;
+    EXPECT_EQ(read_dataset("out.h5", "/time").values.size(),
+              read_dataset("exact.h5", "/time").values.size());
+    return distance(read_dataset("out.h5", "/spins").values,
+                    read_dataset("exact.h5", "/spins").values) /
+           std::stod(asked);
+  }
+};
+
+// 40 radians between two of four looks: steps that long do not converge in an implicit method,
+// which halves them. Runs with 4 and 8 steps then end alike.
+TEST_F(Watched, OneSpinThatTurnsFast) {
+  std::string const scene = R"toml([system]
+kind = "llg"
+damping = 0.05
+[lattice]
+shape = [1]
+[field]
+applied = [0.1, 0.05, -1.2]
+anisotropy = [{ constant = 1.0, axis = [0, 0, 1] }, { constant = -0.5, axis = [1, 0, 0] }]
+[initial]
+uniform = [0.02, 0.01, 1.0]
+[integrator]
+method = "rkmk8"
+dt = 0.05
+end = 60.0
+[output]
+every = 10
+)toml";
+  for (char const* error : {"1e-4", "1e-6", "1e-8"})
+    EXPECT_LT(this->error(scene, error), 2) << error;
+}
+
+// All that happens happens in the first fiftieth of the run.
+TEST_F(Watched, ASlabThatComesToRestEarly) {
+  std::string const scene = R"toml([system]
+kind = "llg"
+damping = 1.0
+precession = false
+[lattice]
+shape = [20]
+[field]
+exchange = 1.0
+applied = [5.0, 0.0, 0.0]
+[initial]
+expression = ["0.3+0.2*cos(pi*x)", "0.5+0.1*cos(2*pi*x)", "0.8"]
+[integrator]
+method = "rkmk8"
+dt = 0.01
+end = 20.0
+[output]
+every = 20
+)toml";
+  // Errors of adaptive steps at rest rise and fall between the looks.
+  for (char const* error : {"1e-3", "1e-6"}) EXPECT_LT(this->error(scene, error), 4) << error;
 }
 
 TEST_F(Trading, ARunOfMethodAutoHasTheErrorAskedFor) {
@@ -200,6 +280,32 @@ TEST_F(Trading, ARunOfMethodAutoHasTheErrorAskedFor) {
 TEST_F(Trading, AScenesStartAloneIsNoChoice) {
   end({"--set", "integrator={method='auto',error=1e-3,steps=0,dt=0.5}"});
   EXPECT_EQ(read_dataset("out.h5", "/time").values, std::vector<double>{0});
+}
+
+TEST_F(Trading, AnAdvisedRunWarnsOfNothingThatTheAdviceDoesNotSay) {
+  // A constant sigma is fast here, far above the dt that is stable for nearly uniform spins.
+  std::string const disordered = "lattice={shape=[4,4,4],boundary=\"periodic\"}";
+  for (std::string const refuse : {"false", "true"}) {
+    Arguments const changed{"--set", disordered,
+                            "--set", "initial={random={seed=1}}",
+                            "--set", "field={exchange=1.0}",
+                            "--set", "system.damping=0",
+                            "--set", "integrator.refuse_unstable=" + refuse};
+    Arguments arguments{
+        "advise", write("scene.toml", scene()), "--error", "1e-4", "--threads", "1", "--precision",
+        "double"};
+    arguments.insert(arguments.end(), changed.begin(), changed.end());
+    auto const advice = start(arguments);
+    ASSERT_EQ(advice.status, 0) << advice.errors;
+    Arguments again{"run", "scene.toml", "--quiet", "--output", "out.h5", "--overwrite"};
+    auto const advised = advised_arguments(advice.output);
+    again.insert(again.end(), advised.begin(), advised.end());
+    auto const outcome = start(again);
+    EXPECT_EQ(outcome.status, 0) << advice.output << outcome.errors;
+    EXPECT_EQ(contains(outcome.errors, "warning: "), contains(advice.output, "\nrun warns "))
+        << advice.output << outcome.errors;
+    EXPECT_TRUE(refuse == "false" || outcome.errors.empty()) << outcome.errors;
+  }
 }
 
 TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {

@@ -57,6 +57,9 @@ std::vector<WrongUse> wrong_scenes() {
       {"ZeroDt", set("integrator.dt=0.0"), "integrator.dt"},
       {"NegativeSteps", set("integrator.steps=-1"), "integrator.steps"},
       {"StepsAndEnd", set("integrator.end=1.0"), "steps"},
+      {"EndFarBelowAStep", set("integrator={method='euler',dt=1,end=1e-9}"), "less than a step"},
+      {"ExchangeThatOverflows", set("field.exchange=1e308"), "field: its largest value is not"},
+      {"SpacingThatOverflows", set("lattice.spacing=1e-200"), "a larger lattice.spacing"},
       {"EndBetweenSteps", set("integrator={method='euler',dt=0.3,end=1.0}"), "0.3333"},
       {"EveryZero", set("output.every=0"), "output.every"},
       {"NoSuchStartFile", set("initial={file='none.h5'}"), "none.h5"},
@@ -117,6 +120,13 @@ std::vector<WrongUse> wrong_commands() {
       {"UnknownOptionOfReproduce", {"reproduce", "--fast"}, "--fast"},
       {"UnknownOptionOfExtremes", {"extremes", "--fast"}, "--fast"},
       {"TradeInUnknownPrecision", {"trade", "chain.toml", "--precision", "half"}, "single"},
+      {"TradeOfNoSeconds",
+       {"trade", "chain.toml", "--seconds", "0"},
+       "cayspin: --seconds 0; accepted: a number > 0\n"},
+      {"AdviseForNoError",
+       {"advise", "chain.toml", "--error", "0"},
+       "cayspin: --error 0; accepted: a number from 1e-13 to 1\n"},
+      {"AdviseForNan", {"advise", "chain.toml", "--error", "nan"}, "--error nan; accepted: "},
       {"MethodsWithArgument", {"methods", "euler"}, "euler"},
   };
 }

@@ -40,7 +40,7 @@ class Advice(PackageTest):
         keys = set(json.loads(subprocess.run([*command, "--json"], check=True, text=True,
                                              capture_output=True).stdout))
         self.assertEqual(keys, {"method", "precision", "dt", "steps", "tolerance", "error",
-                                "seconds", "memory", "horizon", "units", "overrides",
+                                "seconds", "memory", "horizon", "units", "warning", "overrides",
                                 "others"})
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         for word in ("scene ", "method ", "error ", "memory ", "run it ", "next to it"):

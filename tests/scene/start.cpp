@@ -89,7 +89,6 @@ TEST(Start, RandomIsReproducibleAndFollowsTheSeed) {
   auto const first = start(folder, "{random={seed=1}}");
   EXPECT_EQ(first, start(folder, "{random={seed=1}}"));
   EXPECT_NE(first, start(folder, "{random={seed=2}}"));
-  EXPECT_NE(first, start(folder, "{random={seed=-1}}"));
   auto const longer = start(folder, "{random={seed=1}}", "[100]");
   EXPECT_TRUE(std::equal(first.begin(), first.end(), longer.begin()));
 }

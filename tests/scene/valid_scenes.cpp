@@ -185,6 +185,21 @@ TEST(Scene, EndIsAWholeNumberOfSteps) {
   EXPECT_THROW(steps("0.3", "0.899999999"), SceneError);
 }
 
+// By default the end is kept to the last bit, where 100 looks would not: 7 is not 100 times 0.07.
+TEST(Scene, AMethodThatChoosesItsStepsLooksAt128EqualTimes) {
+  Folder const folder;
+  for (std::string const method : {"method='tsit5',tolerance=1e-5", "method='auto',error=1e-3"})
+    for (std::string const typed : {"7.0", "60.0", "0.3", "1e-9", "1e300"}) {
+      double const end = std::stod(typed);
+      auto const scene = read_text(folder, replaced(llg_scene, "every = 100", ""),
+                                   {"integrator={" + method + ",end=" + typed + "}"});
+      EXPECT_EQ(scene.integrator.steps, 128);
+      EXPECT_EQ(128 * scene.integrator.dt, end);
+      EXPECT_EQ(scene.output.every, 128) << "first and last frame alone";
+      EXPECT_EQ(scene.output.scalars_every, 128);
+    }
+}
+
 TEST(Scene, ProposedStepsAreAccepted) {
   Folder const folder;
   auto const path = folder.write(llg_scene);

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "advice.hpp"
 
+#include "fine_solution.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/text.hpp"
+
 #include <Kokkos_Timer.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +21,8 @@ constexpr double far = 30;        // the same, where the order is as expected
 constexpr double most_finer = 4;  // cost over that of the try before
 constexpr int tries = 12;         // of one candidate
 constexpr int all_tries = 200;
+constexpr int all_finer = 30;  // beyond the coarsest steps, where those are refused
+constexpr int horizons = 20;   // tried, each half of the one before
 
 // Of the time of a search, roughly.
 constexpr double share_of_coarsest = 0.3;
@@ -23,7 +30,7 @@ constexpr double share_of_judging = 0.4;
 
 struct Try {
   Steps steps;
-  Outcome outcome;
+  double seconds;
   double error;  // estimated
 };
 
@@ -52,8 +59,7 @@ struct Prospect {
   Try const& last() const { return tried.back(); }
   /// Of the coarsest steps that ran.
   double least_seconds() const {
-    return tried.empty() ? std::numeric_limits<double>::infinity()
-                         : tried.front().outcome.seconds();
+    return tried.empty() ? std::numeric_limits<double>::infinity() : tried.front().seconds;
   }
   bool is_judged() const { return tried.size() > 1; }
   /// From the last two tries; the method's own where they do not say.
@@ -86,9 +92,8 @@ struct Prospect {
   }
   double seconds_of(Steps const& steps) const {
     for (auto const& one : tried)
-      if (resolution(one.steps) == resolution(steps)) return one.outcome.seconds();
-    return last().outcome.seconds() *
-           std::pow(resolution(steps) / resolution(last().steps), cost_order);
+      if (resolution(one.steps) == resolution(steps)) return one.seconds;
+    return last().seconds * std::pow(resolution(steps) / resolution(last().steps), cost_order);
   }
   /// Is it near enough to predict the rest?
   bool is_settled(double error) const {
@@ -99,15 +104,14 @@ struct Prospect {
 
 class Search {
  public:
-  Search(Pilot const& pilot, Reference const& horizon, AdviceRequest const& request)
-      : pilot_(pilot), horizon_(horizon), error_(aim * request.error), on_try_(request.on_try) {
+  Search(Pilot const& pilot, Reference const& horizon, FineSolution const& fine,
+         AdviceRequest const& request)
+      : pilot_(pilot),
+        horizon_(horizon),
+        fine_(fine),
+        error_(aim * request.error),
+        on_try_(request.on_try) {
     double const error = request.error;
-    // What to measure by: an error of a thirtieth of the one asked for, by a method whose error
-    // follows its tolerance.
-    Candidate const by{{.method = io::find_method("tsit5"), .generator = io::Generator::tangent}};
-    finest_.steps.tolerance = std::max(error / 100, by.least_tolerance());
-    finest_.outcome = pilot.run(by, horizon.horizon, finest_.steps);
-    if (!finest_.outcome.failure) finest_.error = error / 30;
     for (auto const& candidate : candidates(pilot.scene(), request.precision))
       if (candidate.least_error() < error) add(candidate);
   }
@@ -161,13 +165,22 @@ class Search {
 
  private:
   void add(Candidate const& candidate) {
-    auto const coarsest = coarsest_steps(pilot_, candidate, horizon_.horizon, horizon_.own_steps);
+    auto coarsest = coarsest_steps(pilot_, candidate, horizon_.horizon, horizon_.own_steps);
+    for (int i = 0; is_refused(candidate, coarsest); ++i) {
+      if (i == all_finer) return;
+      coarsest = finer(candidate, coarsest);
+    }
     double const order = pilot_.plan(candidate, horizon_.horizon, coarsest).variant.order;
     bool const adaptive = candidate.method->adaptive;
     // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
     Steps const first = adaptive ? Steps{0, std::min(coarsest.tolerance, 30 * error_)} : coarsest;
     prospects_.push_back(
         {candidate, adaptive ? 1 : order, adaptive ? 1 / order : 1, {}, coarsest, first});
+  }
+
+  bool is_refused(Candidate const& candidate, Steps const& steps) const {
+    return pilot_.scene().integrator.refuse_unstable &&
+           dt_warning(pilot_.plan(candidate, horizon_.horizon, steps));
   }
 
   Prospect* cheapest() {
@@ -203,13 +216,19 @@ class Search {
   void attempt(Prospect& prospect) {
     auto const steps = prospect.next;
     if (on_try_) on_try_(share_, prospect.candidate.name());
-    auto outcome = pilot_.run(prospect.candidate, horizon_.horizon, steps, 3);
+    auto const& candidate = prospect.candidate;
+    auto const outcome = pilot_.run(candidate, fine_.stretch(candidate, steps), steps,
+                                    candidate.method->adaptive ? 1 : 3);
     ++prospect.attempts;
     double const now = prospect.resolution(steps);
     if (outcome.failure) {
       prospect.coarsest = prospect.next = prospect.steps_of(1.5 * now);
     } else {
-      prospect.tried.push_back({steps, std::move(outcome), 0});
+      // The many looks at an adaptive run take time of their own.
+      double const taken = candidate.method->adaptive
+                               ? pilot_.run(candidate, horizon_.horizon, steps, 3).seconds()
+                               : outcome.seconds();
+      prospect.tried.push_back({steps, taken, fine_.distance_of(outcome, candidate, steps)});
       judge(prospect);
       auto const at_cost = [&](double factor) {
         return now * std::pow(factor, 1 / prospect.cost_order);
@@ -231,41 +250,50 @@ class Search {
            prospect.seen_order() < 0.2 * prospect.order;
   }
 
-  // Of the last try and, once there are two, of the one before: by the finest solution so far where
-  // that is much finer, otherwise by each other.
+  // The fine solution tells the error of the last try, up to its own. Below that, the order does.
   void judge(Prospect& prospect) {
     auto& tried = prospect.tried;
-    if (tried.size() < 2) return;
-    auto &before = tried[tried.size() - 2], &now = tried.back();
-    double const ratio = std::pow(
-        prospect.resolution(now.steps) / prospect.resolution(before.steps), -prospect.order);
-    double const apart = distance(before.outcome, now.outcome);
-    before.error = apart / (1 - ratio);
-    now.error = std::max(before.error * ratio, 1e-16);
-    if (finest_.error < 0.2 * before.error) {
-      before.error = distance(before.outcome, finest_.outcome);
-      double const direct = distance(now.outcome, finest_.outcome);
-      if (finest_.error < 0.2 * direct) now.error = direct;
+    auto& now = tried.back();
+    double const unknown = fine_.error();
+    if (tried.size() > 1 && now.error < 5 * unknown) {
+      auto const& before = tried[tried.size() - 2];
+      double const ratio = std::pow(
+          prospect.resolution(now.steps) / prospect.resolution(before.steps), -prospect.order);
+      now.error = std::clamp(before.error * ratio, now.error - unknown, now.error + unknown);
     }
-    bool const in_double = prospect.candidate.precision == Precision::double_precision;
-    if (in_double && now.error < finest_.error) finest_ = now;
+    now.error = std::max(now.error, 1e-16);
   }
 
   Pilot const& pilot_;
   Reference const& horizon_;
+  FineSolution const& fine_;
   double error_;
   OnTry on_try_;
   double share_ = 0;  // of the search that is done, roughly
   std::vector<Prospect> prospects_;
-  Try finest_{{}, {}, std::numeric_limits<double>::infinity()};
 };
+
+// Up to the horizon, which is halved until there is one.
+FineSolution fine_solution(Pilot const& pilot, Reference& horizon, double error) {
+  for (int i = 0; i < horizons; ++i) {
+    FineSolution fine(pilot, horizon.horizon, error);
+    if (fine.error() < error / 5) return fine;
+    horizon.why_shorter = fine.failure().value_or(
+        fmt::format("two runs of tsit5 differ by {:.1e} at t = {}", 9 * fine.error(),
+                    time_text(pilot.scene().units, horizon.horizon, 6)));
+    horizon.horizon /= 2;
+    horizon.own_steps /= 2;
+  }
+  throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
+}
 
 }  // namespace
 
 Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   Kokkos::Timer const clock;
-  auto const horizon = horizon_alone(pilot, seconds);
-  Search search(pilot, horizon, request);
+  auto horizon = horizon_alone(pilot, seconds);
+  auto const fine = fine_solution(pilot, horizon, request.error);
+  Search search(pilot, horizon, fine, request);
   search.run();
   Advised advised;
   advised.others = search.all_advice();

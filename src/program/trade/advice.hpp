@@ -34,8 +34,8 @@ struct Advised {
   double seconds = 0;  // that it took to find out
 };
 
-/// Tries every candidate with coarse steps, judges their errors by each other's and their order,
-/// and goes on with those that promise to be the cheapest.
+/// Tries every candidate with coarse steps, judges their errors by one fine solution, and goes on
+/// with those that promise to be the cheapest.
 Advised advise(Pilot const& pilot, AdviceRequest const& request);
 
 }  // namespace cayspin::program::trade

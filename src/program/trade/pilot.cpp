@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "pilot.hpp"
 
+#include "simulation/guard.hpp"
 #include "simulation/thermal.hpp"
 
 #include <Kokkos_Timer.hpp>
@@ -17,46 +18,78 @@ class KeepStates : public RunObserver<Space, SpinField<Real, typename Space::mem
   using Spins = SpinField<Real, typename Space::memory_space>;
 
  public:
-  KeepStates(std::int64_t every, std::vector<std::vector<double>>& states)
-      : every_(every), states_(states) {}
+  KeepStates(std::vector<std::int64_t> const& steps, SceneGenerator<Spins> const& generator,
+             std::optional<Guard> guard, Outcome& outcome)
+      : steps_(steps), generator_(generator), guard_(std::move(guard)), outcome_(outcome) {}
 
-  bool due(Step const& step) const override { return step.number > 0 && step.number % every_ == 0; }
-  Next operator()(Space const&, Step const& step, Spins const& spins) override {
-    if (step.number == 0) return Next::proceed;
-    auto const numbers = copy_to_host(spins);
-    states_.emplace_back(numbers.begin(), numbers.end());
-    bool const finite =
-        std::ranges::all_of(numbers, [](Real number) { return std::isfinite(number); });
-    return finite ? Next::proceed : Next::stop;
+  bool due(Step const& step) const override {
+    return is_look(step) || (guard_ && guard_->due(step));
+  }
+  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    if (is_look(step) && !keep(spins)) {
+      outcome_.failure = "the spins are not finite";
+    } else if (guard_) {
+      auto const now = cayspin::sample(exec, generator_, step, spins);
+      outcome_.failure = guard_->judge(step, now.energy, now.norm_defect);
+    }
+    return outcome_.failure ? Next::stop : Next::proceed;
   }
 
  private:
-  std::int64_t every_;
-  std::vector<std::vector<double>>& states_;
+  bool is_look(Step const& step) const {
+    auto const kept = outcome_.states.size();
+    return kept < steps_.size() && step.number == steps_[kept];
+  }
+  // Are they finite?
+  bool keep(Spins const& spins) {
+    auto const numbers = copy_to_host(spins);
+    outcome_.states.emplace_back(numbers.begin(), numbers.end());
+    return std::ranges::all_of(numbers, [](Real number) { return std::isfinite(number); });
+  }
+
+  std::vector<std::int64_t> const& steps_;
+  SceneGenerator<Spins> const& generator_;
+  std::optional<Guard> guard_;
+  Outcome& outcome_;
 };
 
 template <class Real, class Space>
-Outcome run_on(io::Scene const& scene, Plan const& plan, std::vector<double> const& start) {
-  Simulation<Real, Space> simulation(scene, plan.lattice, plan.times, start);
+Outcome run_on(io::Scene const& scene, Plan const& plan, Stretch const& stretch, bool guarded) {
+  Simulation<Real, Space> simulation(scene, plan.lattice, plan.times, stretch.start);
   Outcome outcome;
-  KeepStates<Real, Space> keep(scene.output.every, outcome.states);
-  static_cast<Ending&>(outcome) = simulation.advance(plan.variant, plan.options, keep);
-  if (outcome.summary.stopped) outcome.failure = "the spins are not finite";
+  std::optional<Guard> guard;
+  constexpr double margin = 8;  // for other steps than these
+  if (guarded) guard.emplace(scene, std::numeric_limits<Real>::epsilon() / margin);
+  KeepStates<Real, Space> keep(stretch.looks.steps, simulation.generator, guard, outcome);
+  auto const ending = simulation.advance(plan.variant, plan.options, keep);
+  outcome.summary = ending.summary;
+  if (ending.failure) outcome.failure = ending.failure;
   return outcome;
 }
 
 }  // namespace
 
+Looks equal_looks(Candidate const& candidate, Steps const& steps) {
+  Looks looks{Pilot::looks, {}};
+  std::int64_t const count = candidate.method->adaptive ? Pilot::looks : steps.count;
+  for (std::int64_t look = 1; look <= Pilot::looks; ++look)
+    looks.steps.push_back(count / Pilot::looks * look);
+  return looks;
+}
+
+double distance(std::vector<double> const& a, std::vector<double> const& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); i += 3)
+    largest = std::max(largest, std::hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]));
+  return largest;
+}
+
 double distance(Outcome const& a, Outcome const& b) {
   if (a.failure || b.failure || a.states.size() != b.states.size())
     return std::numeric_limits<double>::infinity();
   double largest = 0;
-  for (std::size_t look = 0; look < a.states.size(); ++look) {
-    auto const &first = a.states[look], &second = b.states[look];
-    for (std::size_t i = 0; i < first.size(); i += 3)
-      largest = std::max(largest, std::hypot(first[i] - second[i], first[i + 1] - second[i + 1],
-                                             first[i + 2] - second[i + 2]));
-  }
+  for (std::size_t look = 0; look < a.states.size(); ++look)
+    largest = std::max(largest, distance(a.states[look], b.states[look]));
   return largest;
 }
 
@@ -81,15 +114,23 @@ Plan Pilot::plan(Candidate const& candidate, double horizon, Steps const& steps)
 
 Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& steps,
                    int repetitions) const {
-  auto const scene = with(scene_, candidate, horizon, looks, steps);
-  auto const plan = make_plan(scene, candidate.precision);
+  return run(candidate, {0, horizon, start_, equal_looks(candidate, steps), false}, steps,
+             repetitions);
+}
+
+Outcome Pilot::run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
+                   int repetitions) const {
+  auto const scene = with(scene_, candidate, stretch.length, stretch.looks.intervals, steps);
+  auto plan = make_plan(scene, candidate.precision);
+  plan.times.begin = stretch.begin;
+  if (candidate.method->adaptive) plan.options.steps.end = plan.times.at(plan.times.steps);
   constexpr double enough = 5e-3;  // seconds in all: of what takes microseconds, more are run
   Kokkos::Timer const clock;
   Outcome best;
   for (int i = 0; i < repetitions || (repetitions > 1 && i < 100 && clock.seconds() < enough);
        ++i) {
     auto outcome = in_space(space_, candidate.precision, [&]<class Real, class Space>() {
-      return run_on<Real, Space>(scene, plan, start_);
+      return run_on<Real, Space>(scene, plan, stretch, stretch.guarded && i == 0);
     });
     if (i == 0 || outcome.seconds() < best.seconds()) std::swap(best, outcome);
     if (best.failure || best.seconds() > 0.3) break;

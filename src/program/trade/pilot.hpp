@@ -10,6 +10,23 @@
 
 namespace cayspin::program::trade {
 
+/// When a run's spins are kept.
+struct Looks {
+  std::int64_t intervals;           // equal ones, that adaptive methods take for steps
+  std::vector<std::int64_t> steps;  // ascending, the last step among them
+};
+
+/// At Pilot::looks equal times.
+Looks equal_looks(Candidate const& candidate, Steps const& steps);
+
+/// A part of a scene's run, from `begin` on.
+struct Stretch {
+  double begin, length;
+  std::vector<double> const& start;  // (sites, 3)
+  Looks looks;
+  bool guarded = false;  // does it fail where `cayspin run` stops?
+};
+
 /// What a run without files came to.
 struct Outcome : Ending {
   std::vector<std::vector<double>> states;  // at the looks, (sites, 3)
@@ -17,7 +34,9 @@ struct Outcome : Ending {
   double seconds() const { return summary.step_seconds; }
 };
 
-/// The largest distance of any spin at any look; infinite where one of them is not finite.
+/// The largest distance of any spin.
+double distance(std::vector<double> const& a, std::vector<double> const& b);
+/// The same at any look; infinite where one of them is not finite.
 double distance(Outcome const& a, Outcome const& b);
 
 /// Runs one scene by one method and another, in one execution space, inside a KokkosSession.
@@ -28,10 +47,13 @@ class Pilot {
   Pilot(io::Scene scene, std::string space);
 
   io::Scene const& scene() const { return scene_; }
+  std::vector<double> const& start() const { return start_; }
   double end() const;
 
   /// `repetitions`: of short runs, to measure their time.
   Outcome run(Candidate const& candidate, double horizon, Steps const& steps,
+              int repetitions = 1) const;
+  Outcome run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
               int repetitions = 1) const;
   /// What is known of such a run beforehand.
   Plan plan(Candidate const& candidate, double horizon, Steps const& steps) const;
