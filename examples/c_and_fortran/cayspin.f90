@@ -19,6 +19,13 @@ module cayspin
     integer(c_int64_t) :: strides(4)  ! in numbers
   end type
 
+  type, bind(c) :: cayspin_minimum
+    integer(c_int) :: converged           ! 1 or 0
+    real(c_double) :: torque              ! max |m x H|
+    real(c_double) :: energy              ! summed over sites
+    integer(c_int64_t) :: evaluations     ! of the field over all sites
+  end type
+
   interface
     function cayspin_last_error() bind(c) result(message)
       import c_ptr
@@ -58,6 +65,17 @@ module cayspin
       integer(c_int) :: status
     end function
 
+    ! `applied`: c_loc of three numbers, or c_null_ptr.
+    function cayspin_relax(simulation, torque, evaluations, applied, found) bind(c) result(status)
+      import c_double, c_int, c_int64_t, c_ptr, cayspin_minimum
+      type(c_ptr), value :: simulation
+      real(c_double), value :: torque
+      integer(c_int64_t), value :: evaluations
+      type(c_ptr), value :: applied
+      type(cayspin_minimum), intent(inout) :: found
+      integer(c_int) :: status
+    end function
+
     function cayspin_time(simulation, time) bind(c) result(status)
       import c_double, c_int, c_ptr
       type(c_ptr), value :: simulation
@@ -76,6 +94,13 @@ module cayspin
       import c_int, c_ptr, cayspin_array
       type(c_ptr), value :: simulation
       type(cayspin_array), intent(inout) :: spins
+      integer(c_int) :: status
+    end function
+
+    function cayspin_borrow_field(simulation, field) bind(c) result(status)
+      import c_int, c_ptr, cayspin_array
+      type(c_ptr), value :: simulation
+      type(cayspin_array), intent(inout) :: field
       integer(c_int) :: status
     end function
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception */
 /* Scenes from C, and from all that calls C. Every function returns a cayspin_status. It changes
    what its pointers point to only when that is CAYSPIN_OK. No C++ exception leaves a function.
-   Calls from several threads take turns. */
+   Calls from several threads take turns, but for cayspin_time and cayspin_steps: they do not wait,
+   and say how far a run is. No other call may be under way when cayspin_close is called. */
 #ifndef CAYSPIN_CAYSPIN_H
 #define CAYSPIN_CAYSPIN_H
 
@@ -46,6 +47,14 @@ typedef struct cayspin_array {
   int64_t strides[4]; /* in numbers, not bytes */
 } cayspin_array;
 
+/* A state that cayspin_relax has found, in the units of the scene. */
+typedef struct cayspin_minimum {
+  int converged;       /* 1; 0 where round-off or the limit on evaluations ended the search */
+  double torque;       /* max |m x H| */
+  double energy;       /* summed over sites */
+  int64_t evaluations; /* of the field over all sites */
+} cayspin_minimum;
+
 /* One line about the last call of this thread that failed: empty before the first one. It is valid
    until the next call that fails. */
 char const* cayspin_last_error(void);
@@ -53,8 +62,8 @@ char const* cayspin_last_error(void);
 /* Such as "0.1.0". */
 char const* cayspin_version(void);
 
-/* Opens a scene file. `space`: serial, openmp, threads, cuda, ..., or NULL for Kokkos' default.
-   Starts Kokkos unless the program has. */
+/* Opens a scene file; one without [integrator] is for cayspin_relax alone. `space`: serial, openmp,
+   threads, cuda, ..., or NULL for Kokkos' default. Starts Kokkos unless the program has. */
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
                                  cayspin_simulation** simulation);
 
@@ -70,13 +79,23 @@ cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count);
    that is NULL the scene's output.file. A file that exists is an error unless `overwrite`. */
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite);
 
+/* Moves the spins to a state of rest, as `cayspin relax` does: until max |m x H| is below `torque`,
+   or for so many `evaluations` of the field. `applied`, three numbers, takes the place of the
+   scene's field.applied; NULL: H is that at the time now. Time and steps stay as they are. */
+cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int64_t evaluations,
+                             double const* applied, cayspin_minimum* found);
+
 /* In the units of the scene: reduced, or seconds. */
 cayspin_status cayspin_time(cayspin_simulation const* simulation, double* time);
 cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* steps);
 
 /* The spins where they are: no copy on a host, one on a device. Valid until the next call of
-   cayspin_step, cayspin_run, cayspin_set_spins or cayspin_close. */
+   cayspin_step, cayspin_run, cayspin_relax, cayspin_set_spins or cayspin_close. */
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins);
+
+/* H of every site now, in the units of the scene. Valid until the next call of this function or of
+   cayspin_close. */
+cayspin_status cayspin_borrow_field(cayspin_simulation* simulation, cayspin_array* field);
 
 /* Copies spins in, normalised, of either precision. Methods that remember steps begin again. */
 cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array const* spins);

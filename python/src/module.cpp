@@ -226,6 +226,30 @@ void define_recorder(nb::module_& module) {
       });
 }
 
+// A scene of tables has no lines: "Scene:12: " names one of the text that is made of them.
+std::string without_line_of_tables(std::string_view line) {
+  constexpr std::string_view name = "Scene:";
+  if (!line.starts_with(name)) return std::string(line);
+  auto const end = line.find_first_not_of("0123456789", name.size());
+  if (end == name.size() || end == line.npos || !line.substr(end).starts_with(": "))
+    return std::string(line);
+  return std::string(line.substr(end + 2));
+}
+
+void define_scene_error(nb::module_& module, nb::handle base) {
+  nb::exception<io::SceneError> const error(module, "SceneError", base);
+  nb::register_exception_translator(
+      [](std::exception_ptr const& thrown, void* type) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (io::SceneError const& scene) {
+          PyErr_SetString(static_cast<PyObject*>(type),
+                          without_line_of_tables(scene.what()).c_str());
+        }
+      },
+      error.ptr());
+}
+
 }  // namespace
 }  // namespace cayspin::python
 
@@ -234,7 +258,7 @@ NB_MODULE(_cayspin, module) {
   namespace nb = nanobind;
   nb::set_leak_warnings(false);  // a field that refers to its own simulation is one
   nb::exception<simulation::UsageError> const base(module, "CayspinError");
-  nb::exception<io::SceneError>(module, "SceneError", base);
+  python::define_scene_error(module, base);
   nb::exception<simulation::NumbersFailed>(module, "NumbersFailed", base);
   module.attr("version") = CAYSPIN_VERSION_STRING;
   module.attr("git_commit") = CAYSPIN_GIT_COMMIT;

@@ -4,10 +4,12 @@
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
 
+#include <cayspin/io/relax.hpp>
 #include <cayspin/version.hpp>
 
 #include <algorithm>
 #include <filesystem>
+#include <mutex>
 
 using namespace cayspin::c_interface;
 using namespace cayspin::simulation;
@@ -23,6 +25,10 @@ Precision precision_of(cayspin_precision precision) {
 }
 
 cayspin_simulation* opened(io::Scene const& scene, cayspin_precision precision, char const* space) {
+  if (!scene.field.applied_in_turn.empty())
+    throw io::scene_error(scene, "field.applied",
+                          "a list of fields is for cayspin relax; accepted: three numbers or "
+                          "expressions in t, and cayspin_relax for each of a list");
   RunSettings settings;
   settings.precision = precision_of(precision);
   if (space != nullptr) settings.space = space;
@@ -35,10 +41,31 @@ SceneRun& run_of(cayspin_simulation const* simulation) {
   return *required(simulation, "simulation").run;
 }
 
-/// The run, with the spins that were borrowed given back.
-SceneRun& changing(cayspin_simulation* simulation) {
-  required(simulation, "simulation").borrowed.reset();
-  return *simulation->run;
+/// work(run) while no other thread is in a call on the simulation.
+template <class Work>
+cayspin_status in_turn(cayspin_simulation* simulation, Work const& work) {
+  return guarded([&] {
+    auto& run = run_of(simulation);
+    std::lock_guard const turn(simulation->turn);
+    work(run);
+  });
+}
+
+/// The same, with the spins that were borrowed given back before.
+template <class Work>
+cayspin_status changing(cayspin_simulation* simulation, Work const& work) {
+  return in_turn(simulation, [&](SceneRun& run) {
+    simulation->borrowed.reset();
+    work(run);
+  });
+}
+
+cayspin_array array_of(io::HostVectors const& vectors) {
+  auto const& [nz, ny, nx] = vectors.shape;
+  cayspin_array array{
+      vectors.data, vectors.is_double ? CAYSPIN_DOUBLE : CAYSPIN_SINGLE, {nz, ny, nx, 3}, {}};
+  std::ranges::copy(vectors.strides, array.strides);
+  return array;
 }
 
 void run_to_end(SceneRun& run, RunRecorder* recorder) {
@@ -76,7 +103,7 @@ cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, 
                                  cayspin_simulation** simulation) {
   return guarded([&] {
     auto& result = required(simulation, "simulation");
-    result = opened(io::read_scene(&required(path, "path")), precision, space);
+    result = opened(io::read_scene_to_run_or_relax(&required(path, "path")), precision, space);
   });
 }
 
@@ -84,18 +111,20 @@ cayspin_status cayspin_open_text(char const* text, char const* name, cayspin_pre
                                  char const* space, cayspin_simulation** simulation) {
   return guarded([&] {
     auto& result = required(simulation, "simulation");
-    auto const scene = io::parse_scene(&required(text, "text"), name != nullptr ? name : "scene");
+    auto const scene =
+        io::parse_scene_to_run_or_relax(&required(text, "text"), name != nullptr ? name : "scene");
     result = opened(scene, precision, space);
   });
 }
 
 cayspin_status cayspin_step(cayspin_simulation* simulation, int64_t count) {
-  return guarded([&] { changing(simulation).advance(count); });
+  return changing(simulation, [&](SceneRun& run) { run.advance(count); });
 }
 
 cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, int overwrite) {
-  return guarded([&] {
-    auto& run = changing(simulation);
+  return changing(simulation, [&](SceneRun& run) {
+    if (!io::has_integrator(run.scene()))
+      throw UsageError("the scene has no table [integrator]; accepted: cayspin_relax");
     auto const& file = run.scene().output.file;
     if (output == nullptr && !file)
       throw UsageError("output is NULL and the scene has no output.file; accepted: either");
@@ -104,6 +133,21 @@ cayspin_status cayspin_run(cayspin_simulation* simulation, char const* output, i
                        " and the scene ends at step " +
                        std::to_string(run.scene().integrator.steps) + "; accepted: a later end");
     run_with_file(run, output != nullptr ? std::filesystem::path(output) : *file, overwrite != 0);
+  });
+}
+
+cayspin_status cayspin_relax(cayspin_simulation* simulation, double torque, int64_t evaluations,
+                             double const* applied, cayspin_minimum* found) {
+  return in_turn(simulation, [&](SceneRun& run) {
+    required(found, "found");
+    RelaxSettings settings;
+    settings.torque = torque;
+    settings.evaluations = evaluations;
+    if (applied != nullptr) settings.applied = {applied[0], applied[1], applied[2]};
+    simulation->borrowed.reset();
+    auto const minimum = run.relax(settings);
+    *found = {minimum.end == cayspin::MinimizeEnd::converged, minimum.torque, minimum.energy.value,
+              minimum.evaluations};
   });
 }
 
@@ -122,23 +166,21 @@ cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* step
 }
 
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins) {
-  return guarded([&] {
-    auto& run = run_of(simulation);
+  return in_turn(simulation, [&](SceneRun& run) {
     required(spins, "spins");
-    auto const lent = run.spins();
-    simulation->borrowed = lent;
-    auto const& [nz, ny, nx] = lent.vectors.shape;
-    *spins = {lent.vectors.data,
-              lent.vectors.is_double ? CAYSPIN_DOUBLE : CAYSPIN_SINGLE,
-              {nz, ny, nx, 3},
-              {}};
-    std::ranges::copy(lent.vectors.strides, spins->strides);
+    *spins = array_of(simulation->borrowed.emplace(run.spins()).vectors);
+  });
+}
+
+cayspin_status cayspin_borrow_field(cayspin_simulation* simulation, cayspin_array* field) {
+  return in_turn(simulation, [&](SceneRun& run) {
+    required(field, "field");
+    *field = array_of(simulation->borrowed_field.emplace(run.field()).vectors);
   });
 }
 
 cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array const* spins) {
-  return guarded([&] {
-    auto& run = run_of(simulation);
+  return in_turn(simulation, [&](SceneRun& run) {
     required(spins, "spins");
     required(static_cast<char const*>(spins->data), "spins->data");
     if (spins->shape[3] != 3)
@@ -150,26 +192,20 @@ cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array c
     vectors.shape = {spins->shape[0], spins->shape[1], spins->shape[2]};
     std::ranges::copy(spins->strides, vectors.strides.begin());
     // They may be the ones that were borrowed: those stay until they are read.
-    try {
-      run.set_spins(vectors);
-    } catch (io::SceneError const& error) {
-      throw UsageError(error.what());
-    }
+    run.set_spins(vectors);
     simulation->borrowed.reset();
   });
 }
 
 cayspin_status cayspin_energy(cayspin_simulation* simulation, double* energy) {
-  return guarded([&] {
-    auto& run = run_of(simulation);
+  return in_turn(simulation, [&](SceneRun& run) {
     required(energy, "energy");
     *energy = run.sample().energy.value;
   });
 }
 
 cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magnetization[3]) {
-  return guarded([&] {
-    auto& run = run_of(simulation);
+  return in_turn(simulation, [&](SceneRun& run) {
     required(magnetization, "magnetization");
     auto const m = run.sample().magnetization;
     magnetization[0] = m.x;

@@ -7,12 +7,14 @@
 #include <cayspin/cayspin.h>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
 struct cayspin_simulation {
+  std::mutex turn;  // of the calls of several threads
   std::unique_ptr<cayspin::simulation::SceneRun> run;
-  std::optional<cayspin::simulation::LentVectors> borrowed;
+  std::optional<cayspin::simulation::LentVectors> borrowed, borrowed_field;
 };
 
 namespace cayspin::c_interface {

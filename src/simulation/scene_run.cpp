@@ -109,6 +109,20 @@ io::Scene with_reduced_own_field(io::Scene scene) {
   return scene;
 }
 
+// The program gave the vectors by `name`, for which no text has a key.
+template <class Error>
+std::vector<double> normalised(io::Scene const& scene, std::string const& name) {
+  constexpr std::string_view key = "initial.given: ";
+  try {
+    return io::initial_spins(scene);
+  } catch (io::SceneError const& error) {
+    std::string_view const line = error.what();
+    auto const at = line.find(key);
+    if (at == line.npos) throw;
+    throw Error(fmt::format("{}: {}", name, line.substr(at + key.size())));
+  }
+}
+
 template <class From, class Real>
 std::vector<Real> packed_from(io::HostVectors const& vectors) {
   auto const& [nz, ny, nx] = vectors.shape;
@@ -145,12 +159,12 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
   if (settings.restart)
     restart.emplace(LeftBehind(*settings.restart), own, plan, settings.precision,
                     std::numeric_limits<std::int64_t>::max());
-  auto run = in_space(space, settings.precision,
-                      [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
-                        return std::make_unique<SceneRunInSpace<Real, Space>>(
-                            own, plan, settings.precision, space,
-                            restart ? restart->spins() : io::initial_spins(own));
-                      });
+  auto run = in_space(
+      space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
+        return std::make_unique<SceneRunInSpace<Real, Space>>(
+            own, plan, settings.precision, space,
+            restart ? restart->spins() : normalised<io::SceneError>(own, "initial"));
+      });
   if (!restart) return run;
   run->number_ = restart->step();
   if (restart->memory()) run->exchange(*restart->memory());
@@ -194,7 +208,7 @@ Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
   constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
   if (count > last - number_)
     throw UsageError(
-        fmt::format("{} steps after step {}; accepted: up to step {}", count, number_, last));
+        fmt::format("{} steps after step {}; accepted: up to step {}", count, steps(), last));
   std::int64_t const target = number_ + count;
   if (std::isfinite(plan_.options.steps.end) && plan_.variant.method->adaptive &&
       target > scene_.integrator.steps)
@@ -254,7 +268,7 @@ void SceneRun::set_spins(io::HostVectors const& from) {
   auto as_start = scene_;
   as_start.initial =
       io::GivenStart{std::make_shared<std::vector<double> const>(packed<double>(from))};
-  replace_spins(io::initial_spins(as_start));
+  replace_spins(normalised<UsageError>(as_start, "spins"));
 }
 
 Sample SceneRun::sample() {

@@ -9,6 +9,7 @@
 #include <cayspin/minimizer/minimum.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -51,8 +52,8 @@ struct RelaxSettings {
 };
 
 /// A run of a scene, its types erased: what other languages hold. Calls of several threads, also on
-/// several runs, take turns. Kokkos starts with the first run of a process, unless the program has
-/// started it, and ends with the process.
+/// several runs, take turns; those that count steps and time do not wait. Kokkos starts with the
+/// first run of a process, unless the program has started it, and ends with the process.
 ///
 /// N calls of advance(1) give the bits of one advance(N), and those of `cayspin run`.
 class SceneRun {
@@ -100,7 +101,7 @@ class SceneRun {
   /// other memory, by one copy.
   LentVectors spins();
   /// Normalised in double like any start. Methods that remember steps begin again. Throws
-  /// io::SceneError for a zero or non-finite spin, UsageError for another shape.
+  /// UsageError for a zero or non-finite spin, or another shape.
   void set_spins(io::HostVectors const& from);
 
   /// Stores all that another run needs to go on with the same bits, by RunSettings::restart.
@@ -130,8 +131,9 @@ class SceneRun {
 
   io::Scene scene_;
   Plan plan_;
-  std::int64_t number_ = 0, evaluations_ = 0, own_steps_ = 0, rejected_ = 0;
-  double step_seconds_ = 0;
+  // Other threads read them while the run goes on.
+  std::atomic<std::int64_t> number_ = 0, evaluations_ = 0, own_steps_ = 0, rejected_ = 0;
+  std::atomic<double> step_seconds_ = 0;
   int threads_ = 1;
 
  private:

@@ -173,7 +173,7 @@ class SceneRunInSpace final
                    control_ ? &*control_ : nullptr);
     if (!checkpoint.restores()) return;
     looked_ = guard_.last_look();
-    next_look_ = looked_ < 0 ? number_ : std::numeric_limits<std::int64_t>::max();
+    next_look_ = looked_ < 0 ? steps() : std::numeric_limits<std::int64_t>::max();
   }
 
   Sample look() override {

@@ -96,6 +96,44 @@ TYPED_TEST(CInterface, LendsWithoutACopy) {
   EXPECT_NEAR(m[1], std::sin(0.02), 1e-10 + 8 * this->epsilon);
 }
 
+// Easy axis z, a field along x below that of saturation: m_x = h / K at rest, H = (h, 0, K m_z).
+TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
+  std::string text = scene_text("anisotropy = { constant = 2.0, axis = [0, 0, 1] }\n");
+  text.replace(text.find("[0.0, 0.0, 1.0]"), 15, "[1.0, 0.0, 0.0]");
+  text.replace(text.find("uniform = [1.0, 0.0, 0.0]"), 25, "uniform = [0.6, 0.3, 0.6]");
+  text.erase(text.find("[integrator]"));
+  auto const owner = open(text, Type<TypeParam>::precision);
+  auto* const simulation = owner.get();
+  double const torque = 1e3 * this->epsilon, limit = 1e4 * this->epsilon;
+  auto const expect_rest = [&](double const* applied, double m_x, double h) {
+    cayspin_minimum found{};
+    ASSERT_EQ(cayspin_relax(simulation, torque, 1000, applied, &found), CAYSPIN_OK)
+        << cayspin_last_error();
+    EXPECT_EQ(found.converged, 1);
+    EXPECT_LE(found.torque, torque);
+    EXPECT_GT(found.evaluations, 1);
+    EXPECT_NEAR(found.energy, 2 * (-h * m_x - (1 - m_x * m_x)), limit);
+    double m[3] = {};
+    ASSERT_EQ(cayspin_magnetization(simulation, m), CAYSPIN_OK);
+    EXPECT_NEAR(m[0], m_x, limit);
+    EXPECT_NEAR(m[2], std::sqrt(1 - m_x * m_x), limit);
+  };
+  expect_rest(nullptr, 0.5, 1);
+  double const applied[3] = {-1.6, 0, 0};
+  expect_rest(applied, -0.8, -1.6);
+  int64_t steps = -1;
+  EXPECT_EQ(cayspin_steps(simulation, &steps), CAYSPIN_OK);
+  EXPECT_EQ(steps, 0);
+
+  cayspin_array field{};
+  ASSERT_EQ(cayspin_borrow_field(simulation, &field), CAYSPIN_OK) << cayspin_last_error();
+  for (int x = 0; x < 2; ++x) {
+    EXPECT_EQ(this->number(field, x, 0), 1);  // of the scene
+    EXPECT_EQ(this->number(field, x, 1), 0);
+    EXPECT_NEAR(this->number(field, x, 2), 2 * 0.6, 2 * limit);
+  }
+}
+
 TEST(CInterfaceTexts, Version) { EXPECT_EQ(std::string(cayspin_version()).substr(0, 2), "0."); }
 
 }  // namespace

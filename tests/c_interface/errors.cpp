@@ -46,6 +46,11 @@ TEST(CInterfaceErrors, NullPointers) {
   refuses(cayspin_set_spins(nullptr, &spins), "simulation");
   refuses(cayspin_set_spins(simulation.get(), nullptr), "spins");
   refuses(cayspin_set_spins(simulation.get(), &spins), "spins->data");
+  cayspin_minimum found{};
+  refuses(cayspin_borrow_field(nullptr, &spins), "simulation");
+  refuses(cayspin_borrow_field(simulation.get(), nullptr), "field");
+  refuses(cayspin_relax(nullptr, 1e-6, 10, nullptr, &found), "simulation");
+  refuses(cayspin_relax(simulation.get(), 1e-6, 10, nullptr, nullptr), "found");
   refuses(cayspin_energy(nullptr, &number), "simulation");
   refuses(cayspin_energy(simulation.get(), nullptr), "energy");
   refuses(cayspin_magnetization(nullptr, &number), "simulation");
@@ -143,12 +148,40 @@ TEST(CInterfaceErrors, WrongSpins) {
     }
   refuses({numbers, CAYSPIN_DOUBLE, {2, 1, 1, 3}, {3, 3, 3, 1}}, "(2, 1, 1, 3)");
   refuses({numbers, static_cast<cayspin_precision>(0), {1, 1, 2, 3}, {6, 6, 3, 1}}, "precision 0");
-  refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}}, "");  // a spin of length 0
+  // The line begins with what the caller gave, and names no line of a text.
+  auto const refuses_second = [&] {
+    refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}},
+            "spins: the spin of site (1, 0, 0)");
+    EXPECT_EQ(std::string(cayspin_last_error()).find("spins: "), 0u) << cayspin_last_error();
+  };
+  refuses_second();  // of length 0
   numbers[3] = std::nan("");
-  refuses({numbers, CAYSPIN_DOUBLE, {1, 1, 2, 3}, {6, 6, 3, 1}}, "");
+  refuses_second();
   double m[3] = {};
   EXPECT_EQ(cayspin_magnetization(simulation.get(), m), CAYSPIN_OK);
   EXPECT_EQ(m[0], 1);
+}
+
+TEST(CInterfaceErrors, StatesOfRest) {
+  auto text = scene_text();
+  auto const simulation = open(text);
+  cayspin_minimum found{7, 7, 7, 7};
+  auto const relax = [&](double torque, int64_t evaluations, double const* applied = nullptr) {
+    return cayspin_relax(simulation.get(), torque, evaluations, applied, &found);
+  };
+  expect_failure(relax(0, 10), CAYSPIN_WRONG_USAGE, "torque 0; accepted: ");
+  expect_failure(relax(std::nan(""), 10), CAYSPIN_WRONG_USAGE, "torque nan; accepted: ");
+  expect_failure(relax(1e-6, 0), CAYSPIN_WRONG_USAGE, "0 evaluations; accepted: ");
+  double const applied[3] = {0, std::nan(""), 0};
+  expect_failure(relax(1e-6, 10, applied), CAYSPIN_WRONG_USAGE, "applied: not finite");
+  EXPECT_EQ(found.converged + found.torque + found.energy + double(found.evaluations), 28);
+
+  text.erase(text.find("[integrator]"));
+  auto const at_rest = open(text);
+  for (auto const status : {cayspin_step(at_rest.get(), 1), cayspin_run(at_rest.get(), "no.h5", 0)})
+    expect_failure(status, CAYSPIN_WRONG_USAGE, "has no table [integrator]");
+  text.replace(text.find("[0.0, 0.0, 1.0]"), 15, "[[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]");
+  expect_failure(open_with(text), CAYSPIN_WRONG_SCENE, "cayspin_relax for each of a list");
 }
 
 TEST(CInterfaceErrors, RunsAndFiles) {

@@ -60,7 +60,10 @@ class Scenes(PackageTest):
                     {"system": {"damping": object()}},
                 "initial.given: stands for spins": {"initial": {"given": True}},
                 "thermic: unknown key": {"thermic": {"temperature": 1}}}.items():
-            self.assert_refused(cayspin.SceneError, part, scene, **tables)
+            with self.assertRaises(cayspin.SceneError) as caught:
+                scene(**tables)
+            # Tables have no lines.
+            self.assertEqual(str(caught.exception)[:len(part)], part)
         self.assert_refused(cayspin.SceneError, "cannot be read", cayspin.Scene.from_file,
                             self.folder / "missing.toml")
         self.assertTrue(issubclass(cayspin.SceneError, cayspin.CayspinError))
@@ -69,7 +72,8 @@ class Scenes(PackageTest):
                             cayspin.Simulation, of, space="abacus")
         self.assert_refused(cayspin.CayspinError, "accepted: \"double\", \"single\"",
                             cayspin.Simulation, of, precision="half")
-        self.assert_refused(cayspin.SceneError, "\"auto\" is chosen by the program",
+        self.assert_refused(cayspin.SceneError,
+                            "integrator.method: \"auto\" is chosen by the program",
                             cayspin.Simulation,
                             scene(integrator={"method": "auto", "error": 1e-3}))
 

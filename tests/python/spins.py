@@ -105,8 +105,13 @@ class Setting(PackageTest):
                             setattr, sim, "spins", np.ones((4, 3)))
         wrong = np.ones((2, 3, 7, 3))
         wrong[1, 2, 4] = 0
-        self.assert_refused(cayspin.SceneError, "site (4, 2, 1) is (0, 0, 0)",
-                            setattr, sim, "spins", wrong)
+        with self.assertRaisesRegex(cayspin.CayspinError,
+                                    r"^spins: the spin of site \(4, 2, 1\) is \(0, 0, 0\)") as found:
+            sim.spins = wrong
+        self.assertNotIsInstance(found.exception, cayspin.SceneError)
+        with self.assertRaisesRegex(cayspin.SceneError,
+                                    r"^initial: the spin of site \(4, 2, 1\) is \(0, 0, 0\)"):
+            cayspin.Simulation(scene(initial=wrong))
         self.assertTrue((sim.spins == [0, 0, 1]).all())
         self.assert_refused(cayspin.SceneError, "accepted: (nz, ny, nx, 3)",
                             scene, initial=np.ones((7, 3)))

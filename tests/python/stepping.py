@@ -145,6 +145,20 @@ class OtherThreads(PackageTest):
         thread.join()
         self.assertGreater(counted, 1000)
 
+    def test_counts_are_read_while_stepping(self):
+        sim, whole = cayspin.Simulation(scene()), cayspin.Simulation(scene())
+        whole.step(40)
+        thread = threading.Thread(target=lambda: [sim.step() for _ in range(40)])
+        thread.start()
+        counts = [(0, 0.0, 0)]
+        while thread.is_alive():
+            counts.append((sim.steps, sim.time, sim.evaluations))
+        thread.join()
+        counts.append((sim.steps, sim.time, sim.evaluations))
+        for before, after in zip(counts, counts[1:]):
+            self.assertTrue(all(a <= b for a, b in zip(before, after)), (before, after))
+        self.assertEqual(counts[-1], (40, whole.time, whole.evaluations))
+
     def test_two_simulations_in_two_threads(self):
         alone = cayspin.Simulation(scene())
         alone.step(40)
