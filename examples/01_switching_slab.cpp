@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A slab of a hundred spins is switched by a strong field; every spin stays on its sphere.
+// A slab of a hundred spins is switched by a strong field. The README shows this program.
 #include <cayspin/cayspin.hpp>
 
 #include <cstdio>
@@ -18,6 +18,5 @@ int main(int argc, char** argv) {
   cayspin::integrate(exec, stepper, generator, spins, {.begin = 0, .dt = 0.01, .steps = 6000});
 
   auto m = cayspin::magnetization(exec, spins);
-  std::printf("m = (%.6f, %.6f, %.6f), largest | |m| - 1 | = %.1e\n", m.x, m.y, m.z,
-              cayspin::norm_defect(exec, spins));
+  std::printf("m = (%.4f, %.4f, %.4f)\n", m.x, m.y, m.z);  // m = (1.0000, 0.0000, 0.0000)
 }

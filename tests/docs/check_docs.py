@@ -112,6 +112,19 @@ def wrong_commands(root, pages):
                     yield page.path, number, f"there is no preset {preset}"
 
 
+def other_first_program(root, pages):
+    """The README's first program is one that is compiled and runs."""
+    example = "examples/01_switching_slab.cpp"
+    if not os.path.exists(os.path.join(root, example)):
+        return
+    code = read(root, example)
+    for page in pages:
+        if page.path == "README.md":
+            blocks = re.findall(r"^```cpp\n(.*?)^```$", "\n".join(page.lines), re.DOTALL | re.MULTILINE)
+            if not blocks or blocks[0] != code[code.index("#include"):]:
+                yield page.path, 1, f"the first program is not that of {example}"
+
+
 def counts(page):
     sentences = page.sentences()
     every = page.words("prose", "heading", "table", "link definition")
@@ -131,7 +144,8 @@ def check_pages(root, show=print):
         show(f"{path:40} {row[0]:7} {row[1]:7} {row[2]:7} {row[3]:10} {row[4]:8} {row[5]:9}")
 
     faults = [*wrong_links(root, pages), *long_lines(pages), *page_words(pages),
-              *missing_files(root, pages), *wrong_commands(root, pages)]
+              *missing_files(root, pages), *wrong_commands(root, pages),
+              *other_first_program(root, pages)]
     guide = [row for path, row in rows if path == "README.md" or path.startswith("docs" + os.sep)]
     words = sum(row[0] for row in guide)
     show(f"README and docs: {words} words of at most {WORD_LIMIT}; sentences over "

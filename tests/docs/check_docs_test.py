@@ -78,6 +78,14 @@ class CheckDocs(unittest.TestCase):
         self.expect(GOOD + "\nType `bash cmake/bootstrap.sh build --preset moon`.\n",
                     "no preset moon", 12)
 
+    def test_first_program(self):
+        program = {"examples/01_switching_slab.cpp": "// A slab.\n#include <cstdio>\nint main() {}\n"}
+        readme = FILES["README.md"]
+        program["README.md"] = readme + "\n```cpp\n#include <cstdio>\nint main() {}\n```\n"
+        self.assertEqual(self.faults(GOOD, program), [])
+        program["README.md"] = program["README.md"].replace("main() {}", "main() { }")
+        self.assertIn("is not that of", self.faults(GOOD, program)[0][2])
+
     def test_number_of_words(self):
         self.expect(GOOD + "\n| " + "word " * check_docs.WORD_LIMIT + "|\n", "words in README and docs")
         self.assertEqual(self.faults(GOOD + "\n```\n" + "word " * check_docs.WORD_LIMIT + "\n```\n"), [])

@@ -3,7 +3,7 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
-#include <cayspin/stepper/stiff_midpoint.hpp>
+#include <cayspin/stepper/stiff_gauss.hpp>
 
 #include <tuple>
 
@@ -41,8 +41,8 @@ using Kinds = ::testing::Types<
     Compensated<Rkmk4<Field<float>>>, FieldExtrapolation3<Field<float>>,
     FieldExtrapolation4<Field<double>>, Estimating<Field<double>>, AdaptiveRkmk<Field<double>>,
     AdaptiveRkmk<Field<float>>, AdaptiveStereographic<Field<double>, tableau::BogackiShampine3>,
-    AdaptiveProjected<Field<double>>, StiffMidpoint2<Field<double>>, StiffMidpoint2<Field<float>>,
-    StiffMidpoint4<Field<double>>>;
+    AdaptiveProjected<Field<double>>, StiffGauss2<Field<double>>, StiffGauss2<Field<float>>,
+    StiffGauss4<Field<double>>>;
 TYPED_TEST_SUITE(Checkpoints, Kinds);
 
 template <class Stepper>
