@@ -134,10 +134,8 @@ void check_combination(Scene const& scene) {
   check_energy_control(scene);
   check_compensation(scene);
   detail::check_thermal(scene);
-  if (method.automatic &&
-      ((scene.field.slab_demag && scene.field.slab_demag->dear) || integrator.substeps > 1))
-    refuse(scene, "integrator.method", "\"auto\" chooses among methods without a dear field",
-           "the method itself");
+  if (method.automatic && integrator.substeps > 1)
+    refuse(scene, "integrator.substeps", "method \"auto\" chooses the substeps", "no such key");
   if (method.is_baseline() || method.automatic) return;
   if (!method.takes(integrator.rotation)) {
     bool const exponential = method.usual_rotation() == Rotation::exponential;

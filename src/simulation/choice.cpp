@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace cayspin::simulation {
 
 void Choice::put_into(io::Integrator& integrator) const {
@@ -12,6 +14,7 @@ void Choice::put_into(io::Integrator& integrator) const {
   integrator.sigma = sigma;
   integrator.rotation = rotation;
   integrator.compensated = compensated;
+  integrator.substeps = std::max<std::int64_t>(1, substeps);
 }
 
 std::string Choice::keys() const {
@@ -25,6 +28,7 @@ std::string Choice::keys() const {
   else if (isotropy != io::Isotropy::zero)
     text += fmt::format(",isotropy=\"{}\"", io::to_string(isotropy));
   if (compensated) text += ",compensated=true";
+  if (substeps > 1) text += fmt::format(",substeps={}", substeps);
   return text;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cayspin/io/scene.hpp>
 
+#include <cstdint>
 #include <string>
 
 namespace cayspin::simulation {
@@ -15,6 +16,7 @@ struct Choice {
   double sigma = 0;
   io::Rotation rotation = io::Rotation::cayley;
   bool compensated = false;
+  std::int64_t substeps = 0;  // between evaluations of a dear field; 0: no field is dear
 
   /// Puts it into a scene's [integrator].
   void put_into(io::Integrator& integrator) const;

@@ -6,6 +6,7 @@
 
 #include <cayspin/io/scene.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 
@@ -22,6 +23,10 @@ void require_dear_field_fits(io::Scene const& scene, Variant const& variant);
 /// The order in time of its interpolation: 4 for methods of a higher order, otherwise 3, which
 /// stands longer steps.
 int order_of_dear(Variant const& variant);
+/// The method's order around a dear field.
+inline int order_around_dear(Variant const& variant) {
+  return std::min(variant.order, order_of_dear(variant));
+}
 /// Fields of three numbers per site that the method keeps for a dear field.
 inline std::int64_t work_fields_of_dear(Variant const& variant) {
   return order_of_dear(variant) + 1;

@@ -4,6 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+#include <map>
+#include <string>
+
 namespace cayspin::program::test {
 namespace {
 
@@ -86,10 +90,68 @@ TEST_F(DearFields, AreChecked) {
   EXPECT_EQ(numbers.at("evaluations_per_step"), 24);
 }
 
+// Evaluated once a step or in each stage: all come to the same spins.
+TEST_F(DearFields, AreTraded) {
+  auto const outcome =
+      command({"trade", "--json", "--seconds", "0.2", "--precision", "double", "--threads", "1",
+               "--set", "integrator={method='tsit5',tolerance=1e-3,dt=0.1,steps=10}"});
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  auto const trade = nlohmann::json::parse(outcome.output);
+  std::map<std::string, nlohmann::json> ladders;
+  for (auto const& method : trade["methods"]) ladders[method["method"]] = method["rungs"];
+  for (std::string const name :
+       {"rkmk4", "rkmk4, dear, 1 substep", "rkmk4 tangent, dear, 4 substeps",
+        "projected_rk4, dear, 2 substeps", "tsit5"})
+    EXPECT_TRUE(ladders.contains(name)) << name;
+  for (std::string const name : {"tsit5, dear, 2 substeps", "fx4, dear, 2 substeps"})
+    EXPECT_FALSE(ladders.contains(name)) << name;
+  for (std::int64_t const substeps : {1, 2}) {
+    auto const& rungs = ladders.at("rkmk4, dear, " + std::to_string(substeps) +
+                                   (substeps > 1 ? " substeps" : " substep"));
+    ASSERT_GE(rungs.size(), 2u);
+    EXPECT_LT(rungs.back()["error"].get<double>(), 0.5 * rungs.front()["error"].get<double>());
+    for (auto const& rung : rungs) {
+      // Of the other terms: in two passes but for the first step.
+      auto const steps = std::llround(1 / rung["dt"].get<double>());
+      EXPECT_EQ(rung["evaluations"], 4 * substeps * (2 * steps - 1));
+    }
+  }
+}
+
+// Whichever is faster here: one evaluation a step, or one in each stage.
+TEST_F(DearFields, AreChosenForAnError) {
+  EXPECT_EQ(run("exact.h5", {"--set", "field.slab_demag.dear=false", "--set",
+                             "integrator={method='rkmk8',dt=0.01,steps=200}"})
+                .errors,
+            "");
+  for (std::string const error : {"1e-3", "1e-5"}) {
+    EXPECT_EQ(run("out.h5", {"--overwrite", "--threads", "1", "--set",
+                             "integrator={method='auto',error=" + error + ",dt=0.1,end=2}"})
+                  .errors,
+              "");
+    EXPECT_LT(distance(last_spins("out.h5"), last_spins("exact.h5")), 2 * std::stod(error));
+    auto const header = io::read_info(in_folder("out.h5")).header;
+    EXPECT_TRUE(contains(header.scene_text, "dear = true"));
+    auto const choice = [](std::string const& resolved) {
+      EXPECT_TRUE(contains(resolved, "dear = true") || !contains(resolved, "substeps")) << resolved;
+      auto const method = resolved.find("method = ");
+      return resolved.substr(method, resolved.find(',', method) - method) +
+             (contains(resolved, "dear = true") ? " dear" : "");
+    };
+    // Takes up the choice, and goes on to another end.
+    EXPECT_EQ(run("longer.h5", {"--overwrite", "--restart", "out.h5", "--set",
+                                "integrator={method='auto',error=" + error + ",dt=0.1,end=3}"})
+                  .errors,
+              "");
+    EXPECT_EQ(choice(io::read_info(in_folder("longer.h5")).header.resolved_scene),
+              choice(header.resolved_scene));
+  }
+}
+
 TEST_F(DearFields, AreRefusedInOneLine) {
   std::vector<std::pair<Arguments, std::string>> const wrong{
-      {{"trade"}, "field.slab_demag.dear: methods are compared without dear fields"},
-      {{"advise", "--error", "1e-3"}, "field.slab_demag.dear: methods are compared without"},
+      {{"advise", "--error", "1e-3", "--set", "field.slab_demag={normal=[1,0,0]}"},
+       "integrator.substeps: no term of the field is dear"},
       {{"check", "--ranks", "1,2"}, "the method runs on one rank alone"},
       {{"check", "--set", "integrator.method='ab2'"}, "\"ab2\" takes no dear field"},
       {{"run", "--output", "out.h5", "--set", "integrator={method='tsit5',tolerance=1e-3,end=1}"},

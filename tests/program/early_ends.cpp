@@ -43,11 +43,10 @@ TEST_F(EarlyEnd, InterruptAfterARestartNamesTheStepOfTheFile) {
 // Without a dt of the scene, too.
 TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
   write("chain.toml", chain_scene());
-  auto const outcome = start(
-      {"run", "chain.toml", "--quiet", "--set",
-       "integrator={method='tsit5',tolerance=1e-8,end=2e5}", "--set", "output.checkpoint_every=0",
-       "--set", "output.every=128"},
-      {.interrupt_after = 0.2, .interrupt_when = in_folder("chain.h5")});
+  auto const outcome = start({"run", "chain.toml", "--quiet", "--set",
+                              "integrator={method='tsit5',tolerance=1e-8,end=2e5}", "--set",
+                              "output.checkpoint_every=0", "--set", "output.every=128"},
+                             {.interrupt_after = 0.2, .interrupt_when = in_folder("chain.h5")});
   EXPECT_EQ(outcome.status, 130) << outcome.errors;
   auto const info = io::read_info(in_folder("chain.h5"));
   EXPECT_FALSE(info.complete);

@@ -37,11 +37,11 @@ auto const name = [](auto const& info) { return std::string(info.param.name); };
 INSTANTIATE_TEST_SUITE_P(
     Llg, WrongCombination,
     testing::Values(
-        Combination{"auto_with_a_dear_field",
-                    {"integrator={method='auto',error=1e-3,end=1}",
+        Combination{"auto_with_substeps",
+                    {"integrator={method='auto',error=1e-3,end=1,substeps=2}",
                      "field.slab_demag={normal=[1,0,0],where='host',dear=true}"},
-                    "integrator.method",
-                    "without a dear field"},
+                    "integrator.substeps",
+                    "\"auto\" chooses the substeps"},
         Combination{"analytic_with_rkmk4",
                     {"integrator.isotropy='analytic'"},
                     "integrator.isotropy",

@@ -2,6 +2,7 @@
 #include "advice.hpp"
 
 #include "fine_solution.hpp"
+#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 
@@ -170,7 +171,8 @@ class Search {
       if (i == all_finer) return;
       coarsest = finer(candidate, coarsest);
     }
-    double const order = pilot_.plan(candidate, horizon_.horizon, coarsest).variant.order;
+    auto const& variant = pilot_.plan(candidate, horizon_.horizon, coarsest).variant;
+    double const order = candidate.substeps > 0 ? order_around_dear(variant) : variant.order;
     bool const adaptive = candidate.method->adaptive;
     // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
     Steps const first = adaptive ? Steps{0, std::min(coarsest.tolerance, 30 * error_)} : coarsest;

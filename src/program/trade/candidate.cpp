@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "candidate.hpp"
 
+#include "simulation/dear_method.hpp"
+#include "simulation/text.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +19,7 @@ std::string Candidate::name() const {
   if (sigma != 0) name += fmt::format(" sigma {:.3g}", sigma);
   if (precision == Precision::single_precision) name += ", single";
   if (compensated) name += " compensated";
+  if (substeps > 0) name += fmt::format(", dear, {}", counted(substeps, "substep"));
   return name;
 }
 
@@ -40,7 +44,9 @@ double sum_of_couplings(io::Scene const& scene) {
 
 bool is_possible(io::Scene const& scene, Candidate const& candidate) {
   try {
-    io::check_combination(with(scene, candidate, 1, 1, {1, 1}));
+    auto const tried = with(scene, candidate, 1, 1, {1, 1});
+    io::check_combination(tried);
+    require_dear_field_fits(tried, find_variant(tried));
     return true;
   } catch (io::SceneError const&) {
     return false;
@@ -66,7 +72,14 @@ std::vector<Candidate> in_double(io::Scene const& scene) {
       all.back().sigma = couplings;
     }
   }
-  std::erase_if(all, [&](Candidate const& candidate) { return !is_possible(scene, candidate); });
+  if (has_dear_field(scene)) {
+    auto const each_stage = all.size();
+    for (std::size_t i = 0; i < each_stage; ++i)
+      for (auto const substeps : {1, 2, 4}) {
+        all.push_back(all[i]);
+        all.back().substeps = substeps;
+      }
+  }
   std::ranges::stable_sort(all, std::greater{},
                            [](Candidate const& candidate) { return candidate.method->order; });
   return all;
@@ -85,6 +98,7 @@ std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precisio
     single.compensated = true;
     if (trials.contains(io::Trial::compensated_single_precision)) all.push_back(single);
   }
+  std::erase_if(all, [&](Candidate const& one) { return !is_possible(scene, one); });
   if (precision)
     std::erase_if(all, [&](Candidate const& one) { return one.precision != *precision; });
   return all;
@@ -94,6 +108,7 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
                Steps const& steps) {
   auto& integrator = scene.integrator;
   candidate.put_into(integrator);
+  if (scene.field.slab_demag) scene.field.slab_demag->dear = candidate.substeps > 0;
   integrator.until_torque.reset();
   integrator.error.reset();
   integrator.energy_control = false;

@@ -20,7 +20,7 @@ struct Candidate : Choice {
   double least_tolerance() const;
   /// Round-off of a run comes up to here: no smaller error is asked of the candidate.
   double least_error() const { return 2 * least_tolerance(); }
-  /// Such as "rkmk4 tangent, single".
+  /// Such as "rkmk4 tangent, single" or "rkmk4, dear, 4 substeps".
   std::string name() const;
 };
 
@@ -30,7 +30,8 @@ struct Steps {
   double tolerance = 0;
 };
 
-/// All that can run a scene, those of high order first; in one precision, where that is given.
+/// All that can run a scene, those of high order first; in one precision, where that is given. A
+/// dear field is evaluated once a step of some, and in each stage of others.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
 /// The scene up to `horizon` by a candidate, looked at `looks` times on the way, the last at the

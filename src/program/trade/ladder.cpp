@@ -42,7 +42,8 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
                      std::int64_t own_steps) {
   if (candidate.method->adaptive) return {0, 0.1};
   // Fewer than an explicit adaptive method takes at its coarsest, but stable ones.
-  double const few = candidate.method->stiff ? 0 : static_cast<double>(own_steps) / 4;
+  auto const parts = static_cast<double>(4 * std::max<std::int64_t>(1, candidate.substeps));
+  double const few = candidate.method->stiff ? 0 : static_cast<double>(own_steps) / parts;
   auto plain = candidate;
   plain.isotropy = io::Isotropy::zero;
   plain.sigma = 0;  // it may make slow modes grow by a little, which is no reason to begin finer

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "pilot.hpp"
 
+#include "simulation/dear_method.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/thermal.hpp"
 
@@ -61,7 +62,8 @@ Outcome run_on(io::Scene const& scene, Plan const& plan, Stretch const& stretch,
   constexpr double margin = 8;  // for other steps than these
   if (guarded) guard.emplace(scene, std::numeric_limits<Real>::epsilon() / margin);
   KeepStates<Real, Space> keep(stretch.looks.steps, simulation.generator, guard, outcome);
-  auto const ending = simulation.advance(plan.variant, plan.options, keep);
+  auto const method = open_method(scene, plan, &simulation);
+  auto const ending = simulation.advance(*method, keep);
   outcome.summary = ending.summary;
   if (ending.failure) outcome.failure = ending.failure;
   return outcome;

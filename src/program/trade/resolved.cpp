@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "resolved.hpp"
 
+#include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 
 #include <fmt/format.h>
@@ -60,6 +61,8 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
                     integrator.steps / together * parts,
                     {}};
   resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
+  if (has_dear_field(scene) && advice.candidate.substeps == 0)
+    resolved.overrides.emplace_back("field.slab_demag.dear=false");
   auto const keep = [&](char const* key, std::int64_t every) {
     if (!scene.places.contains(std::string("output.") + key)) return;
     resolved.overrides.push_back(
@@ -103,6 +106,8 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
   if (!same_choice || std::abs(whole - std::round(whole)) > 1e-6) return std::nullopt;
   std::vector overrides{io::as_override(resolved_before, "integrator"),
                         fmt::format("integrator.steps={}", steps(scene.integrator.steps))};
+  if (has_dear_field(scene) && !has_dear_field(resolved))
+    overrides.emplace_back("field.slab_demag.dear=false");
   auto const keep = [&](char const* key, std::int64_t every) {
     if (scene.places.contains(std::string("output.") + key))
       overrides.push_back(
