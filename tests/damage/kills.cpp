@@ -64,6 +64,16 @@ class Kills : public ProgramTest {
     }
   }
 
+  // A block of HDF5's own, such as an index, that lies across two pages of the system: a kill
+  // between them leaves its checksum wrong. docs/reports/reliability.md says so.
+  bool was_torn_between_pages(std::string const& name, Outcome const& reader) {
+    bool const torn = reader.status == 2 && is_one_line(reader.errors) &&
+                      contains(reader.errors, "incorrect metadata checksum");
+    if (torn) fs::rename(in_folder(name), in_folder("torn_" + name));
+    torn_ += torn;
+    return torn;
+  }
+
   // Every step that was seen is there with its spins, and the run can go on.
   void expect_nothing_lost(std::string const& name, std::vector<std::int64_t> const& seen) {
     auto const path = in_folder(name);
@@ -73,6 +83,7 @@ class Kills : public ProgramTest {
       return;
     }
     auto const info = start({"info", name});
+    if (was_torn_between_pages(name, info)) return;
     ASSERT_EQ(info.status, 0) << info.errors << keep(path);
     auto const file = io::read_info(path);
     EXPECT_FALSE(file.complete);
@@ -86,14 +97,21 @@ class Kills : public ProgramTest {
     for (std::size_t frame = 0; frame + 1 < file.frame_steps.size(); ++frame)
       EXPECT_EQ(file.frame_steps[frame], 4 * static_cast<std::int64_t>(frame));
     frames_ += file.frames;
-    if (file.frames > 0) expect_restart(name, last);
+    if (file.frames > 0) {
+      auto const outcome = restart(name, last);
+      if (was_torn_between_pages(name, outcome)) return;
+      expect_restarted(name, last, outcome);
+    }
     ++counts_["whole"];
   }
 
-  void expect_restart(std::string const& name, std::int64_t last) {
+  Outcome restart(std::string const& name, std::int64_t last) const {
+    return start(run_to("again.h5", {"--overwrite", "--restart", name, "--set",
+                                     "integrator.steps=" + std::to_string(last + 8)}));
+  }
+
+  void expect_restarted(std::string const& name, std::int64_t last, Outcome const& outcome) {
     auto const again = "again.h5";
-    auto const outcome = start(run_to(again, {"--overwrite", "--restart", name, "--set",
-                                              "integrator.steps=" + std::to_string(last + 8)}));
     ASSERT_EQ(outcome.status, 0) << outcome.errors << keep(in_folder(name));
     auto const file = io::read_info(in_folder(again));
     EXPECT_TRUE(file.complete);
@@ -140,18 +158,22 @@ class Kills : public ProgramTest {
       EXPECT_TRUE(status == 128 + signal || (signal == SIGTERM && status == 130)) << status;
       expect_nothing_lost(name, seen);
     }
+    if (torn_ > 0) counts_["torn"] = torn_;
+    EXPECT_LE(torn_, 1 + kills / 100);
   }
 
   void print_summary(char const* what) const {
     std::cout << what << ':';
     for (auto const& [outcome, count] : counts_) std::cout << ' ' << count << ' ' << outcome << ',';
-    std::cout << ' ' << frames_ << " frames" << (HasFailure() ? "" : ", all there") << '\n';
+    bool const lost = HasFailure() || counts_.contains("torn");
+    std::cout << ' ' << frames_ << " frames" << (lost ? "" : ", all there") << '\n';
   }
 
   long kills_ = number_from("CAYSPIN_KILLS", 5);
   Chance chance_{static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1))};
   std::map<std::string, long> counts_;
   std::int64_t frames_ = 0;
+  long torn_ = 0;
   int number_ = 0;
 };
 
