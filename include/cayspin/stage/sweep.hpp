@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/strip_crew.hpp>
 #include <cayspin/detail/sweep_plan.hpp>
 #include <cayspin/stage/pass.hpp>
 
@@ -36,11 +37,12 @@ struct StageBuffers {
       if (reads(stage, buffer)) last = stage;
     return last;
   }
-  /// Planes in use at a time: a stage that reads neighbours needs three.
-  static constexpr int planes(int buffer) {
-    int const lag = last_reader(buffer) - producer(buffer);
-    if (lag == 0) return 0;
-    return buffer < per_kind ? std::max(3, lag + 1) : lag + 1;
+  /// Planes in use at a time, when each stage follows the one before it at `lag` planes. The next
+  /// stage reads neighbours of its spins.
+  static constexpr int planes(int buffer, int lag) {
+    int const behind = lag * (last_reader(buffer) - producer(buffer));
+    if (behind == 0) return 0;
+    return buffer < per_kind ? std::max(lag + 2, behind + 1) : behind + 1;
   }
   /// The stage whose sum a stage continues.
   static constexpr int sum_before(int stage) {
@@ -70,16 +72,29 @@ struct SweepLoop {
   OutputArray<Real, 3> next;
   SiteArray<Real, 3> carried[StageArrays<Planes<Real>, stages>::most_carried];
   Real* memory;
+  StripProgress* progress;
 
   void operator()(std::int64_t task) const {
-    SweepPart<Real> part(plan, memory, task);
-    for (part.block = 0; part.block < part.blocks; ++part.block)
-      for (std::int32_t tick = part.z.low(0); tick < part.z.end + stages - 1; ++tick)
-        unrolled<stages>([&](auto stage) { run<stage()>(part, tick - stage()); });
-    if (next.streaming) streaming_fence();
+    std::int64_t const number = task / plan.strips;
+    SweepPart<Real> part(plan, memory, number, static_cast<std::int32_t>(task % plan.strips));
+    if (plan.strips == 1) {
+      for (std::int64_t step = 0; step < part.steps(); ++step) run_step(part, step);
+      return;
+    }
+    StripCrew const crew{progress + number * (plan.strips + 1), plan.strips, part.steps()};
+    crew.work(part.strip, [&](std::int32_t strip, std::int64_t step) {
+      SweepPart<Real> of_crew(plan, memory, number, strip);
+      run_step(of_crew, step);
+    });
   }
 
  private:
+  void run_step(SweepPart<Real>& part, std::int64_t step) const {
+    std::int32_t const plane = part.begin_step(step);
+    unrolled<stages>([&](auto stage) { run<stage()>(part, plane - plan.lag * stage()); });
+    if (next.streaming) streaming_fence();
+  }
+
   /// Where the arrays of a stage lie: in the fields, or in the buffers of a part.
   struct PlaneOfStep {
     using Buffers = StageBuffers<Tableau, Update>;

@@ -80,7 +80,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
     std::size_t const field = layout.allocation(3) * sizeof(Real);
     if (!by_time_alone || !sweeps_by_itself(layout, threads)) return work_fields * field;
     std::size_t const fields = 1 + detail::carried_fields<Update>();
-    return fields * field + sweep_plan(layout, threads).size() * sizeof(Real);
+    return fields * field + Memory::bytes_of_buffers(sweep_plan(layout, threads));
   }
 
   /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
@@ -150,6 +150,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
  private:
   static constexpr int stages = Tableau::stages;
   using DefaultExec = typename Spins::memory_space::execution_space;
+  using Memory = detail::StageMemory<Spins, Tableau, Update>;
 
   static constexpr bool has_sweep =
       stages > 1 &&
@@ -218,9 +219,9 @@ class RungeKutta : public detail::StepperBase<Spins> {
       using Loop =
           detail::SweepLoop<Tableau, Update, Real,
                             std::tuple_element_t<std::size_t{Stage}, decltype(kernels)>...>;
-      Loop loop{kernels, plan_, spins.array(), {}, {}, nullptr};
+      Loop loop{kernels, plan_, spins.array(), {}, {}, nullptr, nullptr};
       memory_.set(loop);
-      detail::for_each_task(exec, sweep_label_, plan_.parts(), spins.sites(), loop);
+      detail::for_each_task(exec, sweep_label_, plan_.tasks(), spins.sites(), loop);
     }(std::make_integer_sequence<int, stages>{});
     swap(spins, memory_.end());
   }
@@ -252,7 +253,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   Isotropy isotropy_;
   detail::SweepPlan plan_;
   Path path_ = Path::pass;
-  detail::StageMemory<Spins, Tableau, Update> memory_;
+  Memory memory_;
 };
 
 }  // namespace cayspin
