@@ -47,7 +47,7 @@ std::vector<std::uint64_t> expected(std::int32_t strips) {
 std::vector<std::uint64_t> by_crew(std::int32_t strips, int threads, bool late) {
   Neighbours neighbours(strips);
   std::vector<StripProgress> progress(static_cast<std::size_t>(strips) + 1);
-  StripCrew const crew{progress.data(), strips, steps};
+  StripCrew const crew{progress.data(), strips, steps, 0};
   std::vector<std::thread> running;
   for (int thread = 0; thread < threads; ++thread)
     running.emplace_back([&, thread] {

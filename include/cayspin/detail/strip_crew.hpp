@@ -21,14 +21,15 @@ struct alignas(cache_line_bytes) StripProgress {
   std::atomic<std::int64_t> state = 0;
 };
 
-/// Does `steps` steps of each strip. Step n of a strip begins when its neighbours have done n
-/// steps. The first strip and the last are neighbours, too. Any number of threads does the work, in
-/// any order: one that has to wait for long takes the steps of others. `progress` has a place more
-/// than there are strips, is 0 before and after.
+/// Does `steps` steps of each strip. Step n of a strip begins when its neighbours have done
+/// n - apart steps. The first strip and the last are neighbours, too. Any number of threads does
+/// the work, in any order: one that has to wait for long takes the steps of others. `progress` has
+/// a place more than there are strips, and is 0 before and after.
 struct StripCrew {
   StripProgress* progress;
   std::int32_t strips;
   std::int64_t steps;
+  std::int32_t apart;
 
   /// Calls run(strip, step). Every strip has to call this once, from any thread. Returns when
   /// strip `own` is done.
@@ -63,8 +64,8 @@ struct StripCrew {
     std::int64_t now = state.load(std::memory_order_acquire);
     std::int64_t const step = now / 2;
     if (now % 2 != 0 || step == steps) return false;
-    if (done(strip > 0 ? strip - 1 : strips - 1) < step) return false;
-    if (done(strip + 1 < strips ? strip + 1 : 0) < step) return false;
+    if (done(strip > 0 ? strip - 1 : strips - 1) < step - apart) return false;
+    if (done(strip + 1 < strips ? strip + 1 : 0) < step - apart) return false;
     if (!state.compare_exchange_strong(now, now + 1, std::memory_order_acquire)) return false;
     run(strip, step);
     state.store(now + 2, std::memory_order_release);

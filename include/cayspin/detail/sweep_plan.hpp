@@ -31,7 +31,7 @@ struct SweepRange {
 /// the part.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0, seam_rows = 0;
-  std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip, and of a part
+  std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip
 };
 
 /// The lattice is cut into parts that know nothing of each other, along z and y. A part may be
@@ -47,14 +47,14 @@ struct SweepPlan {
   std::int32_t block = 1;  // rows, at least; less than twice as many
   std::int32_t ring_rows = 0, seam_planes = 0;
   std::ptrdiff_t pitch = 0, row = 0;  // component to component in a buffer's row, row to row
-  std::ptrdiff_t strip_size = 0, seam_size = 0;  // numbers of memory per strip, and per part
+  std::ptrdiff_t strip_size = 0;      // numbers of memory per strip
   SweepBuffer buffer[3 * most_stages];
 
   std::int64_t parts() const { return std::int64_t(parts_y) * parts_z; }
   std::int64_t tasks() const { return parts() * strips; }
-  std::ptrdiff_t part_size() const { return strips * strip_size + seam_size; }
+  std::ptrdiff_t part_size() const { return strips * strip_size; }
   /// Numbers of memory of the buffers.
-  std::size_t size() const { return static_cast<std::size_t>(parts() * part_size()); }
+  std::size_t size() const { return static_cast<std::size_t>(tasks() * strip_size); }
 
   SweepRange range_y(std::int64_t part) const {
     return range(static_cast<std::int32_t>(part % parts_y), parts_y, layout.own.y_begin,
@@ -63,6 +63,11 @@ struct SweepPlan {
   SweepRange range_z(std::int64_t part) const {
     return range(static_cast<std::int32_t>(part / parts_y), parts_z, layout.own.z_begin,
                  layout.own.nz(), Axis(layout, 2));
+  }
+  /// From block to block a seam's planes move on by so many. So planes of the block before are not
+  /// overwritten while they are still needed, by a strip that may be some planes behind.
+  std::int32_t seam_shift(SweepBuffer const& of_stage) const {
+    return of_stage.planes + 2 * (lag - 1);
   }
   /// Blocks of each strip of a part with so many rows.
   std::int32_t blocks(std::int32_t rows) const { return std::max(1, rows / strips / block); }
@@ -94,10 +99,11 @@ struct SweepPlan {
   }
 
  private:
-  /// A strip reads rows that its neighbours wrote a plane ago. So nobody waits within a plane.
+  /// A strip reads rows of its neighbours at the plane where it is itself. So a lag of 1 would do.
+  /// Of two, neighbours may be a plane apart, and seldom wait for each other.
   static constexpr std::int32_t lag_of_strips = 2;
   /// What it costs two strips to wait for each other once, in sites that could be stepped instead.
-  static constexpr double meeting = 64;
+  static constexpr double meeting = 100;
 
   SweepRange range(std::int32_t part, std::int32_t parts, std::int32_t begin, std::int32_t extent,
                    Axis const& axis) const {
@@ -107,13 +113,14 @@ struct SweepPlan {
     return {bound(part), bound(part + 1), stages, axis};
   }
 
-  // The division among at most `threads` threads that takes least time. Planes are cut first: the
-  // parts are far from each other in memory. Repeated work counts twice: it is read twice, too.
+  // The division among at most `threads` threads that takes least time. Parts need no strips where
+  // they repeat little. Planes are cut first: the parts are far from each other in memory.
   void cut(int threads, std::int32_t block_of_parts, std::int32_t block_of_strips) {
     std::int32_t const ny = layout.own.ny(), nz = layout.own.nz();
+    // Of the largest of so many parts, with what it repeats at shared ends: half of stages - 1, and
+    // half as much again, since that moves memory, too.
     auto const largest = [&](std::int32_t extent, std::int32_t parts) {
-      double const repeated = std::min(parts - 1, 2) * (stages - 1);
-      return (extent + parts - 1) / parts + repeated;
+      return (extent + parts - 1) / parts + 0.75 * std::min(parts - 1, 2) * (stages - 1);
     };
     double least = -1;
     auto const consider = [&](std::int32_t z, std::int32_t y, std::int32_t of_strips) {
@@ -129,36 +136,40 @@ struct SweepPlan {
       parts_z = z, parts_y = y, strips = of_strips, block = of_block;
       lag = alone ? 1 : lag_of_strips;
     };
-    std::int32_t const most_z = std::max(1, nz / (2 * stages)),
-                       most_y = std::max(1, ny / (2 * stages));
-    for (std::int32_t z = std::min(threads, most_z); z >= 1; --z) {
-      std::int32_t const rest = threads / z;
-      consider(z, std::min(rest, most_y), 1);
-      if (rest > 1 && ny > 1) consider(z, 1, std::min(rest, ny));
+    auto const little = [&](std::int32_t z, std::int32_t y) {
+      return double(stages - 1) * (z - 1) / nz + double(stages - 1) * (y - 1) / ny < 0.05;
+    };
+    std::int32_t const most_z = std::min(threads, std::max(1, nz / (2 * stages)));
+    std::int32_t const most_y = std::max(1, ny / (2 * stages));
+    for (std::int32_t z = most_z; z >= 1; --z) consider(z, std::min(threads / z, most_y), 1);
+    if (parts() == threads && little(parts_z, parts_y)) return;
+    for (std::int32_t z = most_z; z >= 1; --z) {
+      std::int32_t const most_strips = std::min(threads / z, ny);
+      bool const is_needed = z <= (threads + ny - 1) / ny;  // to give all threads work
+      if (most_strips > 1 && (is_needed || little(z, 1))) consider(z, 1, most_strips);
     }
   }
 
-  // Where the buffers lie in the memory of a part: the rings of each strip, then the seams.
+  // Where the buffers lie in the memory of a strip. The seams of a part are those of its last one.
   template <class Buffers>
   void allot(std::ptrdiff_t line) {
     std::int32_t const rows = (layout.ny + parts_y - 1) / parts_y;
     std::int32_t const longest = (rows + strips - 1) / strips;
     ring_rows = std::min(2 * block, longest) + 2 * stages;
     seam_planes = (layout.nz + parts_z - 1) / parts_z + 2 * stages;
-    strip_size = seam_size = line;  // a pack may read before the first row
+    std::ptrdiff_t size = line;  // a pack may read before the first row
     for (int b = 0; b < buffers; ++b) {
       SweepBuffer& of_stage = buffer[b];
       of_stage.producer = Buffers::producer(b);
       of_stage.planes = Buffers::planes(b, lag);
       if (of_stage.planes == 0) continue;
       of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // blocks follow each other row by row
-      of_stage.ring = strip_size;
-      strip_size += of_stage.planes * ring_rows * row;
-      of_stage.seam = seam_size;
-      if (blocks(rows) > 1) seam_size += of_stage.seam_rows * (seam_planes + of_stage.planes) * row;
+      of_stage.ring = size;
+      size += of_stage.planes * ring_rows * row;
+      of_stage.seam = size;
+      if (blocks(rows) > 1) size += of_stage.seam_rows * (seam_planes + seam_shift(of_stage)) * row;
     }
-    strip_size += line;
-    seam_size += line;
+    strip_size = size + line;
   }
 };
 
@@ -170,10 +181,7 @@ struct FillSweepBuffers {
   SweepPlan plan;
 
   void operator()(std::int64_t task) const {
-    std::int64_t const part = task / plan.strips, strip = task % plan.strips;
-    bool const last = strip + 1 == plan.strips;
-    std::fill_n(data + part * plan.part_size() + strip * plan.strip_size,
-                plan.strip_size + (last ? plan.seam_size : 0), Real(0));
+    std::fill_n(data + task * plan.strip_size, plan.strip_size, Real(0));
   }
 };
 
@@ -183,7 +191,7 @@ struct SweepPart {
   SweepPlan const& plan;
   SweepRange y, z;
   Real* memory;
-  std::int32_t strip, blocks, block = 0;
+  std::int32_t strip, blocks, steps_per_block;
 
   SweepPart(SweepPlan const& whole, Real* buffers, std::int64_t part, std::int32_t of_part)
       : plan(whole),
@@ -191,66 +199,81 @@ struct SweepPart {
         z(whole.range_z(part)),
         memory(buffers + part * whole.part_size()),
         strip(of_part),
-        blocks(whole.blocks(y.end - y.begin)) {}
+        blocks(whole.blocks(y.end - y.begin)),
+        steps_per_block(z.end + whole.lag * (whole.stages - 1) - z.low(0)) {}
 
   /// The steps of a strip: through all planes for each block, each stage at its own plane.
-  std::int64_t steps() const { return std::int64_t(blocks) * steps_per_block(); }
+  std::int64_t steps() const { return std::int64_t(blocks) * steps_per_block; }
   /// The plane of stage 0 at such a step, whose block this is from now on.
   std::int32_t begin_step(std::int64_t step) {
-    block = static_cast<std::int32_t>(step / steps_per_block());
-    return z.low(0) + static_cast<std::int32_t>(step % steps_per_block());
+    block_ = static_cast<std::int32_t>(step / steps_per_block);
+    for (std::int32_t i = 0; i < 3; ++i) bounds_[i] = bound(strip - 1 + i);
+    return z.low(0) + static_cast<std::int32_t>(step % steps_per_block);
   }
 
   /// A stage works on rows low .. high - 1. At the ends of blocks it follows the stage before it at
   /// one row.
-  std::int32_t low(int stage) const { return low_of(strip, stage); }
+  std::int32_t low(int stage) const {
+    if (!begins_block()) return bounds_[1];
+    return block_ == 0 ? y.low(stage) : bounds_[1] - stage;
+  }
   std::int32_t high(int stage) const {
-    if (strip + 1 < plan.strips) return bound(strip + 1);
-    return block + 1 == blocks ? y.high(stage) : bound(strip + 1) - stage;
+    if (!ends_block()) return bounds_[2];
+    return block_ + 1 == blocks ? y.high(stage) : bounds_[2] - stage;
   }
 
   /// Plane z of a buffer.
   CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> rows(int number, std::int32_t at_z) const {
     SweepBuffer const& buffer = plan.buffer[number];
+    int const stage = buffer.producer;
     std::int32_t const from_begin = at_z - z.low(0);
-    bool const ends_at_seam = strip + 1 == plan.strips && block + 1 < blocks;
-    std::int32_t const first = low(buffer.producer);
-    std::int32_t const last = high(buffer.producer) - (ends_at_seam ? buffer.seam_rows : 0);
-    auto const ring = [&](std::int32_t of_strip) {
-      return memory + of_strip * plan.strip_size + buffer.ring +
-             from_begin % buffer.planes * plan.ring_rows * plan.row;
-    };
-    // A seam's planes move on by `planes` from block to block. So planes of the block before are
-    // not overwritten while they are still needed.
-    auto const seam = [&](std::int32_t of_block) {
-      std::int32_t const slots = plan.seam_planes + buffer.planes;
-      std::int32_t slot = (from_begin - of_block * buffer.planes) % slots;
-      if (slot < 0) slot += slots;
-      return memory + plan.strips * plan.strip_size + buffer.seam +
-             slot * buffer.seam_rows * plan.row;
-    };
-    return {strip > 0 ? ring(strip - 1) + (first - low_of(strip - 1, buffer.producer)) * plan.row
-                      : seam(block - 1) + buffer.seam_rows * plan.row,
-            ring(strip),
-            strip + 1 < plan.strips ? ring(strip + 1) : seam(block),
-            first,
-            last,
-            plan.row,
-            plan.pitch};
+    std::int32_t const first = low(stage);
+    bool const ends_at_seam = ends_block() && block_ + 1 < blocks;
+    std::int32_t const last = high(stage) - (ends_at_seam ? buffer.seam_rows : 0);
+    // Planes of the block before are not overwritten while a neighbour is still there.
+    std::int32_t const turn = (from_begin + block_ * steps_per_block) % buffer.planes;
+    Real* const ring =
+        memory + strip * plan.strip_size + buffer.ring + turn * plan.ring_rows * plan.row;
+    Real *before = ring, *after = ring;  // not read at the ends of a part
+    if (!begins_block()) {
+      // Only the first strip of a block begins earlier at some stages.
+      bool const is_second = strip == 1;
+      std::int32_t const begin = is_second ? low_of_first(stage) : bounds_[0];
+      before = ring - plan.strip_size + (first - begin) * plan.row;
+    } else if (block_ > 0) {
+      before = seam(buffer, block_ - 1, from_begin) + buffer.seam_rows * plan.row;
+    }
+    if (!ends_block())
+      after = ring + plan.strip_size;
+    else if (ends_at_seam)
+      after = seam(buffer, block_, from_begin);
+    return {before, ring, after, first, last, plan.row, plan.pitch};
   }
 
  private:
-  std::int32_t steps_per_block() const { return z.end + plan.lag * (plan.stages - 1) - z.low(0); }
-  std::int32_t low_of(std::int32_t of_strip, int stage) const {
-    if (of_strip > 0) return bound(of_strip);
-    return block == 0 ? y.low(stage) : bound(0) - stage;
-  }
+  bool begins_block() const { return strip == 0; }
+  bool ends_block() const { return strip + 1 == plan.strips; }
+
   /// Where a strip begins in this block.
   std::int32_t bound(std::int32_t of_strip) const {
-    std::int64_t const i = std::int64_t(block) * plan.strips + of_strip;
+    std::int64_t const i = std::int64_t(block_) * plan.strips + of_strip;
     return y.begin +
            static_cast<std::int32_t>((y.end - y.begin) * i / (std::int64_t(blocks) * plan.strips));
   }
+  std::int32_t low_of_first(int stage) const {
+    return block_ == 0 ? y.low(stage) : bounds_[0] - stage;
+  }
+
+  Real* seam(SweepBuffer const& buffer, std::int32_t of_block, std::int32_t from_begin) const {
+    std::int32_t const slots = plan.seam_planes + plan.seam_shift(buffer);
+    std::int32_t slot = (from_begin - of_block * plan.seam_shift(buffer)) % slots;
+    if (slot < 0) slot += slots;
+    return memory + (plan.strips - 1) * plan.strip_size + buffer.seam +
+           slot * buffer.seam_rows * plan.row;
+  }
+
+  std::int32_t block_ = 0;
+  std::int32_t bounds_[3] = {};  // of the strip before, this one and the next
 };
 
 }  // namespace cayspin::detail

@@ -76,25 +76,23 @@ struct SweepLoop {
 
   void operator()(std::int64_t task) const {
     std::int64_t const number = task / plan.strips;
-    SweepPart<Real> part(plan, memory, number, static_cast<std::int32_t>(task % plan.strips));
-    if (plan.strips == 1) {
-      for (std::int64_t step = 0; step < part.steps(); ++step) run_step(part, step);
-      return;
-    }
-    StripCrew const crew{progress + number * (plan.strips + 1), plan.strips, part.steps()};
-    crew.work(part.strip, [&](std::int32_t strip, std::int64_t step) {
-      SweepPart<Real> of_crew(plan, memory, number, strip);
-      run_step(of_crew, step);
-    });
-  }
-
- private:
-  void run_step(SweepPart<Real>& part, std::int64_t step) const {
-    std::int32_t const plane = part.begin_step(step);
-    unrolled<stages>([&](auto stage) { run<stage()>(part, plane - plan.lag * stage()); });
+    auto const strip = static_cast<std::int32_t>(task % plan.strips);
+    std::int64_t const steps = SweepPart<Real>(plan, memory, number, strip).steps();
+    auto const run = [&](std::int32_t of_part, std::int64_t step) {
+      SweepPart<Real> part(plan, memory, number, of_part);
+      std::int32_t const plane = part.begin_step(step);
+      unrolled<stages>(
+          [&](auto stage) { run_stage_at<stage()>(part, plane - plan.lag * stage()); });
+    };
+    if (plan.strips == 1)
+      for (std::int64_t step = 0; step < steps; ++step) run(strip, step);
+    else
+      StripCrew{progress + number * (plan.strips + 1), plan.strips, steps, plan.lag - 1}.work(strip,
+                                                                                              run);
     if (next.streaming) streaming_fence();
   }
 
+ private:
   /// Where the arrays of a stage lie: in the fields, or in the buffers of a part.
   struct PlaneOfStep {
     using Buffers = StageBuffers<Tableau, Update>;
@@ -151,7 +149,7 @@ struct SweepLoop {
   };
 
   template <int Stage>
-  void run(SweepPart<Real> const& part, std::int32_t z) const {
+  void run_stage_at(SweepPart<Real> const& part, std::int32_t z) const {
     if (z < part.z.low(Stage) || part.z.high(Stage) <= z) return;
     auto const& kernel = std::get<Stage>(kernels);
     using Kernel = std::remove_cvref_t<decltype(kernel)>;
