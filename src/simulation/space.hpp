@@ -15,7 +15,8 @@
 #define CAYSPIN_ON_SERIAL(apply, ...)
 #endif
 
-#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
+#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL) || \
+    defined(CAYSPIN_HOST_DEVICE)
 #define CAYSPIN_ON_DEVICE(apply, ...) apply(Kokkos::DefaultExecutionSpace, __VA_ARGS__)
 #else
 #define CAYSPIN_ON_DEVICE(apply, ...)
