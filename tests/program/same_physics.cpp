@@ -17,13 +17,31 @@ class SamePhysics : public ProgramTest {
 };
 
 TEST_F(SamePhysics, SpacesAndThreadsGiveTheSameBits) {
-  std::string const space = has_serial ? "serial" : "openmp";
   for (std::string const precision : {"double", "single"}) {
-    auto const serial = spins(chain_scene(), {"--space", space, "--precision", precision});
+    auto const serial = spins(chain_scene(), {"--space", another_space, "--precision", precision});
     for (std::string const threads : {"1", "2", "3"})
       EXPECT_EQ(spins(chain_scene(), {"--precision", precision, "--threads", threads}), serial);
   }
 }
+
+#if defined(CAYSPIN_HOST_DEVICE)
+TEST_F(SamePhysics, TheHostDeviceFollowsTheHost) {
+  for (std::string const method : {"rkmk4", "heun", "implicit_midpoint", "red_black2", "stiff2"})
+    for (std::string const precision : {"double", "single"}) {
+      Arguments const of_both{"--precision", precision, "--set",
+                              "integrator.method='" + method + "'"};
+      auto const on = [&](std::string const& space) {
+        Arguments arguments = of_both;
+        arguments.insert(arguments.end(), {"--space", space});
+        auto const numbers = spins(chain_scene(), arguments);
+        EXPECT_EQ(io::read_info(in_folder("out.h5")).header.space, space);
+        return numbers;
+      };
+      EXPECT_LT(distance(on("host_device"), on("openmp")), precision == "double" ? 1e-12 : 1e-4)
+          << method;
+    }
+}
+#endif
 
 TEST_F(SamePhysics, SingleFollowsDouble) {
   auto const both =
