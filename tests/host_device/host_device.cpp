@@ -175,6 +175,18 @@ class HostDeviceQueue {
   static void run_all() {
     std::lock_guard const lock(device_mutex());
     for (HostDeviceQueue* const queue : all()) queue->run();
+    release();
+  }
+  /// Frees memory once nothing waits that may work there. So the end of a View is no fence.
+  static void free_later(void* address, std::size_t bytes) {
+    std::lock_guard const lock(device_mutex());
+    to_free().push_back(address);
+    static std::size_t freed = 0;
+    if ((freed += bytes) > most_unfreed) {
+      freed = 0;
+      run_all();
+    }
+    release();
   }
   static std::shared_ptr<HostDeviceQueue> const& shared() {
     static auto const& queue = *new auto(std::make_shared<HostDeviceQueue>());
@@ -184,12 +196,23 @@ class HostDeviceQueue {
   std::uint32_t number;
 
  private:
-  static constexpr std::size_t most = 1024;
+  static constexpr std::size_t most = 1024, most_unfreed = std::size_t{1} << 28;
 
   void run(std::size_t count) {
     if (count == 0) return;
     HostDeviceAccess const access;
     for (; count > 0; --count, tasks_.pop_front()) tasks_.front()();
+    release();
+  }
+  static void release() {
+    for (HostDeviceQueue const* const queue : all())
+      if (!queue->tasks_.empty()) return;
+    for (void* const address : to_free()) Arena::the().give_back(address);
+    to_free().clear();
+  }
+  static std::vector<void*>& to_free() {
+    static auto& addresses = *new std::vector<void*>;
+    return addresses;
   }
   static std::set<HostDeviceQueue*>& all() {
     static auto& queues = *new std::set<HostDeviceQueue*>;
@@ -212,11 +235,10 @@ void* HostDeviceMemory::allocate(char const* label, std::size_t bytes,
 void HostDeviceMemory::deallocate(char const* label, void* address, std::size_t bytes,
                                   std::size_t logical_bytes) const {
   if (address == nullptr) return;
-  HostDeviceQueue::run_all();  // as devices do: kernels may still work there
   if (Kokkos::Profiling::profileLibraryLoaded())
     Kokkos::Profiling::deallocateData(Kokkos::Tools::make_space_handle(name()), label, address,
                                       logical_bytes > 0 ? logical_bytes : bytes);
-  Arena::the().give_back(address);
+  HostDeviceQueue::free_later(address, bytes);
 }
 
 HostDevice::HostDevice() : queue_(HostDeviceQueue::shared()) {}

@@ -67,6 +67,33 @@ TYPED_TEST(Strictness, NothingIsThereBeforeAFence) {
   EXPECT_NEAR(here(2, 2), 0.995, 1e-3);
 }
 
+// Asked of another instance, which does not wait for the work of this one.
+TYPED_TEST(Strictness, IntegrateWaitsForItsObserversAndItsEnd) {
+  using Spins = typename TestFixture::Spins;
+  HostDevice const exec;
+  auto const other = Kokkos::Experimental::partition_space(exec, 1)[0];
+  Spins spins("spins", Lattice::chain(4));
+  using Numbers = Kokkos::View<TypeParam* [3], Kokkos::LayoutLeft, HostDeviceMemory>;
+  Numbers const there("there", 4);
+  auto const here = Kokkos::create_mirror_view(there);
+  auto const z_now = [&] {
+    copy(other, spins, there);
+    Kokkos::deep_copy(other, here, there);
+    other.fence();
+    return here(2, 2);
+  };
+  std::vector<TypeParam> seen;
+  auto const look = [&](HostDevice const&, Step const&, Spins const&) { seen.push_back(z_now()); };
+  LandauLifshitz const generator(EffectiveField(Zeeman{{1, 0, 0}}), 0.1);
+  Rkmk4<Spins> stepper(spins);
+  integrate(exec, stepper, generator, spins, {0, 0.5, 3}, look);
+  ASSERT_EQ(seen.size(), 4u);
+  for (std::size_t i = 0; i < seen.size(); ++i)  // m turns about H, and towards it
+    EXPECT_NEAR(seen[i], std::cos(0.5 * i) / std::cosh(0.05 * i), 1e-3) << i;
+  integrate(exec, stepper, generator, spins, {1.5, 0.5, 1});
+  EXPECT_NEAR(z_now(), std::cos(2.) / std::cosh(0.2), 1e-3);
+}
+
 TYPED_TEST(Strictness, AnInstanceWaitsForItselfAlone) {
   using Numbers = Kokkos::View<TypeParam*, HostDeviceMemory>;
   auto const instances = Kokkos::Experimental::partition_space(HostDevice(), 1, 1);
