@@ -24,25 +24,6 @@ TEST_F(SamePhysics, SpacesAndThreadsGiveTheSameBits) {
   }
 }
 
-#if defined(CAYSPIN_HOST_DEVICE)
-TEST_F(SamePhysics, TheHostDeviceFollowsTheHost) {
-  for (std::string const method : {"rkmk4", "heun", "implicit_midpoint", "red_black2", "stiff2"})
-    for (std::string const precision : {"double", "single"}) {
-      Arguments const of_both{"--precision", precision, "--set",
-                              "integrator.method='" + method + "'"};
-      auto const on = [&](std::string const& space) {
-        Arguments arguments = of_both;
-        arguments.insert(arguments.end(), {"--space", space});
-        auto const numbers = spins(chain_scene(), arguments);
-        EXPECT_EQ(io::read_info(in_folder("out.h5")).header.space, space);
-        return numbers;
-      };
-      EXPECT_LT(distance(on("host_device"), on("openmp")), precision == "double" ? 1e-12 : 1e-4)
-          << method;
-    }
-}
-#endif
-
 TEST_F(SamePhysics, SingleFollowsDouble) {
   auto const both =
       distance(spins(chain_scene(), {}), spins(chain_scene(), {"--precision", "single"}));
