@@ -33,15 +33,19 @@ function(cayspin_add_test name)
   else()
     cayspin_register_test(${name} test_${name} 2)
   endif()
-  if(arg_ON_HOST_DEVICE AND TARGET cayspin_host_device_test_main)
+  if(arg_ON_HOST_DEVICE)
     cayspin_add_host_device_test(${name}_on_host_device SOURCES ${arg_SOURCES} LIBRARIES
                                  ${arg_LIBRARIES})
   endif()
 endfunction()
 
 # cayspin_add_host_device_test(<name> SOURCES <file>... [LIBRARIES <target>...])
-# A program test_<name> whose default space is the device of tests/host_device.
+# A program test_<name> whose default space is the device of tests/host_device; nothing where there
+# is no such device, or where it is the default of all.
 function(cayspin_add_host_device_test name)
+  if(NOT TARGET cayspin_host_device_test_main)
+    return()
+  endif()
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
   add_executable(test_${name} ${arg_SOURCES})
   target_link_libraries(test_${name} PRIVATE cayspin_host_device_test_main ${arg_LIBRARIES})
