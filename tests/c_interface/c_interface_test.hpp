@@ -28,8 +28,10 @@ using Simulation = std::unique_ptr<cayspin_simulation, Close>;
 /// The space of simulations. Null: the default.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline constexpr char const* space = "host_device";
+inline constexpr bool on_host = false;
 #else
 inline constexpr char const* space = nullptr;
+inline constexpr bool on_host = true;
 #endif
 
 inline Simulation open(std::string const& text, cayspin_precision precision = CAYSPIN_DOUBLE) {
