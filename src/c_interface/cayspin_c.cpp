@@ -168,7 +168,9 @@ cayspin_status cayspin_steps(cayspin_simulation const* simulation, int64_t* step
 cayspin_status cayspin_borrow_spins(cayspin_simulation* simulation, cayspin_array* spins) {
   return in_turn(simulation, [&](SceneRun& run) {
     required(spins, "spins");
-    *spins = array_of(simulation->borrowed.emplace(run.spins()).vectors);
+    // On a device they are a copy, which stays valid when it is asked for again.
+    if (!simulation->borrowed) simulation->borrowed.emplace(run.spins());
+    *spins = array_of(simulation->borrowed->vectors);
   });
 }
 

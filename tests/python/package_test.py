@@ -11,6 +11,7 @@ import cayspin
 import h5py
 
 PROGRAM = os.environ["CAYSPIN_PROGRAM"]
+ON_DEVICE = os.environ.get("CAYSPIN_SPACE") == "host_device"
 
 TABLES = {
     "system": {"kind": "llg", "damping": 0.1},
