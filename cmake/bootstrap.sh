@@ -148,6 +148,7 @@ provide_kokkos
 case $verb in
   deps)
     provide_style_tools
+    provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
     print_cmake_option
@@ -160,6 +161,7 @@ case $verb in
     ;;
   test)
     provide_style_tools
+    provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
     build all
