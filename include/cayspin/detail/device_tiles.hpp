@@ -62,8 +62,9 @@ class DeviceTiles {
     auto const lane = static_cast<std::uint32_t>(thread) % threads;
     auto const x = static_cast<std::int32_t>(((number - row * per_row_) << x_bits_) +
                                              (lane & ((1u << x_bits_) - 1)));
-    auto const y = static_cast<std::int32_t>(
-        y_begin_ + (row - plane * per_plane_) * (threads >> x_bits_) + (lane >> x_bits_));
+    auto const y =
+        y_begin_ + static_cast<std::int32_t>((row - plane * per_plane_) * (threads >> x_bits_) +
+                                             (lane >> x_bits_));
     if (x >= nx_ || y >= y_end_) return;
     std::int32_t z = z_begin_ + static_cast<std::int32_t>(plane) * walk_;
     std::int32_t const end = Kokkos::min(z + walk_, z_end_);

@@ -7,13 +7,13 @@
 
 namespace cayspin::detail {
 
-/// a / b to less than a unit in the last place, from 1 / b to 18 bits or more.
+/// a / b, numbers, to less than a unit in the last place, from 1 / b to 18 bits or more.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& b, Value inverse) {
-  Value const error = multiply_add(Value(-b), inverse, Value(1));
-  inverse = multiply_add(inverse, multiply_add(error, error, error), inverse);
+  Value const error = Kokkos::fma(-b, inverse, Value(1));
+  inverse = Kokkos::fma(inverse, Kokkos::fma(error, error, error), inverse);
   Value const quotient = a * inverse;
-  return multiply_add(multiply_add(Value(-b), quotient, a), inverse, quotient);
+  return Kokkos::fma(Kokkos::fma(-b, quotient, a), inverse, quotient);
 }
 
 #if defined(__CUDA_ARCH__)
