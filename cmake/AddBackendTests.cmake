@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cayspin_add_test(<name> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>...]
-#                  [THREADS <count>...] [TIMEOUT <seconds>] [FAST])
+#                  [THREADS <count>...] [TIMEOUT <seconds>] [FAST] [ON_HOST_DEVICE])
 # One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
 # inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads. FAST: compiled to run fast.
+# otherwise there is one entry with two threads. FAST: compiled to run fast. ON_HOST_DEVICE: a second
+# program, test_<name>_on_host_device.
 function(cayspin_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "FAST" "TIMEOUT" "SOURCES;LIBRARIES;LABELS;THREADS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "TIMEOUT"
+                        "SOURCES;LIBRARIES;LABELS;THREADS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
     message(FATAL_ERROR "cayspin_add_test(${name}): wrong arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -31,6 +33,23 @@ function(cayspin_add_test name)
   else()
     cayspin_register_test(${name} test_${name} 2)
   endif()
+  if(arg_ON_HOST_DEVICE AND TARGET cayspin_host_device_test_main)
+    cayspin_add_host_device_test(${name}_on_host_device SOURCES ${arg_SOURCES} LIBRARIES
+                                 ${arg_LIBRARIES})
+  endif()
+endfunction()
+
+# cayspin_add_host_device_test(<name> SOURCES <file>... [LIBRARIES <target>...])
+# A program test_<name> whose default space is the device of tests/host_device.
+function(cayspin_add_host_device_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  add_executable(test_${name} ${arg_SOURCES})
+  target_link_libraries(test_${name} PRIVATE cayspin_host_device_test_main ${arg_LIBRARIES})
+  target_compile_options(test_${name} PRIVATE ${CAYSPIN_TEST_OPTIONS})
+  target_precompile_headers(test_${name} REUSE_FROM cayspin_host_device_test_main)
+  set(arg_LABELS host_device)
+  set(arg_TIMEOUT ${CAYSPIN_TIMEOUT})
+  cayspin_register_test(${name} test_${name} 2)
 endfunction()
 
 macro(cayspin_register_test entry program threads)

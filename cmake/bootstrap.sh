@@ -173,7 +173,7 @@ fi
 install_packages install "${packages[@]}"
 [ "$verb" = build ] || start_installing_drawing
 provide_kokkos
-[ "$verb $preset" != "test release" ] || provide_nanobind
+case "$verb $preset" in "test release" | "test host-device") provide_nanobind ;; esac
 case $verb in
   deps)
     provide_style_tools

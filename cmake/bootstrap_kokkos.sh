@@ -2,7 +2,8 @@
 # shellcheck shell=bash disable=SC2034,SC2154
 # Sourced by bootstrap.sh. provide_kokkos sets kokkos_option, the option that cmake needs: none when
 # CMake finds a Kokkos by itself (CMAKE_PREFIX_PATH, Kokkos_ROOT), otherwise the prefix of the one
-# built here. Presets other than release and mpi build Kokkos inside their own tree from the source.
+# built here. Presets other than release, mpi and host-device build Kokkos inside their own tree
+# from the source.
 
 carrier=pygenten
 carrier_version=0.1.5
@@ -17,13 +18,18 @@ kokkos_options=(
 
 provide_kokkos() {
   kokkos_option=()
-  if [ "$preset" != release ] && [ "$preset" != mpi ]; then
-    provide_kokkos_source
-    kokkos_option=("-DCAYSPIN_KOKKOS_SOURCE=$kokkos_source")
-  elif ! kokkos_is_found; then
-    build_kokkos "$deps/kokkos"
-    kokkos_option=("-DKokkos_ROOT=$deps/kokkos")
-  fi
+  case $preset in
+    release | mpi | host-device)
+      if ! kokkos_is_found; then
+        build_kokkos "$deps/kokkos"
+        kokkos_option=("-DKokkos_ROOT=$deps/kokkos")
+      fi
+      ;;
+    *)
+      provide_kokkos_source
+      kokkos_option=("-DCAYSPIN_KOKKOS_SOURCE=$kokkos_source")
+      ;;
+  esac
 }
 
 kokkos_is_found() {

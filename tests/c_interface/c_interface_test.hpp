@@ -25,9 +25,16 @@ struct Close {
 };
 using Simulation = std::unique_ptr<cayspin_simulation, Close>;
 
+/// The space of simulations. Null: the default.
+#if defined(CAYSPIN_HOST_DEVICE)
+inline constexpr char const* space = "host_device";
+#else
+inline constexpr char const* space = nullptr;
+#endif
+
 inline Simulation open(std::string const& text, cayspin_precision precision = CAYSPIN_DOUBLE) {
   cayspin_simulation* simulation = nullptr;
-  EXPECT_EQ(cayspin_open_text(text.c_str(), nullptr, precision, nullptr, &simulation), CAYSPIN_OK)
+  EXPECT_EQ(cayspin_open_text(text.c_str(), nullptr, precision, space, &simulation), CAYSPIN_OK)
       << cayspin_last_error();
   return Simulation(simulation);
 }

@@ -16,10 +16,13 @@ namespace cayspin::program::test {
 
 using Arguments = std::vector<std::string>;
 
-#if defined(CAYSPIN_WITHOUT_SERIAL)
-inline constexpr bool has_serial = false;  // the program, compiled without it, has OpenMP
+/// The program's default space, and one with the same bits: another where it is compiled in.
+#if defined(CAYSPIN_HOST_DEVICE)
+inline std::string const default_space = "host_device", another_space = "host_device";
+#elif defined(CAYSPIN_WITHOUT_SERIAL)
+inline std::string const default_space = "openmp", another_space = "openmp";
 #else
-inline constexpr bool has_serial = true;
+inline std::string const default_space = "openmp", another_space = "serial";
 #endif
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -86,7 +86,7 @@ TEST_F(Restarting, GoesOnFromTheCheckpointOfAMethodThatRemembers) {
       more.push_back("--overwrite");
       return more;
     };
-    run_to("25", "whole.h5", with({"--space", has_serial ? "serial" : "openmp"}));
+    run_to("25", "whole.h5", with({"--space", another_space}));
     run_to("12", "first.h5", with({"--threads", "1"}));
     EXPECT_TRUE(std::filesystem::exists(in_folder("first.checkpoint.h5")));
     run_to("25", "second.h5", with({"--threads", "2", "--restart", "first.h5"}));

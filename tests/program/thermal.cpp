@@ -65,8 +65,8 @@ TEST_F(Thermal, BitsDependOnSeedAndTemperatureAlone) {
     auto const whole = end_of("whole.h5", with({}));
     for (Arguments const& other :
          std::vector<Arguments>{{"--threads", "1"},
-                                {"--space", "openmp", "--threads", "2"},
-                                {"--space", has_serial ? "serial" : "openmp"},
+                                {"--space", default_space, "--threads", "2"},
+                                {"--space", another_space},
                                 {"--set", "output.every=1"},
                                 {"--set", "output.scalars_every=3"},
                                 {"--set", "output.checkpoint_every='4 steps'"}})

@@ -3,6 +3,7 @@
 
 import importlib.util
 import math
+import os
 import unittest
 
 import cayspin
@@ -76,6 +77,17 @@ class Scenes(PackageTest):
                             "integrator.method: \"auto\" is chosen by the program",
                             cayspin.Simulation,
                             scene(integrator={"method": "auto", "error": 1e-3}))
+
+
+class Spaces(PackageTest):
+    def test_space_by_name(self):
+        for precision in ("double", "single"):
+            sims = [cayspin.Simulation(scene(), precision)]
+            sims.append(cayspin.Simulation(scene(), precision, space=sims[0].space))
+            for sim in sims:
+                sim.step(20)
+                self.assertEqual(sim.space, os.environ.get("CAYSPIN_SPACE", sims[0].space))
+            np.testing.assert_array_equal(sims[0].spins, sims[1].spins)
 
 
 class OwnFields(PackageTest):

@@ -24,12 +24,6 @@ std::int64_t setting(char const* name, std::int64_t usual) {
   return asked ? std::atoll(asked) : usual;
 }
 
-#if defined(CAYSPIN_WITHOUT_SERIAL)
-std::string const spaces[] = {"openmp", "openmp"};
-#else
-std::string const spaces[] = {"serial", "openmp"};
-#endif
-
 class ThermalRuns : public testing::Test {
  protected:
   ThermalRuns() { fs::create_directories(folder_); }

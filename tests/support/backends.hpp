@@ -26,7 +26,11 @@ struct BothPrecisions {
   using type = ::testing::Types<Backend<float, Spaces>..., Backend<double, Spaces>...>;
 };
 
-/// Both precisions on every space that is compiled in.
+/// Both precisions on every space that is compiled in; on the device that host threads play, where
+/// that is the default, and not on hosts again.
+#if defined(CAYSPIN_HOST_DEVICE)
+using Backends = typename BothPrecisions<void, HostDevice>::type;
+#else
 using Backends = typename BothPrecisions<void
 #if defined(KOKKOS_ENABLE_SERIAL)
                                          ,
@@ -53,6 +57,7 @@ using Backends = typename BothPrecisions<void
                                          Kokkos::SYCL
 #endif
                                          >::type;
+#endif
 
 struct BackendName {
   template <class Type>

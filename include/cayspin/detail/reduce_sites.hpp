@@ -19,7 +19,7 @@
 // Sums and maxima over sites in double. On host spaces a row is summed in a fixed order, its ends
 // first and then the packs between them, the lanes of a pack in a fixed tree; rows are summed
 // without round-off. So the result has the same bits on every host space, for any number of threads
-// and for any division of a lattice into parts.
+// and for any division of a lattice into parts. Devices sum with twice the digits, in their order.
 namespace cayspin::detail {
 
 struct Sum {
@@ -117,6 +117,22 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
     functor(Site<Value>(row, pack * lanes));
 }
 
+/// A sum of two doubles, whose round-off is lost after twice the digits: Knuth's sum of two numbers
+/// and its error.
+struct DoubledSum {
+  double value = 0, error = 0;
+
+  KOKKOS_FORCEINLINE_FUNCTION void add(double number) {
+    double const sum = value + number, part = sum - value;
+    error += (value - (sum - part)) + (number - part);
+    value = sum;
+  }
+  KOKKOS_FORCEINLINE_FUNCTION void add(DoubledSum const& other) {
+    add(other.value);
+    error += other.error;
+  }
+};
+
 /// What several threads, and then several parts of a lattice, add to.
 template <int Sums, int Maxima>
 struct Totals {
@@ -125,6 +141,13 @@ struct Totals {
 
   void add(double const* values) {
     for (ExactSum& sum : sums) sum.add(*values++);
+  }
+  void add(DoubledSum const* doubled) {
+    for (ExactSum& sum : sums) {
+      sum.add(doubled->value);
+      if (std::isfinite(doubled->value)) sum.add(doubled->error);
+      ++doubled;
+    }
   }
   void include(double const* values) {
     for (std::int64_t& maximum : maxima)
@@ -193,11 +216,14 @@ struct ReduceBlock {
   }
 };
 
-/// The reduction on devices, by Kokkos.
+/// The reduction on devices, by Kokkos. Its order is that of the device, and the same in each call.
 template <class Combine, int Count, class Functor>
 struct ReduceOnDevice {
+  static constexpr int sums = Combine::template sums<Count>, maxima = Count - sums;
   struct value_type {
-    double values[std::size_t{Count}];
+    // Neither may have no elements.
+    DoubledSum sum[std::size_t{sums > 0 ? sums : 1}];
+    double maximum[std::size_t{maxima > 0 ? maxima : 1}];
   };
   Functor functor;
   DeviceLayout<std::int64_t> layout;
@@ -207,14 +233,16 @@ struct ReduceOnDevice {
     tiles.for_each(thread, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
       double value[std::size_t{Count}];
       functor(DeviceSite<double, std::int64_t>(layout, x, y, z), value);
-      combine_values<Combine, Count>(total.values, value);
+      for (int i = 0; i < sums; ++i) total.sum[i].add(value[i]);
+      for (int i = 0; i < maxima; ++i)
+        total.maximum[i] = Maximum::combine(total.maximum[i], value[sums + i]);
     });
   }
-  KOKKOS_FUNCTION void init(value_type& total) const {
-    for (int i = 0; i < Count; ++i) total.values[i] = 0;
-  }
+  KOKKOS_FUNCTION void init(value_type& total) const { total = {}; }
   KOKKOS_FUNCTION void join(value_type& total, value_type const& other) const {
-    combine_values<Combine, Count>(total.values, other.values);
+    for (int i = 0; i < sums; ++i) total.sum[i].add(other.sum[i]);
+    for (int i = 0; i < maxima; ++i)
+      total.maximum[i] = Maximum::combine(total.maximum[i], other.maximum[i]);
   }
 };
 
@@ -246,8 +274,8 @@ std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::strin
     DeviceTiles const tiles(layout.nx, layout.own);
     Kokkos::parallel_reduce(label, Policy(exec, 0, tiles.thread_count()),
                             Body{functor, DeviceLayout<std::int64_t>(layout), tiles}, result);
-    total.add(result.values);
-    total.include(result.values + Combine::template sums<Count>);
+    total.add(result.sum);
+    total.include(result.maximum);
   }
   if (layout.part != nullptr) total.include_parts(*layout.part);
   return total.values();

@@ -64,7 +64,7 @@ struct FieldExtrapolationStage {
   template <class Site, class... Second>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Second const&... second) const {
     using Value = typename Site::value_type;
-    Coordinates<Value> of_site, of_second;
+    [[maybe_unused]] Coordinates<Value> of_site, of_second;
     begin(site, of_site), (begin(second, of_second), ...);
     middle_stage(site, of_site), (middle_stage(second, of_second), ...);
     middle_stage(site, of_site), (middle_stage(second, of_second), ...);
