@@ -119,13 +119,15 @@ def steps(kernels, bandwidth, edge):
 
 
 def print_steps(kernels, edge):
-    print(f"\na step of {edge}^3 spins\n")
-    print("| method | card | ps a spin | share of the bandwidth | bound by |")
-    print("|---|---|---|---|---|")
-    for card, bandwidth in CARDS.items():
-        for (precision, method), (time, memory, bounds) in steps(kernels, bandwidth, edge).items():
-            print(f"| {precision} {method} | {card} | {time * 1e12:.1f} | {memory / time:.2f} "
-                  f"| {', '.join(bounds)} |")
+    print(f"\na step of {edge}^3 spins: ps a spin (share of the bandwidth)\n")
+    columns = [(card, precision) for card in CARDS for precision in SIZE]
+    print(f"| | {' | '.join(' '.join(column) for column in columns)} |")
+    print("|---" * (1 + len(columns)) + "|")
+    found = {card: steps(kernels, bandwidth, edge) for card, bandwidth in CARDS.items()}
+    for method in METHODS.values():
+        cells = [found[card][precision, method][:2] for card, precision in columns]
+        print(f"| {method} | "
+              f"{' | '.join(f'{t * 1e12:.1f} ({memory / t:.2f})' for t, memory in cells)} |")
 
 
 def card_of(context):
