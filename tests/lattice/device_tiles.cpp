@@ -175,6 +175,12 @@ TEST(DeviceSites, LongIndicesWhereNumbersNeedThem) {
   EXPECT_EQ(last.offset(), fits.sites() - 1);
 }
 
+TEST(DeviceTiles, NoThreadsWithoutSites) {
+  EXPECT_EQ(detail::DeviceTiles(0, {0, 0, 0, 0}).thread_count(), 0);
+  EXPECT_EQ(detail::DeviceTiles(5, {2, 2, 0, 3}).thread_count(), 0);
+  EXPECT_EQ(detail::DeviceTiles(5, {0, 3, 1, 1}).thread_count(), 0);
+}
+
 TEST(DeviceTiles, ManyThreadsOfALongChain) {
   // Of 2^28 sites along z each has 128 threads, most of which have no site.
   detail::DeviceTiles const tiles(1, {0, 1, 0, 1 << 28});

@@ -14,7 +14,8 @@
 // come from the cache of the multiprocessor, and what is found once serves several sites.
 namespace cayspin::detail {
 
-/// Division of numbers below 2^31 by a divisor that is known at the launch: a product and a shift.
+/// Division of numbers below 2^31 by a positive divisor that is known at the launch: a product and
+/// a shift.
 class QuickDivision {
  public:
   explicit QuickDivision(std::uint32_t divisor)
@@ -47,8 +48,8 @@ class DeviceTiles {
         per_row_(tiles(nx, 1 << x_bits_)),
         per_plane_(tiles(rows.ny(), threads >> x_bits_)),
         planes_(tiles(rows.nz(), walk_)),
-        by_row_(per_row_),
-        by_plane_(per_plane_) {}
+        by_row_(std::max(per_row_, 1u)),
+        by_plane_(std::max(per_plane_, 1u)) {}
 
   std::int64_t thread_count() const {
     return std::int64_t(threads) * per_row_ * per_plane_ * planes_;
