@@ -5,7 +5,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh deps|build|compile|test|python|demo|bench [--preset NAME]
+Usage: bash cmake/bootstrap.sh deps|build|compile|test|python|demo|bench|gpu [--preset NAME]
   deps     install everything that any of the others needs, and print the option for CMake
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
@@ -13,8 +13,9 @@ Usage: bash cmake/bootstrap.sh deps|build|compile|test|python|demo|bench [--pres
   python   build the Python package and install it into build/venv
   demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
+  gpu      on a machine with a GPU: test and bench, and one report with the model of the GPU beside
 Each verb first installs the Debian packages that it needs and builds Kokkos into .deps/.
-NAME is a preset of CMakePresets.json; the default is release.
+NAME is a preset of CMakePresets.json; the default is release, and cuda for gpu.
 TXT
 }
 
@@ -102,6 +103,29 @@ install_python_package() {
   say "import cayspin with $venv/bin/python; the program: $venv/bin/cayspin"
 }
 
+# Fails at once, before anything is built, where nothing could run.
+require_gpu() {
+  case $preset in
+    cuda)
+      compgen -G '/dev/nvidia[0-9]*' >/dev/null ||
+        fail "no NVIDIA GPU here: there is no /dev/nvidia0"
+      provide_nvcc
+      ;;
+    hip) [ -e /dev/kfd ] || fail "no AMD GPU here: there is no /dev/kfd" ;;
+    *) say "the preset $preset is not known to need a GPU; going on" ;;
+  esac
+}
+
+# What fails is part of the report.
+report_gpu() {
+  mkdir -p "$build_dir"
+  say "test (all of it in build/$preset/gpu-tests.txt)"
+  ctest --preset "$preset" -j "$(nproc)" >"$build_dir/gpu-tests.txt" 2>&1 || say "tests failed"
+  say "bench (its tables in build/$preset/gpu-bench.txt)"
+  bash bench/run.sh "$build_dir" >"$build_dir/gpu-bench.txt" 2>&1 || say "the benchmarks failed"
+  "$PYTHON" bench/gpu_report.py "$build_dir"
+}
+
 print_cmake_option() {
   say "everything is installed"
   if [ ${#kokkos_option[@]} -gt 0 ]; then
@@ -115,6 +139,7 @@ print_cmake_option() {
 verb=$1
 shift
 preset=release
+[ "$verb" != gpu ] || preset=cuda
 while [ $# -gt 0 ]; do
   case $1 in
     --preset) [ $# -ge 2 ] || fail "--preset needs a name"; preset=$2; shift 2 ;;
@@ -132,6 +157,10 @@ case $verb in
   test) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES MPI) ;;
   compile) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH MPI) ;;
   bench) packages=("${core[@]}" "${bench[@]}") parts=(BENCH) ;;
+  gpu)
+    require_gpu
+    packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH MPI)
+    ;;
   -h | --help) usage; exit 0 ;;
   *) usage >&2; exit 2 ;;
 esac
@@ -148,6 +177,7 @@ case "$verb $preset" in "test release" | "test host-device") provide_nanobind ;;
 case $verb in
   deps)
     provide_style_tools
+    provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
     print_cmake_option
@@ -160,6 +190,7 @@ case $verb in
     ;;
   test)
     provide_style_tools
+    provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
     build all
@@ -174,4 +205,10 @@ case $verb in
     say "  build/$preset/bin/cayspin run scenes/slab_switching.toml; your own code: examples/"
     ;;
   bench) finish_installing_drawing; build bench; bash bench/run.sh "$build_dir" ;;
+  gpu)
+    provide_nvdisasm
+    finish_installing_drawing
+    build all bench
+    report_gpu
+    ;;
 esac

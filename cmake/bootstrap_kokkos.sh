@@ -98,11 +98,15 @@ source_from_upstream() {
 }
 
 # Kokkos' nvcc_wrapper takes nvcc from PATH, where the toolkit does not put it.
-provide_nvcc() {
+find_nvcc() {
   local folder
   for folder in /usr/local/cuda/bin $(printf '%s\n' /usr/local/cuda-*/bin | sort -rV); do
     ! command -v nvcc >/dev/null || return 0
     [ ! -x "$folder/nvcc" ] || export PATH=$PATH:$folder
   done
-  command -v nvcc >/dev/null || fail "no nvcc on PATH or in /usr/local/cuda*: install CUDA's toolkit"
+  command -v nvcc >/dev/null
+}
+
+provide_nvcc() {
+  find_nvcc || fail "no nvcc on PATH or in /usr/local/cuda*: install CUDA's toolkit"
 }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2034,SC2154
 # Sourced by bootstrap.sh. The Debian packages by what needs them, install_packages for them, and
-# provide_style_tools and provide_interchange_tools for what tests of these names run.
+# provide_style_tools, provide_nvdisasm and provide_interchange_tools for what tests of these names
+# run.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
@@ -65,6 +66,11 @@ provide_tools() {
 
 # What the test `style` runs.
 provide_style_tools() { provide_tools style python3 "$root/tests/style/requirements.txt"; }
+
+# nvdisasm, which the test `sass` runs where there is nvcc.
+provide_nvdisasm() {
+  ! find_nvcc || provide_tools nvdisasm python3 "$root/tests/cuda/requirements.txt"
+}
 
 # The programs of others that the tests `interchange` hold files to: for the Python of the tests,
 # which has the packages that they need.

@@ -16,7 +16,7 @@ class Stencil {
   using vector_type = Vec3<value_type>;
 
   KOKKOS_FORCEINLINE_FUNCTION Stencil(Site const& site, Spins const& spins)
-      : site_(site), spins_(spins), place_(site.place(spins.stride)) {
+      : site_(site), spins_(spins), place_(site.place(spins)) {
     site.load_row(spins, place_, center_, beside_);
   }
 
@@ -59,8 +59,7 @@ class Stencil {
     if constexpr (Axis == 0)
       return site_.template unless_past_end<Direction>(beside_[Direction], missing);
     else
-      return site_.row().template has_neighbor<Axis, Direction>() ? neighbor<Axis, Direction>()
-                                                                  : missing;
+      return site_.template has_neighbor<Axis, Direction>() ? neighbor<Axis, Direction>() : missing;
   }
 
   Site const& site_;

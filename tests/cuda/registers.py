@@ -5,27 +5,13 @@ a kernel of cayspin spills any, or keeps arrays in a stack frame, both of which 
 
 import argparse
 import pathlib
-import re
 import shlex
 import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
-from device_kernels import compile_entry, short_names  # noqa: E402
-
-ENTRY = re.compile(
-    r"Compiling entry function '(\S+)'.*?(\d+) bytes stack frame, (\d+) bytes spill stores, "
-    r"(\d+) bytes spill loads.*?Used (\d+) registers", re.DOTALL)
-
-
-def device_command(words, output):
-    """nvcc's own command for the cubin, from the one that compiles the object."""
-    words.remove("-c")
-    at = words.index("-o")
-    del words[at:at + 2]
-    asked = subprocess.run([words[0], "--show", *words[1:]], check=True, text=True,
-                           stdout=subprocess.PIPE)
-    return [*shlex.split(asked.stdout), "-Xptxas=-v", "-cubin", "-o", output]
+from device_kernels import (  # noqa: E402
+    compile_entry, device_command, kernels_of_log, short_names)
 
 
 def main():
@@ -38,16 +24,16 @@ def main():
     command = device_command(words, arguments.output)
     done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT)
-    found = [match.groups() for match in ENTRY.finditer(done.stdout) if "cayspin" in match[1]]
+    found = list(kernels_of_log(done.stdout))
     if done.returncode != 0 or not found:
         sys.exit(f"{done.stdout}\nno kernels: {shlex.join(command)} ended with {done.returncode}")
 
     spilled = 0
     print("registers  stack  spilled  (bytes)")
-    for name, row in sorted(zip(short_names(row[0] for row in found), found)):
-        _, stack, stores, loads, registers = row
-        spilled += (stack, stores, loads) != ("0", "0", "0")
-        print(f"{registers:>9}  {stack:>5}  {int(stores) + int(loads):>7}  {name}")
+    for name, row in sorted(zip(short_names(row.symbol for row in found), found)):
+        bytes_spilled = row.spill_stores + row.spill_loads
+        spilled += row.stack + bytes_spilled > 0
+        print(f"{row.registers:>9}  {row.stack:>5}  {bytes_spilled:>7}  {name}")
     print(f"{len(found)} kernels, {spilled} with spills or a stack frame")
     return spilled > 0
 

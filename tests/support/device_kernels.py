@@ -1,16 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """What the tests of the compilers for devices have in common."""
 
+import collections
 import json
 import re
 import shlex
 import subprocess
+
+Kernel = collections.namedtuple("Kernel", "symbol stack spill_stores spill_loads registers")
+ENTRY = re.compile(
+    r"Compiling entry function '(\S+)'.*?(\d+) bytes stack frame, (\d+) bytes spill stores, "
+    r"(\d+) bytes spill loads.*?Used (\d+) registers", re.DOTALL)
 
 
 def compile_entry(commands, source):
     """The directory and the words of the command that compiles a source."""
     entry = next(entry for entry in json.loads(commands.read_text()) if entry["file"] == source)
     return entry["directory"], shlex.split(entry["command"])
+
+
+def device_command(words, output):
+    """nvcc's own command for the cubin, from the one that compiles the object."""
+    words = list(words)
+    words.remove("-c")
+    at = words.index("-o")
+    del words[at:at + 2]
+    asked = subprocess.run([words[0], "--show", *words[1:]], check=True, text=True,
+                           stdout=subprocess.PIPE)
+    return [*shlex.split(asked.stdout), "-Xptxas=-v", "-cubin", "-o", output]
+
+
+def kernels_of_log(text):
+    """What ptxas says of the kernels of cayspin."""
+    for symbol, *numbers in ENTRY.findall(text):
+        if "cayspin" in symbol:
+            yield Kernel(symbol, *map(int, numbers))
 
 
 def short_names(symbols):

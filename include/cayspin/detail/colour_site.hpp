@@ -61,7 +61,10 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   struct Place {
     std::ptrdiff_t stride;
   };
-  KOKKOS_FORCEINLINE_FUNCTION Place place(std::ptrdiff_t stride) const { return {stride}; }
+  template <class Spins>
+  KOKKOS_FORCEINLINE_FUNCTION Place place(Spins const& spins) const {
+    return {spins.stride};
+  }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void load_row(SiteArray<Real, 3> const& array, Place const&,
                                             Vec3<Value>& center, Vec3<Value> (&found)[2]) const {

@@ -16,7 +16,7 @@
 
 namespace cayspin::detail {
 
-/// Host spaces run over rows with packs, device spaces with one thread per site.
+/// Host spaces run over rows with packs; the threads of device spaces take single sites.
 template <class Exec>
 inline constexpr bool is_host_execution =
     std::is_same_v<typename Exec::memory_space, Kokkos::HostSpace>;

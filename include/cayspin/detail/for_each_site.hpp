@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/device_site.hpp>
+#include <cayspin/detail/device_tiles.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/site.hpp>
 
@@ -105,16 +107,44 @@ KOKKOS_FORCEINLINE_FUNCTION Row row_of(RowLayout const& layout, RowRange const& 
           static_cast<std::int32_t>(rows.z_begin + row / rows.ny())};
 }
 
-/// The device loop.
-template <class Real, class Functor>
-struct SiteLoop {
-  Functor functor;
-  RowLayout layout;
-  RowRange rows;
+/// The device loop: body(layout, x, y, z) for the sites of a thread.
+template <class Index, class Body>
+struct TileLoop {
+  Body body;
+  DeviceLayout<Index> layout;
+  DeviceTiles tiles;
 
-  KOKKOS_FUNCTION void operator()(std::int64_t site) const {
-    Row const row = row_of(layout, rows, site / layout.nx);
-    functor(Site<Real>(row, static_cast<std::int32_t>(site % layout.nx)));
+  KOKKOS_FUNCTION void operator()(Index thread) const {
+    tiles.for_each(
+        thread, [this](std::int32_t x, std::int32_t y, std::int32_t z) { body(layout, x, y, z); });
+  }
+};
+
+/// Runs a TileLoop, with the shortest index that reaches all numbers.
+template <class Exec, class Body>
+void for_each_tile(Exec const& exec, std::string const& label, RowLayout const& layout,
+                   DeviceTiles const& tiles, Body const& body) {
+  auto const run = [&]<class Index>(Index threads) {
+    Kokkos::parallel_for(label,
+                         Kokkos::RangePolicy<Exec, Kokkos::IndexType<Index>>(exec, 0, threads),
+                         TileLoop<Index, Body>{body, DeviceLayout<Index>(layout), tiles});
+  };
+  std::int64_t const threads = tiles.thread_count();
+  if (DeviceLayout<std::int32_t>::reaches(layout, threads))
+    run(static_cast<std::int32_t>(threads));
+  else
+    run(threads);
+}
+
+/// What a TileLoop does for for_each_site.
+template <class Real, class Functor>
+struct OnDeviceSite {
+  Functor functor;
+
+  template <class Index>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(DeviceLayout<Index> const& layout, std::int32_t x,
+                                              std::int32_t y, std::int32_t z) const {
+    functor(DeviceSite<Real, Index>(layout, x, y, z));
   }
 };
 
@@ -128,9 +158,8 @@ void for_each_site(Exec const& exec, std::string const& label, RowLayout const& 
     for_each_task(exec, label, blocks.count(), layout.sites(),
                   RowLoop<Real, Functor>{functor, layout, blocks});
   } else {
-    using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
-    Kokkos::parallel_for(label, Policy(exec, 0, rows.count() * layout.nx),
-                         SiteLoop<Real, Functor>{functor, layout, rows});
+    for_each_tile(exec, label, layout, DeviceTiles(layout.nx, rows),
+                  OnDeviceSite<Real, Functor>{functor});
   }
 }
 /// The same for all sites, ghosts included.

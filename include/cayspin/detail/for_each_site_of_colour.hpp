@@ -96,18 +96,17 @@ ColourRowLoop<Real, Functor> colour_row_loop(Functor const& functor, RowLayout c
   return {functor, layout, RowBlocks(layout, (pack_count<Real>(layout) + 1) / 2, layout.own)};
 }
 
-/// The device loop: a thread for each site of the colour.
+/// What a TileLoop over half of each row does on devices.
 template <class Real, class Functor>
-struct ColourSiteLoop {
+struct OnDeviceSiteOfColour {
   Functor functor;
-  RowLayout layout;
+  std::int32_t parity;  // of the layout
 
-  KOKKOS_FUNCTION void operator()(std::int64_t index) const {
-    std::int64_t const half = (layout.nx + 1) / 2;
-    Row const row = row_of(layout, layout.own, index / half);
-    auto const x = static_cast<std::int32_t>(2 * (index % half)) +
-                   ((row.y + row.z + layout.parity + functor.colour) & 1);
-    if (x < layout.nx) functor(Site<Real>(row, x));
+  template <class Index>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(DeviceLayout<Index> const& layout, std::int32_t half,
+                                              std::int32_t y, std::int32_t z) const {
+    std::int32_t const x = 2 * half + ((y + z + parity + functor.colour) & 1);
+    if (x <= layout.last[0]) functor(DeviceSite<Real, Index>(layout, x, y, z));
   }
 };
 
@@ -125,10 +124,8 @@ void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayo
       if (alone) break;
     }
   } else {
-    using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
-    std::int64_t const half = (layout.nx + 1) / 2;
-    Kokkos::parallel_for(label, Policy(exec, 0, layout.own.count() * half),
-                         ColourSiteLoop<Real, Functor>{functor, layout});
+    for_each_tile(exec, label, layout, DeviceTiles((layout.nx + 1) / 2, layout.own),
+                  OnDeviceSiteOfColour<Real, Functor>{functor, layout.parity});
   }
 }
 

@@ -76,6 +76,10 @@ using scalar_t = typename ValueTraits<Value>::scalar;
 template <class Value>
 inline constexpr int lanes_of = ValueTraits<Value>::lanes;
 
+/// A site at a time, as on devices: a choice between formulas costs more than the longest of them.
+template <class Value>
+inline constexpr bool one_at_a_time = lanes_of<Value> == 1;
+
 /// a * b + c, rounded once wherever the hardware can.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, Value const& c) {

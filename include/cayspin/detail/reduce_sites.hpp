@@ -226,15 +226,17 @@ struct ReduceOnDevice {
     double maximum[std::size_t{maxima > 0 ? maxima : 1}];
   };
   Functor functor;
-  RowLayout layout;
+  DeviceLayout<std::int64_t> layout;
+  DeviceTiles tiles;
 
-  KOKKOS_FUNCTION void operator()(std::int64_t index, value_type& total) const {
-    Row const row = row_of(layout, layout.own, index / layout.nx);
-    double value[std::size_t{Count}];
-    functor(Site<double>(row, static_cast<std::int32_t>(index % layout.nx)), value);
-    for (int i = 0; i < sums; ++i) total.sum[i].add(value[i]);
-    for (int i = 0; i < maxima; ++i)
-      total.maximum[i] = Maximum::combine(total.maximum[i], value[sums + i]);
+  KOKKOS_FUNCTION void operator()(std::int64_t thread, value_type& total) const {
+    tiles.for_each(thread, [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+      double value[std::size_t{Count}];
+      functor(DeviceSite<double, std::int64_t>(layout, x, y, z), value);
+      for (int i = 0; i < sums; ++i) total.sum[i].add(value[i]);
+      for (int i = 0; i < maxima; ++i)
+        total.maximum[i] = Maximum::combine(total.maximum[i], value[sums + i]);
+    });
   }
   KOKKOS_FUNCTION void init(value_type& total) const { total = {}; }
   KOKKOS_FUNCTION void join(value_type& total, value_type const& other) const {
@@ -255,11 +257,10 @@ std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::strin
                                                     RowLayout const& layout,
                                                     Functor const& functor) {
   require_sites(label, layout.nx);
-  std::int64_t const rows = layout.own.count();
   TotalsOf<Combine, Count> total;
   if constexpr (is_host_execution<Exec>) {
     std::int32_t const per_row = tasks_per_row(layout);
-    std::int64_t const tasks = rows * per_row;
+    std::int64_t const tasks = layout.own.count() * per_row;
     std::int64_t const blocks =
         std::min({tasks, most_blocks, layout.sites() / calling_thread_sites + 1});
     using Body = ReduceBlock<Combine, Count, Functor>;
@@ -270,8 +271,9 @@ std::array<double, std::size_t{Count}> reduce_sites(Exec const& exec, std::strin
     using Policy = Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>;
     using Body = ReduceOnDevice<Combine, Count, Functor>;
     typename Body::value_type result;
-    Kokkos::parallel_reduce(label, Policy(exec, 0, rows * layout.nx), Body{functor, layout},
-                            result);
+    DeviceTiles const tiles(layout.nx, layout.own);
+    Kokkos::parallel_reduce(label, Policy(exec, 0, tiles.thread_count()),
+                            Body{functor, DeviceLayout<std::int64_t>(layout), tiles}, result);
     total.add(result.sum);
     total.include(result.maximum);
   }

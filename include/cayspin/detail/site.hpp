@@ -81,9 +81,10 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   struct Place {
     std::ptrdiff_t x, y, z;
   };
-  KOKKOS_FORCEINLINE_FUNCTION Place place(std::ptrdiff_t stride) const {
-    std::ptrdiff_t const y = opaque(x_ + stride);
-    return {x_, y, opaque(y + stride)};
+  template <class Spins>
+  KOKKOS_FORCEINLINE_FUNCTION Place place(Spins const& spins) const {
+    std::ptrdiff_t const y = opaque(x_ + spins.stride);
+    return {x_, y, opaque(y + spins.stride)};
   }
 
   /// The spins themselves and those beside them along x, at an open end the spin itself.

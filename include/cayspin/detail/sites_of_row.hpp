@@ -61,6 +61,10 @@ class SitesOfRow {
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return row_.y; }
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return row_.z; }
 
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
+    return row_.template has_neighbor<Axis, Direction>();
+  }
   /// `found`, a neighbour along x, but `missing` on the lane at an open end.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,

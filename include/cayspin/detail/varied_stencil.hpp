@@ -14,7 +14,7 @@ class NeighborsOfSite {
 
   KOKKOS_FORCEINLINE_FUNCTION NeighborsOfSite(Site const& site, SiteArray<Real, 3> const& spins)
       : site_(site) {
-    auto const place = site.place(spins.stride);
+    auto const place = site.place(spins);
     vector_type center;
     site.load_row(spins, place, center, found_[0]);
     load<1, 0>(spins, place), load<1, 1>(spins, place);
@@ -29,14 +29,14 @@ class NeighborsOfSite {
     if constexpr (Axis == 0)
       return site_.template unless_past_end<Direction>(found, missing);
     else
-      return site_.row().template has_neighbor<Axis, Direction>() ? found : missing;
+      return site_.template has_neighbor<Axis, Direction>() ? found : missing;
   }
 
  private:
   template <int Axis, int Direction>
   KOKKOS_FORCEINLINE_FUNCTION void load(SiteArray<Real, 3> const& spins,
                                         typename Site::Place const& place) {
-    found_[Axis][Direction] = site_.row().template has_neighbor<Axis, Direction>()
+    found_[Axis][Direction] = site_.template has_neighbor<Axis, Direction>()
                                   ? site_.template neighbor<Axis, Direction>(spins, place)
                                   : zero<value_type>();
   }

@@ -23,6 +23,10 @@ class AlongAxis {
     using Value = typename Stencil::value_type;
     Vec3<Value> const& m = stencil.center();
     auto const c = as_value<Value>(constant_);
+    if constexpr (one_at_a_time<Value>) {
+      auto const e = as_value<Value>(axis_);
+      return multiply_add(Value(c * dot(m, e)), e, h);
+    }
     if (coordinate_ == Coordinate::z) [[likely]]
       return {h.x, h.y, detail::multiply_add(c, m.z, h.z)};
     if (coordinate_ == Coordinate::x) return {detail::multiply_add(c, m.x, h.x), h.y, h.z};

@@ -36,6 +36,9 @@ class UniformExchange {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
       Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
     using Value = typename Stencil::value_type;
+    if constexpr (one_at_a_time<Value>)
+      return second_difference<0>(stencil,
+                                  second_difference<1>(stencil, second_difference<2>(stencil, h)));
     if (is_cubic_) [[likely]] {
       // As below, exactly zero where all are equal.
       auto const in_plane =
@@ -53,6 +56,8 @@ class UniformExchange {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
       Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
     using Value = typename Stencil::value_type;
+    if constexpr (one_at_a_time<Value>)
+      return pair_sum<0>(stencil, pair_sum<1>(stencil, pair_sum<2>(stencil, h)));
     if (is_cubic_) [[likely]]
       return multiply_add(scaled<0, Value>(1),
                           pair<0>(stencil) + pair<1>(stencil) + pair<2>(stencil), h);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/quotient.hpp>
 #include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
 
@@ -23,7 +24,7 @@ struct Cayley {
     Vec3<Value> const c = cross(f, m);
     Value const four_and_f2 = detail::multiply_add(
         f.x, f.x, detail::multiply_add(f.y, f.y, detail::multiply_add(f.z, f.z, Value(4))));
-    return {Value(Value(4) / four_and_f2), multiply_add(Value(0.5), cross(f, c), c)};
+    return {detail::quotient(Value(4), four_and_f2), multiply_add(Value(0.5), cross(f, c), c)};
   }
 
   /// dcay_f y = (y + f x y / 2) / (1 + |f|^2 / 4)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/device_site.hpp>
 #include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 #include <cayspin/detail/unrolled.hpp>
@@ -8,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 // The one list of the arrays of a Runge-Kutta stage. It holds whole fields, planes of them, or
 // rows: a pass goes from fields to rows, a sweep from the planes of its buffers. A new array
@@ -64,23 +66,23 @@ void find_arrays(Step const& step, StageArrays<Kind, Flow::stages>& arrays) {
 }
 
 /// The same arrays as another kind: `to` converts an input, the stage's spins, and an output.
-template <class Flow, class Kind, class From, class Convert>
+template <class Flow, class From, class Convert, class Arrays>
 KOKKOS_FORCEINLINE_FUNCTION void convert(StageArrays<From, Flow::stages> const& from,
-                                         Convert const& to,
-                                         StageArrays<Kind, Flow::stages>& arrays) {
+                                         Convert const& to, Arrays& arrays) {
   if constexpr (Flow::reads_start) arrays.start = to.input(from.start);
   arrays.level = to.spins(from.level);
   unrolled<Flow::stages - 1>([&](auto j) {
-    if constexpr (Flow::reads_increment(j()))
-      arrays.increments[j()] = to.input(from.increments[j()]);
+    if constexpr (Flow::reads_increment(j())) arrays.increments[j] = to.input(from.increments[j()]);
   });
   if constexpr (Flow::reads_sum) arrays.sum_before = to.input(from.sum_before);
   if constexpr (Flow::writes_sum) arrays.sum = to.output(from.sum);
   if constexpr (Flow::stores_increment) arrays.increment = to.output(from.increment);
   arrays.next = to.output(from.next);
-  for (int i = 0; i < Flow::carried; ++i) {
-    arrays.carried_before[i] = to.input(from.carried_before[i]);
-    arrays.carried[i] = to.output(from.carried[i]);
+  if constexpr (Flow::carried > 0) {
+    for (int i = 0; i < Flow::carried; ++i) {
+      arrays.carried_before[i] = to.input(from.carried_before[i]);
+      arrays.carried[i] = to.output(from.carried[i]);
+    }
   }
 }
 
@@ -187,25 +189,58 @@ struct Prefetch {
   }
 };
 
-/// Fields to the row of one site, on devices.
-template <class Real>
-struct ToSiteRow {
-  Row const& row;
+/// Of the increments before number j, how many does a stage read?
+template <class Flow>
+constexpr int increments_read(int j) {
+  int count = 0;
+  for (int i = 0; i < j; ++i) count += Flow::reads_increment(i);
+  return count;
+}
 
-  KOKKOS_FORCEINLINE_FUNCTION RowInput<Real> input(SiteArray<Real, 3> const& array) const {
-    return {array.data + row.offset, array.stride};
+/// What Flow uses of a StageArrays, as the threads of a device find it, and no more: a launch takes
+/// short ways for a kernel of at most 512 bytes.
+template <class Flow, class Real>
+struct DeviceArrays {
+  struct None {};
+  template <bool IsUsed>
+  using If = std::conditional_t<IsUsed, ComponentPointers<Real>, None>;
+
+  class Increments {
+   public:
+    template <int J>
+    KOKKOS_FORCEINLINE_FUNCTION auto const& operator[](std::integral_constant<int, J>) const {
+      return used_[increments_read<Flow>(J)];
+    }
+    template <int J>
+    KOKKOS_FORCEINLINE_FUNCTION auto& operator[](std::integral_constant<int, J>) {
+      return used_[increments_read<Flow>(J)];
+    }
+
+   private:
+    static constexpr int count = increments_read<Flow>(Flow::stages - 1);
+    If<(count > 0)> used_[std::size_t{count > 0 ? count : 1}];
+  };
+
+  [[no_unique_address]] If<Flow::reads_start> start;
+  ComponentPointers<Real> level;
+  [[no_unique_address]] Increments increments;
+  [[no_unique_address]] If<Flow::reads_sum> sum_before;
+  [[no_unique_address]] If<Flow::writes_sum> sum;
+  [[no_unique_address]] If<Flow::stores_increment> increment;
+  ComponentPointers<Real> next;
+  [[no_unique_address]] If<(Flow::carried > 0)> carried_before[1], carried[1];
+};
+
+template <class Real>
+struct ToComponents {
+  KOKKOS_FUNCTION ComponentPointers<Real> input(SiteArray<Real, 3> const& array) const {
+    return ComponentPointers<Real>(array);
   }
-  KOKKOS_FORCEINLINE_FUNCTION RowStencil<Real> spins(SiteArray<Real, 3> const& array) const {
-    RowStencil<Real> rows;
-    rows.data = array.data + row.offset;
-    rows.stride = array.stride;
-    for (int axis = 0; axis < 2; ++axis)
-      for (int direction = 0; direction < 2; ++direction)
-        rows.neighbor[axis][direction] = rows.data + row.to_neighbor[axis][direction];
-    return rows;
+  KOKKOS_FUNCTION ComponentPointers<Real> spins(SiteArray<Real, 3> const& array) const {
+    return input(array);
   }
-  KOKKOS_FORCEINLINE_FUNCTION RowOutput<Real> output(OutputArray<Real, 3> const& array) const {
-    return {array.data + row.offset, array.stride, array.streaming};
+  KOKKOS_FUNCTION ComponentPointers<Real> output(SiteArray<Real, 3> const& array) const {
+    return input(array);
   }
 };
 

@@ -92,13 +92,14 @@ struct RungeKuttaStage {
   Isotropy isotropy;
   Real dt;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, RowArrays const& rows) const {
+  /// `rows`: StageArrays.
+  template <class Site, class Arrays>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Arrays const& rows) const {
     using Value = typename Site::value_type;
-    Stencil<Site, Real, RowStencil<Real>> const stencil(site, rows.level);
+    Stencil<Site, Real, decltype(rows.level)> const stencil(site, rows.level);
     Vec3<Value> const& m = stencil.center();
     Vec3<Value> const xi = stage_generator(stencil);
-    Vec3<Value> const m0 = StageIndex == 0 ? m : site.load(rows.start);
+    Vec3<Value> const m0 = spin_at_start(site, rows, m);
     if constexpr (Flow::recovers) {
       site.store(on_chart(site, rows, xi, m, m0), rows.next);
       return;
@@ -107,7 +108,7 @@ struct RungeKuttaStage {
 
     Vec3<Value> f[std::size_t{stages}];
     unrolled<StageIndex>([&](auto j) {
-      if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
+      if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j]);
     });
     Vec3<Value> argument{Value(0), Value(0), Value(0)};
     if constexpr (Update::increment_needs_argument && StageIndex > 0)
@@ -136,6 +137,15 @@ struct RungeKuttaStage {
   }
 
  private:
+  template <class Site, class Arrays, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> spin_at_start(Site const& site, Arrays const& rows,
+                                                               Vec3<Value> const& m) {
+    if constexpr (Flow::reads_start)
+      return site.load(rows.start);
+    else
+      return m;
+  }
+
   // A, or what turns the spin of it where the update asks for no more.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto stage_generator(Stencil const& stencil) const {
@@ -170,8 +180,8 @@ struct RungeKuttaStage {
       return m;
   }
 
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static void store_compensated(Site const& site, RowArrays const& rows,
+  template <class Site, class Arrays, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static void store_compensated(Site const& site, Arrays const& rows,
                                                             Vec3<Value> const* f,
                                                             Vec3<Value> const& on,
                                                             Vec3<Value> const& m0) {
@@ -186,8 +196,8 @@ struct RungeKuttaStage {
     site.store(end.residual, rows.carried[0]);
   }
 
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, RowArrays const& rows,
+  template <class Site, class Arrays, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> total(Site const& site, Arrays const& rows,
                                                 Vec3<Value> const* f) const {
     if constexpr (keeps_sum<Tableau, Update>) {
       return sum_up_to_here(site, rows, f);
@@ -207,8 +217,8 @@ struct RungeKuttaStage {
   }
 
   // The next stage's spins; at the end the step's, with increment j from the spins after stage j.
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, RowArrays const& rows,
+  template <class Site, class Arrays, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> on_chart(Site const& site, Arrays const& rows,
                                                    Vec3<Value> const& a, Vec3<Value> const& m,
                                                    Vec3<Value> const& m0) const {
     if constexpr (!last) {
@@ -220,15 +230,15 @@ struct RungeKuttaStage {
         return Update::advance(step, a, m, m0);
     } else {
       Vec3<Value> spins[std::size_t{StageIndex}];
-      unrolled<StageIndex - 1>([&](auto j) { spins[j()] = site.load(rows.increments[j()]); });
+      unrolled<StageIndex - 1>([&](auto j) { spins[j()] = site.load(rows.increments[j]); });
       spins[StageIndex - 1] = m;
       return Update::template arrive<ChartWeights<Tableau>, StageIndex>(Value(dt), a, spins, m0);
     }
   }
 
   // The stored sum plus this increment, and the one before it if an even stage left it out.
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, RowArrays const& rows,
+  template <class Site, class Arrays, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum_up_to_here(Site const& site, Arrays const& rows,
                                                          Vec3<Value> const* f) const {
     Vec3<Value> total = weight<Value, StageIndex>() * f[StageIndex];
     if constexpr (StageIndex % 2 == 1)

@@ -108,15 +108,18 @@ struct StageRowLoop {
 /// One site, on a device.
 template <class Kernel>
 struct StageOnSite {
+  using Flow = typename Kernel::Flow;
   using Real = typename Kernel::value_type;
   Kernel kernel;
-  FieldsOf<Kernel> fields;
+  DeviceArrays<Flow, Real> fields;
+
+  StageOnSite(Kernel const& stage, FieldsOf<Kernel> const& arrays) : kernel(stage) {
+    convert<Flow>(arrays, ToComponents<Real>{}, fields);
+  }
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    typename Kernel::RowArrays rows;
-    convert<typename Kernel::Flow>(fields, ToSiteRow<Real>{site.row()}, rows);
-    kernel(site, rows);
+    kernel(site, fields);
   }
 };
 
@@ -128,7 +131,7 @@ void run_pass(Exec const& exec, std::string const& label, RowLayout const& layou
     for_each_task(exec, label, loop.tasks(), layout.sites(), loop);
   } else {
     for_each_site<typename Kernel::value_type>(exec, label, layout,
-                                               StageOnSite<Kernel>{kernel, fields},
+                                               StageOnSite<Kernel>(kernel, fields),
                                                layout.own_and(Kernel::stages_after));
   }
 }

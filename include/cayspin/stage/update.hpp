@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/quotient.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/rotation/displacement.hpp>
 #include <cayspin/vec3.hpp>
@@ -153,7 +154,7 @@ struct Stereographic {
                                                            Vec3<Value> const& m0) {
     Vec3<Value> const u = cross(step_times_a, m);
     Vec3<Value> const e = m + m0;
-    Value const scale = Value(1) / dot(e, e);
+    Value const scale = detail::quotient(Value(1), dot(e, e));
     Value const along = Value(-2) * scale * dot(u, m0);
     return Value(Value(2) * scale) * multiply_add(along, e, u);
   }
@@ -170,7 +171,8 @@ struct Stereographic {
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
                                                                       Vec3<Value> const& m0) {
     Value const s = dot(f, f);
-    return {Value(Value(2) / (Value(1) + s)), multiply_add(Value(Value(0) - s), m0, f)};
+    return {detail::quotient(Value(2), Value(Value(1) + s)),
+            multiply_add(Value(Value(0) - s), m0, f)};
   }
 
   /// move(increment(step a, m, m), m) for a unit spin, with one division.
@@ -179,7 +181,7 @@ struct Stereographic {
                                                          Vec3<Value> const& m) {
     Vec3<Value> const u = cross(a, m);
     Value const s = Value(Value(0.25) * step * step) * dot(u, u);
-    Value const scale = Value(1) / (Value(1) + s);
+    Value const scale = detail::quotient(Value(1), Value(Value(1) + s));
     return multiply_add(Value(scale * step), u, multiply_add(Value(Value(-2) * scale * s), m, m));
   }
 
@@ -191,7 +193,7 @@ struct Stereographic {
     Vec3<Value> const u = cross(a, m);
     Value const e2 = detail::multiply_add(Value(2), dot(m, m0), Value(2));  // |m + m0|^2
     Value const reach = step * dot(u, u), step4 = Value(4) * step;
-    Value const scale = step4 / detail::multiply_add(e2, e2, Value(step4 * reach));
+    Value const scale = detail::quotient(step4, detail::multiply_add(e2, e2, Value(step4 * reach)));
     Value const minus = Value(-2) * scale, along = minus * dot(u, m0);
     return multiply_add(
         along, m,
@@ -244,7 +246,8 @@ struct Stereographic {
     f = multiply_add(of_start, m0, f);
 
     Value const s = dot(f, f);
-    Value const scale = Value(2) / detail::multiply_add(denominator, denominator, s);
+    Value const scale =
+        detail::quotient(Value(2), detail::multiply_add(denominator, denominator, s));
     return multiply_add(Value(scale * denominator), f,
                         multiply_add(Value(Value(0) - scale * s), m0, m0));
   }

@@ -1,0 +1,180 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""A model of the main kernels on a GPU, from the counts of tests/cuda/expected_sass.txt.
+
+Usage: model_gpu.py [--edge N] [--measured DIR]
+
+A kernel takes as long as the slowest of what its sites need: bytes of the memory and of the second
+cache, issue slots, lanes for arithmetic and for integers, bytes of the first cache, and the wait for
+memory with as many warps as the registers allow. Nothing overlaps perfectly, so this is a lower
+bound of the time, for a cube with N sites along each edge. --measured: the folder of results of
+bench/run.sh, whose times are printed beside it.
+"""
+import argparse
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+COUNTS = ROOT / "tests" / "cuda" / "expected_sass.txt"
+
+# Assumed, of the SXM cards: both have the chip GH100 and differ in memory alone.
+CARDS = {"H100": 3.35e12, "H200": 4.8e12}  # bytes a second of the memory, by their data sheets
+PROCESSORS = 132  # multiprocessors
+CLOCK = 1.755e9  # below the boost of 1.98 GHz: a busy card keeps less
+SCHEDULERS, LANES = 4, 32  # of a multiprocessor; one instruction of a warp a clock each
+ARITHMETIC = {"f64": 64, "f32": 128}  # lanes of a multiprocessor
+INTEGERS = 64
+FIRST_CACHE = 128  # bytes a clock of a multiprocessor
+SECOND_CACHE = 5.5e12  # bytes a second: 60 % of 5120 bytes a clock, cautiously
+LATENCY = 800e-9  # seconds for a site's loads from a busy memory: twice that of an idle one
+REGISTERS, WARPS = 65536, 64  # of a multiprocessor
+SECTOR = 32  # bytes, the least that comes from the second cache
+
+SIZE = {"f64": 8, "f32": 4}
+METHODS = {  # cases of bench_throughput
+    "LieEuler": "Euler", "LieHeun": "Heun", "Rkmk4": "RKMK4",
+    "StereographicHeun": "Heun tangent", "StereographicRk4": "RKMK4 tangent"}
+
+
+class Kernel:
+    """A line of the counts. Its spins come from 7 sites, other arrays from its own."""
+
+    def __init__(self, line):
+        self.name, *numbers = line.split()
+        (self.total, self.arithmetic, self.loads, self.integer, self.stores, self.constants,
+         self.registers) = map(int, numbers)
+        self.precision, self.method, self.stage = self.name.split("_")
+        self.loop = (self.arithmetic + self.loads + self.integer + self.stores + self.constants)
+
+    @property
+    def words(self):
+        """Numbers read from memory and written to it for each site."""
+        return self.loads - 18 + self.stores
+
+    @property
+    def warps(self):
+        """Resident on a multiprocessor: registers are given out in eights, warps in fours."""
+        each = (self.registers + 7) // 8 * 8 * LANES
+        return min(WARPS, REGISTERS // each // 4 * 4)
+
+
+def walk(edge):
+    """Sites of a thread, as in DeviceTiles."""
+    return min(max(edge**3 >> 19, 1), 8)
+
+
+def seconds(kernel, bandwidth, edge):
+    """Of each resource, for one site."""
+    size, sites = SIZE[kernel.precision], walk(edge)
+    once = (kernel.total - kernel.loop) / sites  # instructions of a thread, outside its loop
+    clocks = 1 / (PROCESSORS * CLOCK)
+    # A tile of 32 x 4 x sites: two more rows along y and z, and a sector at each end of its own.
+    stencil = 3 * (size * (1 + 2 / 4 + 2 / sites) + 2 * SECTOR / 32)
+    return {
+        "memory": kernel.words * size / bandwidth,
+        "second cache": (stencil + (kernel.words - 3) * size) / SECOND_CACHE,
+        "issue": (kernel.loop + once) / LANES / SCHEDULERS * clocks,
+        "arithmetic": kernel.arithmetic / ARITHMETIC[kernel.precision] * clocks,
+        "integers": (kernel.integer + once) / INTEGERS * clocks,
+        # The neighbours along x are not aligned: a line more for each of these loads.
+        "first cache": ((kernel.loads + kernel.stores) * size + 6 * FIRST_CACHE / 32) /
+                       FIRST_CACHE * clocks,
+        "latency": LATENCY / (kernel.warps * LANES * PROCESSORS),
+    }
+
+
+def read_kernels():
+    return [Kernel(line) for line in COUNTS.read_text().splitlines() if not line.startswith("#")]
+
+
+def print_kernels(kernels, edge):
+    print(f"picoseconds for each site at {edge}^3, walks of {walk(edge)} sites\n")
+    columns = [name for name in seconds(kernels[0], 1, edge) if name != "memory"]
+    cards = [f"memory, {card}" for card in CARDS]
+    print(f"| kernel | bytes | instructions | warps | {' | '.join(cards + columns)} |")
+    print("|---|" + "---|" * (3 + len(cards) + len(columns)))
+    for kernel in kernels:
+        rest = seconds(kernel, 1, edge)
+        once = (kernel.total - kernel.loop) / walk(edge)
+        times = [kernel.words * SIZE[kernel.precision] / rate for rate in CARDS.values()]
+        times += [rest[column] for column in columns]
+        print(f"| {kernel.name} | {kernel.words * SIZE[kernel.precision]} "
+              f"| {kernel.loop + once:.0f} | {kernel.warps} "
+              f"| {' | '.join(f'{time * 1e12:.1f}' for time in times)} |")
+
+
+def steps(kernels, bandwidth, edge):
+    """{(precision, method): [seconds a site, those of the memory alone, what bounds it]}."""
+    found = {}
+    for kernel in kernels:
+        times = seconds(kernel, bandwidth, edge)
+        bound = max(times, key=times.get)
+        step = found.setdefault((kernel.precision, METHODS[kernel.method]), [0, 0, []])
+        step[0] += times[bound]
+        step[1] += times["memory"]
+        if bound not in step[2]:
+            step[2].append(bound)
+    return found
+
+
+def print_steps(kernels, edge):
+    print(f"\na step of {edge}^3 spins: ps a spin (share of the bandwidth)\n")
+    columns = [(card, precision) for card in CARDS for precision in SIZE]
+    print(f"| | {' | '.join(' '.join(column) for column in columns)} |")
+    print("|---" * (1 + len(columns)) + "|")
+    found = {card: steps(kernels, bandwidth, edge) for card, bandwidth in CARDS.items()}
+    for method in METHODS.values():
+        cells = [found[card][precision, method][:2] for card, precision in columns]
+        print(f"| {method} | "
+              f"{' | '.join(f'{t * 1e12:.1f} ({memory / t:.2f})' for t, memory in cells)} |")
+
+
+def card_of(context):
+    """The GPU that a benchmark ran on, else its execution space."""
+    configuration = context.get("kokkos_configuration", "")
+    found = re.search(r"Kokkos::Cuda\[ \d+ \] (.*?) : Selected", configuration)
+    return found[1] if found else context["execution_space"]
+
+
+def print_measured(kernels, folder):
+    sys.path.insert(0, str(ROOT / "python"))
+    from cayspin_plots.bench import Results
+
+    results = Results(folder)
+    name = card_of(next(iter(results.context.values())))
+    card = next((card for card in CARDS if card in name), "H100")
+    copy = max(results.median("stream copy", "GB/s", file) or 0 for file in results.context) * 1e9
+    print(f"\nmeasured on {name}; copy of the memory {copy * 1e-12:.3f} TB/s, "
+          f"{copy / CARDS[card]:.2f} of the bandwidth of an {card}\n")
+    print(f"| case | ps a spin | model, {card} | measured over model | share of the copy |")
+    print("|---|---|---|---|---|")
+    words = {}
+    for kernel in kernels:
+        key = kernel.precision, METHODS[kernel.method]
+        words[key] = words.get(key, 0) + kernel.words * SIZE[kernel.precision]
+    for (precision, method), bytes_moved in words.items():
+        for edge in (64, 128, 256):
+            case = f"{precision}/{method}/{edge}"
+            if (time := results.median(case, "ns/spin")) is None:
+                continue
+            time *= 1e-9
+            model = steps(kernels, CARDS[card], edge)[precision, method][0]
+            print(f"| {case} | {time * 1e12:.1f} | {model * 1e12:.1f} "
+                  f"| {time / model:.2f} | {bytes_moved / copy / time:.2f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--edge", type=int, default=256, help="sites along an edge of the cube")
+    parser.add_argument("--measured", type=pathlib.Path, metavar="DIR")
+    arguments = parser.parse_args()
+    kernels = read_kernels()
+    print_kernels(kernels, arguments.edge)
+    print_steps(kernels, arguments.edge)
+    if arguments.measured:
+        print_measured(kernels, arguments.measured)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+// How a thread of a device finds its numbers. Addresses are most of what a device kernel could
+// compute, so these are made of few 32-bit operations: one place in memory for each row of the
+// stencil, chosen without a branch at the ends, and one multiply-add for each number.
+namespace cayspin::detail {
+
+/// Where the three components of a field begin.
+template <class Real>
+struct ComponentPointers {
+  using value_type = Real;
+  static constexpr int components = 3;
+  Real* component[3] = {};
+
+  ComponentPointers() = default;
+  KOKKOS_FUNCTION explicit ComponentPointers(SiteArray<Real, 3> const& array)
+      : component{array.data, array.data + array.stride, array.data + 2 * array.stride} {}
+};
+
+/// What a launch knows of a layout. Index counts the numbers of one component.
+template <class Index>
+struct DeviceLayout {
+  std::int32_t last[3];  // index along each axis
+  Index step[3];         // to the next site along each axis
+  Index wrap[3];         // what a step past an end adds to stay inside: to the other end, or back
+  bool periodic_x;
+
+  explicit DeviceLayout(RowLayout const& layout)
+      : last{layout.nx - 1, layout.ny - 1, layout.nz - 1},
+        step{1, static_cast<Index>(layout.pitch), static_cast<Index>(layout.pitch * layout.ny)},
+        periodic_x(layout.periodic[0]) {
+    for (int axis = 0; axis < 3; ++axis)
+      wrap[axis] = layout.periodic[axis] ? step[axis] * (last[axis] + 1) : step[axis];
+  }
+
+  /// Does Index reach all numbers of a component, with a plane beyond, and so many threads?
+  static bool reaches(RowLayout const& layout, std::int64_t threads) {
+    std::int64_t const numbers = (layout.rows() + layout.ny) * layout.pitch;
+    return std::max(numbers, threads) <= std::numeric_limits<Index>::max();
+  }
+};
+
+/// One site, for one thread of a device. The same members as Site.
+template <class Value, class Index>
+class DeviceSite {
+ public:
+  using value_type = Value;
+  using scalar_type = Value;
+  static constexpr int lanes = 1;
+
+  KOKKOS_FORCEINLINE_FUNCTION DeviceSite(DeviceLayout<Index> const& layout, std::int32_t x,
+                                         std::int32_t y, std::int32_t z)
+      : layout_(layout),
+        at_{x, y, z},
+        offset_(static_cast<Index>(z) * layout.step[2] + static_cast<Index>(y) * layout.step[1] +
+                static_cast<Index>(x)) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t x() const { return at_[0]; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t y() const { return at_[1]; }
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t z() const { return at_[2]; }
+  KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t offset() const { return offset_; }
+  KOKKOS_FORCEINLINE_FUNCTION bool is_partial() const { return false; }
+  KOKKOS_FORCEINLINE_FUNCTION bool inside() const { return true; }
+
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool is_end() const {
+    return at_[Axis] == (Direction == 0 ? 0 : layout_.last[Axis]);
+  }
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
+    return !is_end<Axis, Direction>() || layout_.wrap[Axis] != layout_.step[Axis];
+  }
+
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, 1> const& array) const {
+    return detail::load<Value>(array.data + offset_);
+  }
+  template <class Array>
+    requires(Array::components == 3)
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load(Array const& array) const {
+    return load_at(array, offset_);
+  }
+  template <class Real, int Components>
+  KOKKOS_FORCEINLINE_FUNCTION Value load(SiteArray<Real, Components> const& array,
+                                         int component) const {
+    return detail::load<Value>(array.data + component * array.stride + offset_);
+  }
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
+    return detail::load<Value>(profile + at_[0]);
+  }
+
+  template <class Real>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value,
+                                         SiteArray<Real, 1> const& array) const {
+    detail::store(value, array.data + offset_);
+  }
+  template <class Array>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Vec3<Value> const& value, Array const& array) const {
+    detail::store(value.x, component<0>(array) + offset_);
+    detail::store(value.y, component<1>(array) + offset_);
+    detail::store(value.z, component<2>(array) + offset_);
+  }
+
+  struct Place {};
+  template <class Spins>
+  KOKKOS_FORCEINLINE_FUNCTION Place place(Spins const&) const {
+    return {};
+  }
+
+  template <class Array>
+  KOKKOS_FORCEINLINE_FUNCTION void load_row(Array const& array, Place const& place,
+                                            Vec3<Value>& center, Vec3<Value> (&beside)[2]) const {
+    center = load(array);
+    beside[0] = neighbor<0, 0>(array, place);
+    beside[1] = neighbor<0, 1>(array, place);
+  }
+  template <int Axis, int Direction, class Array>
+    requires(Array::components == 3)
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor(Array const& array, Place const&) const {
+    return load_at(array, beside<Axis, Direction>());
+  }
+  template <int Axis, int Direction, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION Value neighbor(SiteArray<Real, 1> const& array, Value const&) const {
+    return detail::load<Value>(array.data + beside<Axis, Direction>());
+  }
+  template <int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,
+                                                          Vec3<Value> const& missing) const {
+    bool const past = !layout_.periodic_x && is_end<0, Direction>();
+    return past ? missing : found;
+  }
+
+ private:
+  /// Where the neighbour lies; at an open end the site itself.
+  template <int Axis, int Direction>
+  KOKKOS_FORCEINLINE_FUNCTION Index beside() const {
+    Index const step = Axis == 0 ? 1 : layout_.step[Axis];
+    Index const wrap = is_end<Axis, Direction>() ? layout_.wrap[Axis] : 0;
+    return Direction == 0 ? offset_ - step + wrap : offset_ + step - wrap;
+  }
+
+  template <int Component, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION static Real* component(ComponentPointers<Real> const& array) {
+    return array.component[Component];
+  }
+  template <int Component, class Real>
+  KOKKOS_FORCEINLINE_FUNCTION static Real* component(SiteArray<Real, 3> const& array) {
+    return array.data + Component * array.stride;
+  }
+  template <class Array>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> load_at(Array const& array, Index offset) {
+    return {detail::load<Value>(component<0>(array) + offset),
+            detail::load<Value>(component<1>(array) + offset),
+            detail::load<Value>(component<2>(array) + offset)};
+  }
+
+  DeviceLayout<Index> const& layout_;
+  std::int32_t at_[3];
+  Index offset_;
+};
+
+}  // namespace cayspin::detail

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/pack.hpp>
+
+#include <type_traits>
+
+namespace cayspin::detail {
+
+/// a / b, numbers, to less than a unit in the last place, from 1 / b to 18 bits or more.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& b, Value inverse) {
+  Value const error = Kokkos::fma(-b, inverse, Value(1));
+  inverse = Kokkos::fma(inverse, Kokkos::fma(error, error, error), inverse);
+  Value const quotient = a * inverse;
+  return Kokkos::fma(Kokkos::fma(-b, quotient, a), inverse, quotient);
+}
+
+#if defined(__CUDA_ARCH__)
+__device__ __forceinline__ double rough_inverse(double number) {
+  double inverse;
+  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(number));  // to 20 bits
+  return inverse;
+}
+__device__ __forceinline__ float rough_inverse(float number) {
+  float inverse;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(number));  // to 23 bits
+  return inverse;
+}
+#endif
+
+/// a / b for a normal b. nvcc makes a division a call of a function for numbers near the ends of
+/// their range, and tests for these.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value quotient(Value const& a, Value const& b) {
+#if defined(__CUDA_ARCH__)
+  return refined_quotient(a, b, rough_inverse(b));
+#else
+  return a / b;
+#endif
+}
+
+}  // namespace cayspin::detail

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The kernels whose instructions the test `sass` counts. Nothing is run.
+#include <cayspin/cayspin.hpp>
+
+namespace cayspin::test {
+
+using Exec = Kokkos::DefaultExecutionSpace;
+using Generator = LandauLifshitz<EffectiveField<Exchange, UniaxialAnisotropy, Zeeman>>;
+
+template <class Real>
+struct MainKernels {
+  using S = SpinField<Real, Exec::memory_space>;
+  LieEuler<S> euler;
+  LieHeun<S> heun;
+  Rkmk4<S> rkmk4;
+  StereographicRungeKutta<S, tableau::Heun> chart_heun;
+  StereographicRungeKutta<S, tableau::Classical4> chart_rk4;
+
+  void step(Generator const& generator, S& spins) {
+    auto const each = [&](auto&... stepper) {
+      (stepper.step(Exec(), generator, spins, 0, 0.1), ...);
+    };
+    each(euler, heun, rkmk4, chart_heun, chart_rk4);
+  }
+};
+
+template struct MainKernels<float>;
+template struct MainKernels<double>;
+
+}  // namespace cayspin::test

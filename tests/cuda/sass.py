@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Counts the instructions of the main kernels on a GPU, from their machine code, and compares them
+with the recorded ones, to 2 %. Nothing is run.
+
+A thread walks over a few sites. The loop over them is what is counted by kind, once for each site;
+the rest of a kernel runs once for each thread. No instruction of the loop is left out. "integer" is
+what is no arithmetic of the method, no load, no store and no load of a constant: addresses, ends of
+the lattice, branches. In double precision it may not exceed the arithmetic."""
+
+import argparse
+import collections
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
+from device_kernels import compile_entry, device_command, kernels_of_log  # noqa: E402
+
+MARGIN = 0.02
+NVCC = "release 13.0"
+COLUMNS = ("total", "arithmetic", "loads", "integer", "stores", "constants", "registers")
+KINDS = {
+    "arithmetic": "DADD DMUL DFMA DSETP DMNMX FADD FMUL FFMA FSETP FMNMX FCHK MUFU F2F".split(),
+    "loads": ["LDG", "LD"],
+    "stores": ["STG", "ST"],
+    "constants": ["LDC", "ULDC", "LDCU"],
+}
+METHODS = {
+    ("Euler", "Lie"): "LieEuler",
+    ("Heun", "LieUncorrected"): "LieHeun",
+    ("Classical4", "Lie"): "Rkmk4",
+    ("Heun", "Stereographic"): "StereographicHeun",
+    ("Classical4", "Stereographic"): "StereographicRk4",
+}
+
+
+def kernel_name(symbol):
+    """Precision, method and stage of a symbol; None for the kernels of lattices beyond 32 bits."""
+    name = subprocess.run(["c++filt", symbol], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+    found = re.search(r"TileLoop<int, .*?OnDeviceSite<(float|double), .*?RungeKuttaStage<"
+                      r"cayspin::tableau::(\w+), cayspin::update::(\w+).*?, (\d+), cayspin", name)
+    if not found:
+        return None
+    precision = {"float": "f32", "double": "f64"}[found[1]]
+    return f"{precision}_{METHODS[found[2], found[3]]}_{found[4]}"
+
+
+def operation(text):
+    return re.sub(r"^@!?U?P\w+\s+", "", text).split()[0].split(".")[0]
+
+
+def kind(text):
+    return next((kind for kind, words in KINDS.items() if operation(text) in words), "integer")
+
+
+def instructions(lines):
+    """[(labels before it, text)] of a kernel."""
+    found, labels = [], set()
+    for line in lines:
+        if match := re.match(r"(\.L\w+):", line):
+            labels.add(match[1])
+        elif match := re.match(r"\s*/\*[0-9a-f]{4,}\*/\s+(.*?)\s*;", line):
+            if operation(match[1]) != "NOP":
+                found.append((labels, match[1]))
+                labels = set()
+    return found
+
+
+def site_loop(code, name):
+    """The innermost loop with loads."""
+    at = {label: index for index, (labels, _) in enumerate(code) for label in labels}
+    loops = []
+    for index, (_, text) in enumerate(code):
+        jump = re.search(r"\bBRA `\((\.L\w+)\)", text)
+        if jump and at[jump[1]] < index:
+            body = [text for _, text in code[at[jump[1]]:index + 1]]
+            if any(kind(text) == "loads" for text in body):
+                loops.append(body)
+    if not loops:
+        sys.exit(f"{name}: no loop over sites")
+    return min(loops, key=len)
+
+
+def counts_of_kernels(listing, registers):
+    counts = {}
+    for section in re.split(r"^\t\.section\t\.text\.", listing, flags=re.MULTILINE)[1:]:
+        symbol = section.split(",", 1)[0]
+        if name := kernel_name(symbol):
+            if "launch_local_memory" not in symbol:
+                sys.exit(f"{name}: more than 512 bytes of arguments, so launches wait")
+            code = instructions(section.splitlines())
+            loop = site_loop(code, name)
+            if calls := [text for text in loop if operation(text) == "CALL"]:
+                sys.exit(f"{name}: {calls[0]} in the loop over sites")
+            by_kind = collections.Counter(map(kind, loop))
+            counts[name] = [len(code), *(by_kind[column] for column in COLUMNS[1:-1]),
+                            registers[symbol]]
+    return dict(sorted(counts.items()))
+
+
+def read_counts(path):
+    rows = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
+    return {row[0]: list(map(int, row[1:])) for row in rows}
+
+
+def wrong_counts(found, expected):
+    for name in sorted(found.keys() | expected.keys()):
+        if name not in found or name not in expected:
+            yield f"{name}: {'not compiled' if name in expected else 'not expected'}"
+            continue
+        row = dict(zip(COLUMNS, found[name]))
+        if name.startswith("f64") and row["integer"] > row["arithmetic"]:
+            yield f"{name}: {row['integer']} integer for {row['arithmetic']} of arithmetic"
+        for column, count, before in zip(COLUMNS, found[name], expected[name]):
+            if abs(count - before) > MARGIN * before:
+                yield f"{name}: {count} {column}, expected {before}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
+    parser.add_argument("source")
+    parser.add_argument("output", metavar="CUBIN")
+    parser.add_argument("expected", type=pathlib.Path)
+    parser.add_argument("--nvdisasm", required=True)
+    parser.add_argument("--record", action="store_true", help="write what is found")
+    arguments = parser.parse_args()
+    directory, words = compile_entry(arguments.commands, arguments.source)
+    version = subprocess.run([words[0], "--version"], text=True, stdout=subprocess.PIPE).stdout
+    if NVCC not in version or "-arch=sm_90" not in words:
+        print(f"skipped: the numbers are those of nvcc, {NVCC}, for sm_90")
+        return 0
+    if not pathlib.Path(arguments.nvdisasm).is_file():
+        print("skipped: there is no nvdisasm")
+        return 0
+    command = device_command(words, arguments.output)
+    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT)
+    if done.returncode != 0:
+        sys.exit(f"{done.stdout}\n{shlex.join(command)} ended with {done.returncode}")
+    registers = {row.symbol: row.registers for row in kernels_of_log(done.stdout)}
+    listing = subprocess.run([arguments.nvdisasm, "-c", arguments.output], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+    found = counts_of_kernels(listing, registers)
+    lines = [" ".join(map(str, [name, *row])) for name, row in found.items()]
+    text = "\n".join(["# kernel " + " ".join(COLUMNS), *lines])
+    print(text)
+    if arguments.record:
+        arguments.expected.write_text(text + "\n")
+        return 0
+    if wrong := list(wrong_counts(found, read_counts(arguments.expected))):
+        sys.exit("\n  ".join([f"more than {MARGIN:.0%} away, or too much:", *wrong,
+                              "Where that is meant, build the target record_sass."]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
