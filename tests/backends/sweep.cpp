@@ -29,9 +29,10 @@ auto numbers_after_steps(Path path, Generator const& generator,
 }
 
 template <class Stepper, class Choose>
-void expect_same_on_both_paths(Choose const& choose) {
+void expect_same_on_both_paths(Choose const& choose,
+                               std::vector<Lattice> const& lattices = swept_lattices()) {
   using Field = typename Stepper::spins_type;
-  for (Lattice const& lattice : swept_lattices()) {
+  for (Lattice const& lattice : lattices) {
     if (!can_sweep(lattice, Stepper::evaluations)) continue;
     auto const generator = choose(every_term(lattice));
     auto const start = random_spins<Field>(lattice, 13);
@@ -57,8 +58,10 @@ TYPED_TEST(Sweep, StagesThatReadAllBeforeThem) {
 
 TYPED_TEST(Sweep, TwelveStages) {
   using Field = typename TestFixture::Field;
-  expect_same_on_both_paths<Rkmk<Field, tableau::DormandPrince8>>(turning);
-  expect_same_on_both_paths<StereographicRungeKutta<Field, tableau::DormandPrince8>>(turning);
+  expect_same_on_both_paths<Rkmk<Field, tableau::DormandPrince8>>(turning,
+                                                                  smaller_swept_lattices());
+  expect_same_on_both_paths<StereographicRungeKutta<Field, tableau::DormandPrince8>>(
+      turning, smaller_swept_lattices());
 }
 
 TYPED_TEST(Sweep, TwoRotations) {

@@ -22,6 +22,13 @@ inline std::vector<Lattice> swept_lattices() {
   return lattices;
 }
 
+/// Those that methods of many stages can take in a test.
+inline std::vector<Lattice> smaller_swept_lattices() {
+  auto lattices = swept_lattices();
+  std::erase_if(lattices, [](Lattice const& lattice) { return lattice.sites() > 60000; });
+  return lattices;
+}
+
 inline bool can_sweep(Lattice const& lattice, int stages) {
   auto const rows = lattice.shape[1];
   return lattice.boundary[1] == Boundary::open || rows == 1 || rows >= stages;
