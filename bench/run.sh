@@ -38,4 +38,5 @@ throughput larger "$threads" "$drawn/(192|292)/" --benchmark_repetitions=3
 throughput one_thread 1 '/(32|64|128|L2)/' --benchmark_repetitions=3
 run few_spins "$threads" few_spins --benchmark_repetitions=9
 run options "$threads" options
+run evaluations "$threads" evaluations --benchmark_repetitions=9
 "$PYTHON" python/plot_bench.py "$results"

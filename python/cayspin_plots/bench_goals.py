@@ -121,6 +121,19 @@ def few_spins(results):
                            results.median(case, "steps/s", file) / 1e6, goal, floor)
 
 
+def per_evaluation(results):
+    """Methods of high order and adaptive ones, to the time of RKMK4 in the same run."""
+    def time(precision, method, size):
+        return results.median(f"evaluations/{precision}/{method}/{size}", "ns/evaluation",
+                              "evaluations")
+    for method in ("rkmk5", "rkmk8", "tsit5", "dp5"):
+        for precision in PRECISIONS:
+            for size in ("256^2", "64^3"):
+                yield Goal(f"{method}, {size}, {precision}, time an evaluation / rkmk4",
+                           ratio(time(precision, method, size), time(precision, "rkmk4", size)),
+                           1.25, at_most=True)
+
+
 def memory(results):
     yield worst("work memory, 256^3, f64, bytes per spin", {
         method: results.median(f"f64/{method}/256", "work_bytes")
@@ -131,5 +144,6 @@ def memory(results):
 
 
 def goals(results):
-    for part in (against_hand_written, against_probes, against_limits, against_itself, few_spins, memory):
+    for part in (against_hand_written, against_probes, against_limits, against_itself, few_spins,
+                 per_evaluation, memory):
         yield from part(results)

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A sweep of all stages through the lattice writes the bits of one kernel per stage.
 #include "../support/coefficients.hpp"
-#include "equal_bits.hpp"
-
-#include <cmath>
+#include "sweeping.hpp"
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -16,25 +14,6 @@ struct Sweep : ::testing::Test {
 };
 using Precisions = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Sweep, Precisions);
-
-/// Odd ones, and such with long rows, which a sweep cuts into many blocks.
-std::vector<Lattice> lattices() {
-  auto lattices = odd_lattices();
-  std::array<std::int64_t, 3> const wide[] = {{2003, 41, 3}, {3001, 53, 1}, {1003, 17, 13}};
-  for (auto const& shape : wide)
-    for (Boundary const b : {Boundary::open, Boundary::periodic})
-      lattices.push_back({shape, {1, 0.9, 1.1}, {b, b, b}});
-  lattices.push_back(
-      {{301, 37, 5}, {1, 1, 1}, {Boundary::open, Boundary::periodic, Boundary::open}});
-  lattices.push_back(
-      {{301, 5, 37}, {1, 1, 1}, {Boundary::periodic, Boundary::open, Boundary::periodic}});
-  return lattices;
-}
-
-bool can_sweep(Lattice const& lattice, int stages) {
-  auto const rows = lattice.shape[1];
-  return lattice.boundary[1] == Boundary::open || rows == 1 || rows >= stages;
-}
 
 template <class Exec, class Stepper, class Generator>
 auto numbers_after_steps(Path path, Generator const& generator,
@@ -50,9 +29,10 @@ auto numbers_after_steps(Path path, Generator const& generator,
 }
 
 template <class Stepper, class Choose>
-void expect_same_on_both_paths(Choose const& choose) {
+void expect_same_on_both_paths(Choose const& choose,
+                               std::vector<Lattice> const& lattices = swept_lattices()) {
   using Field = typename Stepper::spins_type;
-  for (Lattice const& lattice : lattices()) {
+  for (Lattice const& lattice : lattices) {
     if (!can_sweep(lattice, Stepper::evaluations)) continue;
     auto const generator = choose(every_term(lattice));
     auto const start = random_spins<Field>(lattice, 13);
@@ -66,16 +46,6 @@ void expect_same_on_both_paths(Choose const& choose) {
   }
 }
 
-/// Every term, and a field that turns.
-auto turning(Slab const& slab) {
-  return LandauLifshitz(EffectiveField(Exchange(slab.lattice, slab.exchange),
-                                       UniaxialAnisotropy(slab.anisotropy, slab.axis),
-                                       TimeDependentZeeman([](double t) {
-                                         return Vec3<double>{std::cos(t), std::sin(t), 0.3};
-                                       })),
-                        slab.damping);
-}
-
 TYPED_TEST(Sweep, LieHeun) {
   expect_same_on_both_paths<LieHeun<typename TestFixture::Field>>(turning);
 }
@@ -84,6 +54,18 @@ TYPED_TEST(Sweep, Rkmk4) { expect_same_on_both_paths<Rkmk4<typename TestFixture:
 
 TYPED_TEST(Sweep, StagesThatReadAllBeforeThem) {
   expect_same_on_both_paths<Rkmk<typename TestFixture::Field, tableau::ThreeEighths4>>(turning);
+}
+
+TYPED_TEST(Sweep, TwelveStages) {
+  using Field = typename TestFixture::Field;
+  expect_same_on_both_paths<Rkmk<Field, tableau::DormandPrince8>>(turning,
+                                                                  smaller_swept_lattices());
+  expect_same_on_both_paths<StereographicRungeKutta<Field, tableau::DormandPrince8>>(
+      turning, smaller_swept_lattices());
+}
+
+TYPED_TEST(Sweep, TwoRotations) {
+  expect_same_on_both_paths<CommutatorFree4<typename TestFixture::Field>>(turning);
 }
 
 TYPED_TEST(Sweep, StereographicRungeKutta) {

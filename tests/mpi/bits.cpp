@@ -192,13 +192,20 @@ TYPED_TEST(EqualBits, CompensatedHeunWithGhostsToSpare) {
   this->expect_equal_bits(3, [](Spins const& spins) { return Compensated<LieHeun<Spins>>(spins); });
 }
 
-TYPED_TEST(EqualBits, Adaptive) {
+TYPED_TEST(EqualBits, AdaptiveInPassesAndSweeps) {
   using Spins = typename TypeParam::Spins;
   StepOptions options;
   options.tolerance = 1e-3;
   options.end = 0.15;
-  this->expect_equal_bits(7,
-                          [&](Spins const& spins) { return AdaptiveRkmk<Spins>(spins, options); });
+  for (Path const path : {Path::pass, Path::sweep})
+    this->expect_equal_bits(7, [&](Spins const& spins) {
+      AdaptiveRkmk<Spins> stepper(spins, options);
+      auto const& lattice = spins.lattice();
+      bool const sweeps =
+          lattice.boundary[1] == Boundary::open || lattice.shape[1] == 1 || lattice.shape[1] >= 7;
+      stepper.use(sweeps ? path : Path::pass);
+      return stepper;
+    });
 }
 
 TYPED_TEST(EqualBits, StepsThatRemember) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
-#include <cayspin/detail/for_each_site.hpp>
 
 #include <cstdint>
 #include <string>
@@ -35,27 +34,6 @@ struct RepeatLoops {
     for (std::int64_t task = 1; task < tasks; ++task) loop(task);
   }
 };
-
-/// The loop of for_each_site, as a loop of RepeatLoops.
-template <class Real, class Functor>
-struct RepeatedRowLoop {
-  RowLoop<Real, Functor> loop;
-
-  std::int64_t tasks() const { return loop.blocks.count(); }
-  void operator()(std::int64_t task) const { loop(task); }
-
-  struct Task {
-    RepeatedRowLoop const& rows;
-    std::int64_t task;
-    void operator()() const { rows(task); }
-  };
-  Task task_at(std::int64_t task) const { return {*this, task}; }
-};
-
-template <class Real, class Functor>
-RepeatedRowLoop<Real, Functor> repeated_row_loop(RowLayout const& layout, Functor const& functor) {
-  return {{functor, layout, RowBlocks(layout, pack_count<Real>(layout))}};
-}
 
 /// Runs the loops `count` times in one launch, on the calling thread.
 template <class... Loops>

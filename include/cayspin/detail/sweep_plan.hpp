@@ -10,7 +10,8 @@
 #include <cstdint>
 
 // How a sweep divides a lattice among threads, and each part into blocks of rows whose buffers fit
-// the cache. Seams hold the rows that two blocks share.
+// the cache. Seams hold the rows that two blocks share. In a lattice of one plane stages follow
+// each other by rows instead (row_sweep.hpp).
 namespace cayspin::detail {
 
 /// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
@@ -28,7 +29,7 @@ struct SweepRange {
 };
 
 /// One buffer: a ring of `planes` planes of rows, and a seam of `seam_rows` rows for each plane of
-/// the part.
+/// the part. By rows: a ring of `planes` rows.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0, seam_rows = 0;
   std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip
@@ -38,13 +39,14 @@ struct SweepBuffer {
 /// cut into strips along y, one for each of several threads. They go through the planes together
 /// and read each other's rows at the seams.
 struct SweepPlan {
-  static constexpr int most_stages = 8;
+  static constexpr int most_stages = 13;
 
   RowLayout layout;
   std::int32_t stages = 1, buffers = 0;
   std::int32_t parts_y = 1, parts_z = 1, strips = 1;
-  std::int32_t lag = 1;    // planes between a stage and the one before it
-  std::int32_t block = 1;  // rows, at least; less than twice as many
+  std::int32_t lag = 1;  // planes between a stage and the one before it
+  bool by_rows = false;
+  std::int32_t block = 1;  // rows, at least; less than twice as many. By rows: so many at a time
   std::int32_t ring_rows = 0, seam_planes = 0;
   std::ptrdiff_t pitch = 0, row = 0;  // component to component in a buffer's row, row to row
   std::ptrdiff_t strip_size = 0;      // numbers of memory per strip
@@ -84,17 +86,22 @@ struct SweepPlan {
     std::ptrdiff_t const lines = (layout.nx + line - 1) / line;
     plan.pitch = (lines % 2 == 0 ? lines + 1 : lines) * line;
     plan.row = 3 * plan.pitch;
+    auto const planes_in_use = [&](std::int32_t lag) {
+      std::int32_t planes = lag * plan.stages + 2;  // of the state
+      for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b, lag);
+      return planes;
+    };
+    auto const rows_in_cache =
+        static_cast<std::int32_t>(cache / (static_cast<std::size_t>(plan.row) * sizeof(Real)));
     // Rows per block, if stages follow each other at so many planes.
     auto const block = [&](std::int32_t lag) {
-      std::int32_t planes = lag * plan.stages + 2;  // of the state that are in use
-      for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b, lag);
-      std::size_t const bytes = static_cast<std::size_t>(planes * plan.row) * sizeof(Real);
-      auto const all_rows = static_cast<std::size_t>(layout.ny);
-      return std::max(2 * plan.stages,
-                      static_cast<std::int32_t>(std::min(cache / bytes, all_rows)));
+      return std::max(2 * plan.stages, std::min(rows_in_cache / planes_in_use(lag), layout.ny));
     };
     plan.cut(threads, block(1), block(lag_of_strips));
-    plan.allot<Buffers>(line);
+    if (layout.nz == 1 && plan.strips == 1)
+      plan.allot_rows<Buffers>(rows_in_cache - planes_in_use(1), line);
+    else
+      plan.allot<Buffers>(line);
     return plan;
   }
 
@@ -150,6 +157,23 @@ struct SweepPlan {
     }
   }
 
+  // `to_spare`: rows that the cache holds beside those that are in use, row by row.
+  template <class Buffers>
+  void allot_rows(std::int32_t to_spare, std::ptrdiff_t line) {
+    by_rows = true;
+    block = std::clamp(1 + to_spare / buffers, 4, 16);
+    strip_size = line;  // a pack may read before the first row
+    for (int b = 0; b < buffers; ++b) {
+      SweepBuffer& of_stage = buffer[b];
+      of_stage.producer = Buffers::producer(b);
+      if (Buffers::planes(b, 1) == 0) continue;
+      of_stage.planes = Buffers::planes(b, 1) + block - 1;
+      of_stage.ring = strip_size;
+      strip_size += of_stage.planes * row;
+    }
+    strip_size += line;
+  }
+
   // Where the buffers lie in the memory of a strip. The seams of a part are those of its last one.
   template <class Buffers>
   void allot(std::ptrdiff_t line) {
@@ -158,10 +182,12 @@ struct SweepPlan {
     ring_rows = std::min(2 * block, longest) + 2 * stages;
     seam_planes = (layout.nz + parts_z - 1) / parts_z + 2 * stages;
     std::ptrdiff_t size = line;  // a pack may read before the first row
+    bool const all_planes = strips == 1 && parts_z == 1 && !Axis(layout, 2).wraps;
+    std::int32_t const most_planes = all_planes ? layout.nz : seam_planes;
     for (int b = 0; b < buffers; ++b) {
       SweepBuffer& of_stage = buffer[b];
       of_stage.producer = Buffers::producer(b);
-      of_stage.planes = Buffers::planes(b, lag);
+      of_stage.planes = std::min(Buffers::planes(b, lag), most_planes);
       if (of_stage.planes == 0) continue;
       of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // blocks follow each other row by row
       of_stage.ring = size;

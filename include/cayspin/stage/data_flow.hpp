@@ -20,6 +20,13 @@ constexpr bool is_chain() {
 template <class Tableau>
 inline constexpr bool is_first_same_as_last = requires { Tableau::first_same_as_last; };
 
+/// Does the error estimate at the end of such a step need increment `source`?
+template <class Tableau>
+constexpr bool estimates_with(int source) {
+  if constexpr (is_first_same_as_last<Tableau>) return Tableau::error[source] != 0;
+  return false;
+}
+
 /// Weights of the rotation that follows the first one, if the tableau has any. Row `stages` is
 /// the end of the step.
 template <class Tableau>
@@ -57,7 +64,7 @@ constexpr bool reads_increment(int stage, int source) {
   if (keeps_sum<Tableau, Update>) return source == stage - 1;
   bool const last = stage == Tableau::stages - 1;
   if (second_weight<Tableau>(stage + 1, source) != 0) return true;
-  if (last && Tableau::b[source] != 0) return true;
+  if (last && (Tableau::b[source] != 0 || estimates_with<Tableau>(source))) return true;
   if (!last && Tableau::a[stage + 1][source] != 0) return true;
   return Update::increment_needs_argument && Tableau::a[stage][source] != 0;
 }

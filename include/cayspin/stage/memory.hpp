@@ -5,6 +5,7 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/sweep.hpp>
+#include <cayspin/stage/sweep_buffers.hpp>
 
 #include <algorithm>
 #include <array>
@@ -42,13 +43,7 @@ class StageMemory {
   void allocate_buffers(std::string const& name, Lattice const& lattice, SweepPlan const& plan) {
     *this = {};
     levels_[0] = Spins(name + "::next", lattice);
-    buffers_ =
-        Buffers(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + name + "::buffers"),
-                plan.size());
-    advise_huge_pages(buffers_.data(), buffers_.size() * sizeof(Real));
-    progress_ = Progress("cayspin::" + name + "::progress", progress_size(plan));
-    for_each_task(DefaultExec(), "cayspin::" + name + "::fill_buffers", plan.tasks(),
-                  lattice.sites(), FillSweepBuffers<Real>{buffers_.data(), plan});
+    buffers_ = Buffers("cayspin::" + name, plan);
     allocate_carried(name, lattice);
     // A sweep reads its output again only one step later. By then other processes may have taken
     // most of a shared cache.
@@ -57,18 +52,12 @@ class StageMemory {
   }
 
   std::size_t bytes() const {
-    std::size_t sum =
-        sum_.bytes() + buffers_.size() * sizeof(Real) + progress_.size() * sizeof(StripProgress);
+    std::size_t sum = sum_.bytes() + buffers_.bytes();
     for (auto const& field : carried_) sum += field.bytes();
     for (auto const& level : levels_) sum += level.bytes();
     constexpr std::size_t distinct = keeps_sum<Tableau, Update> ? 1 : stages;
     for (std::size_t i = 0; i < distinct; ++i) sum += increments_[i].bytes();
     return sum;
-  }
-
-  /// Bytes of what `allocate_buffers` takes beside fields.
-  static std::size_t bytes_of_buffers(SweepPlan const& plan) {
-    return plan.size() * sizeof(Real) + progress_size(plan) * sizeof(StripProgress);
   }
 
   /// Sets the fields that the step before left to zero.
@@ -111,15 +100,13 @@ class StageMemory {
   void set(Loop& loop) const {
     loop.next = levels_[0].output(streaming_);
     for (std::size_t i = 0; i < carried_.size(); ++i) loop.carried[i] = carried_[i].array();
-    loop.memory = buffers_.data();
-    loop.progress = progress_.data();
+    buffers_.set(loop);
   }
 
  private:
   static constexpr int level_count = level_fields<Tableau, Update>();
   using DefaultExec = typename Spins::memory_space::execution_space;
-  using Buffers = Kokkos::View<Real*, typename Spins::memory_space>;
-  using Progress = Kokkos::View<StripProgress*, typename Spins::memory_space>;
+  using Buffers = SweepBuffers<Real, typename Spins::memory_space>;
   using Carried = SiteField<Real, 3, typename Spins::memory_space>;
   static constexpr bool on_host = is_host_execution<DefaultExec>;
 
@@ -164,10 +151,6 @@ class StageMemory {
     auto carried(std::size_t i) const { return memory.carried_[i].output(false); }
   };
 
-  static std::size_t progress_size(SweepPlan const& plan) {
-    return plan.strips == 1 ? 0 : static_cast<std::size_t>(plan.parts() * (plan.strips + 1));
-  }
-
   void allocate_carried(std::string const& name, Lattice const& lattice) {
     if constexpr (carried_fields<Update>() > 0)
       for (std::size_t i = 0; i < carried_.size(); ++i)
@@ -179,7 +162,6 @@ class StageMemory {
   Spins sum_;
   std::array<Carried, carried_fields<Update>()> carried_;
   Buffers buffers_;
-  Progress progress_;
   bool streaming_ = false;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/row_sweep.hpp>
 #include <cayspin/detail/strip_crew.hpp>
 #include <cayspin/detail/sweep_plan.hpp>
 #include <cayspin/stage/pass.hpp>
@@ -9,11 +10,21 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <tuple>
 
 // All stages of a Runge-Kutta step in one pass through the lattice. Each stage follows the stage
 // before it at a distance of one plane and one row, on numbers that are still in the cache.
-namespace cayspin::detail {
+namespace cayspin {
+
+/// How the stages of a step go through the lattice. Results have the same bits.
+enum class Path {
+  pass,  // one kernel per stage
+  sweep  // all stages together, on host spaces
+};
+
+namespace detail {
 
 /// The buffers between the stages of a method, by number: spins of stage 1, 2, .., increments of
 /// stage 0, 1, .., weighted sums from stage 0, 1, ..
@@ -62,6 +73,43 @@ struct StageBuffers {
   }
 };
 
+/// Whether and how a method with so many fields of work memory in passes sweeps.
+template <class Spins, class Tableau, class Update, int WorkFields>
+struct SweepChoice {
+  using Real = typename Spins::value_type;
+  static constexpr int stages = Tableau::stages;
+  static constexpr bool possible =
+      stages > 1 &&
+      stages <=
+          SweepPlan::most_stages&& is_host_execution<typename Spins::memory_space::execution_space>;
+
+  static bool can_sweep(RowLayout const& layout) {
+    return possible && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
+  }
+  /// No sweep while all fields fit the caches of the cores.
+  static bool sweeps_by_itself(RowLayout const& layout, int threads) {
+    return can_sweep(layout) && layout.rows() > 1 &&
+           (WorkFields + 1) * layout.allocation(3) * sizeof(Real) >
+               static_cast<std::size_t>(threads) * core_cache_bytes();
+  }
+  static SweepPlan plan(RowLayout const& layout, int threads) {
+    if constexpr (possible) {
+      return SweepPlan::of<Real, StageBuffers<Tableau, Update>>(layout, threads,
+                                                                core_cache_bytes() / 2);
+    } else {
+      SweepPlan plan;
+      plan.layout = layout;
+      return plan;
+    }
+  }
+  static void require(RowLayout const& layout, std::string const& where) {
+    if (!can_sweep(layout))
+      throw std::invalid_argument(where +
+                                  ": a sweep needs two stages, a host space and, "
+                                  "along a periodic y, as many rows as stages");
+  }
+};
+
 template <class Tableau, class Update, class Real, class... Kernels>
 struct SweepLoop {
   static constexpr int stages = Tableau::stages;
@@ -75,6 +123,13 @@ struct SweepLoop {
   StripProgress* progress;
 
   void operator()(std::int64_t task) const {
+    if (plan.by_rows) {
+      RowSweepPart<Real> part(plan, memory, task);
+      for (; part.tick < part.ticks; ++part.tick)
+        unrolled<stages>([&](auto stage) { run_stage_at<stage()>(part, part.z.begin); });
+      if (next.streaming) streaming_fence();
+      return;
+    }
     std::int64_t const number = task / plan.strips;
     auto const strip = static_cast<std::int32_t>(task % plan.strips);
     std::int64_t const steps = SweepPart<Real>(plan, memory, number, strip).steps();
@@ -94,10 +149,11 @@ struct SweepLoop {
 
  private:
   /// Where the arrays of a stage lie: in the fields, or in the buffers of a part.
+  template <class Part>
   struct PlaneOfStep {
     using Buffers = StageBuffers<Tableau, Update>;
     SweepLoop const& loop;
-    SweepPart<Real> const& part;
+    Part const& part;
     std::int32_t z, here;
 
     PlaneRows<Real> start() const { return plane_rows(loop.start, loop.plan.layout, here); }
@@ -148,14 +204,14 @@ struct SweepLoop {
     }
   };
 
-  template <int Stage>
-  void run_stage_at(SweepPart<Real> const& part, std::int32_t z) const {
+  template <int Stage, class Part>
+  void run_stage_at(Part const& part, std::int32_t z) const {
     if (z < part.z.low(Stage) || part.z.high(Stage) <= z) return;
     auto const& kernel = std::get<Stage>(kernels);
     using Kernel = std::remove_cvref_t<decltype(kernel)>;
     std::int32_t const here = part.z.axis.wrapped(z);
     PlanesOf<Kernel> planes;
-    find_arrays<typename Kernel::Flow>(PlaneOfStep{*this, part, z, here}, planes.arrays);
+    find_arrays<typename Kernel::Flow>(PlaneOfStep<Part>{*this, part, z, here}, planes.arrays);
     planes.y = part.y.axis;
     planes.from_memory = Stage == 0;
     run_stage(kernel, planes, plan.layout,
@@ -163,4 +219,5 @@ struct SweepLoop {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace detail
+}  // namespace cayspin

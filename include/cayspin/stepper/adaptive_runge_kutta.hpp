@@ -9,7 +9,9 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/pass.hpp>
+#include <cayspin/stage/sweep.hpp>
 #include <cayspin/stage/update.hpp>
+#include <cayspin/stepper/adaptive_memory.hpp>
 #include <cayspin/stepper/adaptive_stage.hpp>
 #include <cayspin/stepper/step_control.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
@@ -36,39 +38,52 @@ template <class Spins, class Embedded, class Update, class Isotropy = isotropy::
 class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   using Base = detail::StepperBase<Spins>;
   using Tableau = tableau::FirstSameAsLast<Embedded>;
+  using Memory = detail::AdaptiveMemory<Spins, Tableau, Update>;
   static constexpr int stages = Tableau::stages;
 
  public:
   using typename Base::Real;
   static constexpr int order = Embedded::order;
   static constexpr int ghosts = Tableau::stages;
-  static constexpr int work_fields = stages + 4;  // and a number per site
+  /// Fields of three numbers per site when stages go one by one, beside a number per site.
+  static constexpr int work_fields = Memory::fields_of_passes;
 
   /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
   /// the precision.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
       : Base(name, like.lattice(), ghosts),
+        name_(name),
         isotropy_(isotropy),
         options_(options),
         controller_(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
                     "cayspin::" + name),
-        begin_(name + "::begin", like.lattice()),
-        end_(name + "::end", like.lattice()),
-        level_(name + "::level", like.lattice()),
-        first_(name + "::first_generator", like.lattice()),
-        last_(name + "::last_generator", like.lattice()),
-        increments_(detail::numbered_fields<Spins, std::size_t{stages - 1}>(name + "::increment",
-                                                                            like.lattice())),
-        square_(name + "::squared_error", like.lattice()) {
-    streaming_ = detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes());
+        plan_(Sweeps::plan(like.layout(), DefaultExec().concurrency())),
+        memory_(name, like.lattice()) {
+    use(Sweeps::sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep
+                                                                             : Path::pass);
   }
 
-  std::size_t work_bytes() const { return work_fields * begin_.bytes() + square_.bytes(); }
-  /// Predicted bytes of work memory.
-  static std::size_t work_bytes(Lattice const& lattice, bool, int) {
+  /// Takes this path from now on instead of the automatic choice, and allocates its memory.
+  /// Throws std::invalid_argument when the fields cannot be swept.
+  void use(Path path) {
+    if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
+    path_ = path;
+    if constexpr (Sweeps::possible) {
+      if (path == Path::sweep) return memory_.allocate_buffers(name_, plan_);
+    }
+    memory_.allocate_level(name_, this->lattice_);
+  }
+  Path path() const { return path_; }
+
+  std::size_t work_bytes() const { return memory_.bytes(); }
+  /// Predicted bytes of work memory with so many threads. `by_time_alone`: the generator needs the
+  /// time alone to be made ready (cayspin::Generator).
+  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
     auto const layout = detail::RowLayout::of<Real>(lattice);
-    return (work_fields * layout.allocation(3) + layout.allocation(1)) * sizeof(Real);
+    if (!by_time_alone || !Sweeps::sweeps_by_itself(layout, threads))
+      return Memory::bytes_of_passes(layout);
+    return Memory::bytes_of_sweep(layout, Sweeps::plan(layout, threads));
   }
 
   /// Evaluations of the generator so far, and own steps accepted and rejected.
@@ -94,11 +109,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     visit("end_time", end_time_);
     visit("dt", dt_);
     visit("next_dt", next_dt_);
-    visit("begin", begin_);
-    visit("end", end_);
-    visit("last_generator", last_);
-    for (std::size_t i = 0; i < increments_.size(); ++i)
-      visit("increment_" + std::to_string(i + 1), increments_[i]);
+    memory_.visit(visit);
   }
 
   /// Brings `spins` from t to t + dt under `generator`. Waits.
@@ -112,24 +123,25 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
       throw std::invalid_argument(
           this->label("::step: dt must not be negative, nor t + dt beyond the end of the options"));
     if (!running_) begin(exec, generator, spins, t, dt);
-    while (end_time_ < asked - slack) take_step(exec, generator);
+    while (end_time_ < asked - slack) take_step(exec, generator, asked);
     deliver(exec, spins, asked);
   }
 
  private:
   using DefaultExec = typename Spins::memory_space::execution_space;
-  using Scalars = ScalarField<Real, typename Spins::memory_space>;
-  using Whole = detail::WholeFields<Real>;
+  using Sweeps = detail::SweepChoice<Spins, Tableau, Update, work_fields>;
+  static constexpr std::make_integer_sequence<int, stages - 2> stages_between{};
 
   template <class Exec, class Generator>
   void begin(Exec const& exec, Generator const& generator, Spins const& spins, double t,
              double asked) {
-    Kokkos::deep_copy(exec, end_.allocation(), spins.allocation());
-    auto prepared = detail::prepare_term(generator, exec, end_, t);
-    detail::for_each_site<Real>(exec, begin_label_, end_.layout(),
+    auto const& start = memory_.end;
+    Kokkos::deep_copy(exec, start.allocation(), spins.allocation());
+    auto prepared = detail::prepare_term(generator, exec, start, t);
+    detail::for_each_site<Real>(exec, begin_label_, start.layout(),
                                 detail::FirstGeneratorStage<Isotropy, decltype(prepared), Real>{
-                                    std::move(prepared), isotropy_, end_.array(),
-                                    last_.output(false), square_.output(false)});
+                                    std::move(prepared), isotropy_, start.array(),
+                                    memory_.last.output(false), memory_.square.output(false)});
     ++evaluations_done_;
     controller_.reset();
     next_dt_ = controller_.first_dt(std::sqrt(largest_square(exec)), asked);
@@ -137,19 +149,18 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     running_ = true;
   }
 
-  /// The next own step, from end_ at time end_time_.
+  /// The next own step, from the end of the last one, towards a time that is asked for.
   template <class Exec, class Generator>
-  void take_step(Exec const& exec, Generator const& generator) {
-    swap(begin_, end_);
-    swap(first_, last_);
+  void take_step(Exec const& exec, Generator const& generator, double asked) {
+    memory_.exchange_begin_and_end();
     double const t = end_time_;
     while (true) {
       double const dt = within_end(t, next_dt_);
       if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
-      double const error = try_step(exec, generator, t, dt);
+      double const error = try_step(exec, generator, t, dt, asked);
       double const on = controller_.next_dt(dt, error);
       if (controller_.accepts(error)) {
-        detail::update_ghosts(exec, this->lattice_, end_, last_);
+        detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
         next_dt_ = std::max(on, options_.min_dt);
         begin_time_ = t;
         end_time_ = t + dt;
@@ -165,37 +176,35 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     }
   }
 
-  /// The error of a step from begin_ to end_: an angle.
+  /// The error of a step: an angle.
   template <class Exec, class Generator>
-  double try_step(Exec const& exec, Generator const& generator, double t, double dt) {
+  double try_step(Exec const& exec, Generator const& generator, double t, double dt, double asked) {
     evaluations_done_ += stages - 1;
     bool at_once = false;
     if constexpr (detail::is_host_execution<Exec>) {
-      at_once = detail::runs_on_calling_thread<Exec>(begin_.sites()) &&
-                detail::needs_time_alone(generator, exec, begin_);
+      bool const by_time = detail::needs_time_alone(generator, exec, memory_.begin);
+      if (path_ == Path::sweep && !by_time) use(Path::pass);
+      if constexpr (Sweeps::possible) {
+        if (path_ == Path::sweep) {
+          sweep(exec, generator, t, dt, ends_beyond(asked, t + dt, dt));
+          return error(exec);
+        }
+      }
+      at_once = by_time && detail::runs_on_calling_thread<Exec>(memory_.begin.sites());
       if (at_once) stages_at_once(exec, generator, t, dt);
     }
-    if (!at_once) {
-      stages_from<0>(exec, generator, t, dt);
-      auto const& layout = begin_.layout();
-      detail::for_each_site<Real>(
-          exec, end_label_, layout,
-          end_stage(detail::prepare_term(generator, exec, end_, t + dt), dt), layout.own);
-    }
+    if (!at_once) stages_from<0>(exec, generator, t, dt);
+    return error(exec);
+  }
+
+  /// Does such a step end later than asked? Then the spins asked for are made of its increments.
+  static bool ends_beyond(double asked, double end, double dt) { return end - asked > 1e-9 * dt; }
+
+  template <class Exec>
+  double error(Exec const& exec) const {
     return 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(largest_square(exec))));
   }
 
-  /// The spins at which stage `stage` evaluates the generator: end_ for the last stage.
-  Spins const& level(int stage) const { return (stages - 1 - stage) % 2 == 0 ? end_ : level_; }
-
-  template <class Prepared>
-  auto end_stage(Prepared prepared, double dt) const {
-    return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
-        std::move(prepared),   isotropy_,
-        begin_.array(),        end_.array(),
-        increments(),          last_.output(streaming_),
-        square_.output(false), static_cast<Real>(dt)};
-  }
   /// Stage `Stage` with a prepared generator. That of the first stage is known.
   template <int Stage, class Prepared>
   auto stage(Prepared prepared, double dt) const {
@@ -205,90 +214,93 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   auto first_stage(double dt) const {
     using Known = detail::KnownGenerator<Real>;
     return detail::RungeKuttaStage<Tableau, Update, isotropy::Zero, 0, Known, Real>{
-        {first_.array()}, {}, static_cast<Real>(dt)};
+        {memory_.first.array()}, {}, static_cast<Real>(dt)};
   }
-  template <int Stage>
-  detail::StageArrays<Whole, stages> fields() const {
-    detail::StageArrays<Whole, stages> arrays;
-    detail::find_arrays<detail::StageDataFlow<Tableau, Update, Stage>>(FieldsOfStep{*this}, arrays);
-    return arrays;
+  template <class Prepared>
+  auto end_stage(Prepared prepared, double dt,
+                 detail::EndOutputs<Tableau, Real> const& outputs) const {
+    return detail::EndStage<Tableau, Update, Isotropy, Prepared, Real>{
+        std::move(prepared), isotropy_, outputs, static_cast<Real>(dt)};
   }
-  /// Where the arrays of a stage lie.
-  struct FieldsOfStep {
-    AdaptiveRungeKutta const& stepper;
-    auto start() const { return stepper.begin_.array(); }
-    template <int Stage>
-    auto level() const {
-      return Stage == 0 ? stepper.begin_.array() : stepper.level(Stage).array();
-    }
-    template <int Stage>
-    auto increment() const {
-      return stepper.increments_[Stage].array();
-    }
-    template <int Stage>
-    auto new_increment() const {
-      return stepper.increments_[Stage].output(stepper.streaming_);
-    }
-    template <int Stage>
-    auto next() const {
-      return stepper.level(Stage + 1).output(stepper.streaming_);
-    }
-  };
+  /// The same kernels, for generators that need the time alone: calls run(kernel..).
+  template <class Exec, class Generator, class Run>
+  void with_kernels(Exec const& exec, Generator const& generator, double t, double dt,
+                    detail::EndOutputs<Tableau, Real> const& outputs, Run const& run) const {
+    auto const at = [&](double c) {
+      return detail::prepare_term(generator, exec, memory_.begin, t + c * dt);
+    };
+    [&]<int... I>(std::integer_sequence<int, I...>) {
+      run(first_stage(dt), stage<I + 1>(at(Tableau::c[I + 1]), dt)...,
+          end_stage(at(1), dt, outputs));
+    }(stages_between);
+  }
+  template <class Kernel>
+  auto fields() const {
+    return memory_.template arrays<typename Kernel::Flow>();
+  }
+
+  template <class Exec, class Generator>
+  void sweep(Exec const& exec, Generator const& generator, double t, double dt,
+             bool keeps_increments) const {
+    with_kernels(exec, generator, t, dt, memory_.outputs_of_sweep(keeps_increments),
+                 [&]<class... Kernel>(Kernel const&... kernel) {
+                   detail::SweepLoop<Tableau, Update, Real, Kernel...> loop{
+                       {kernel...}, plan_, {}, {}, {}, nullptr, nullptr};
+                   memory_.set(loop);
+                   detail::for_each_task(exec, sweep_label_, plan_.tasks(), memory_.begin.sites(),
+                                         loop);
+                 });
+  }
 
   // Few spins: all stages in one launch.
   template <class Exec, class Generator>
-  void stages_at_once(Exec const& exec, Generator const& generator, double t, double dt) {
-    auto const at = [&](double c) {
-      return detail::prepare_term(generator, exec, begin_, t + c * dt);
-    };
-    auto const& layout = begin_.layout();
-    [&]<int... I>(std::integer_sequence<int, I...>) {
-      detail::repeat_on_calling_thread(
-          step_label_, 1,
-          std::tuple(detail::StageRowLoop(first_stage(dt), fields<0>(), layout),
-                     detail::StageRowLoop(stage<I + 1>(at(Tableau::c[I + 1]), dt), fields<I + 1>(),
-                                          layout)...,
-                     detail::repeated_row_loop<Real>(layout, end_stage(at(1), dt))));
-    }(std::make_integer_sequence<int, stages - 2>{});
+  void stages_at_once(Exec const& exec, Generator const& generator, double t, double dt) const {
+    with_kernels(exec, generator, t, dt, memory_.outputs_of_pass(),
+                 [&]<class... Kernel>(Kernel const&... kernel) {
+                   detail::repeat_on_calling_thread(
+                       step_label_, 1,
+                       std::tuple(detail::StageRowLoop(kernel, fields<Kernel>(),
+                                                       memory_.begin.layout())...));
+                 });
   }
 
   template <int Stage, class Exec, class Generator>
-  void stages_from(Exec const& exec, Generator const& generator, double t, double dt) {
-    auto const run = [&](auto const& kernel) {
-      detail::run_pass(exec, labels_[Stage], begin_.layout(), kernel, fields<Stage>());
+  void stages_from(Exec const& exec, Generator const& generator, double t, double dt) const {
+    auto const run = [&]<class Kernel>(std::string const& label, Kernel const& kernel) {
+      detail::run_pass(exec, label, memory_.begin.layout(), kernel, fields<Kernel>());
+    };
+    auto const prepared = [&] {
+      return detail::prepare_term(generator, exec, memory_.level_of(Stage),
+                                  t + Tableau::c[Stage] * dt);
     };
     if constexpr (Stage == 0)
-      run(first_stage(dt));
+      run(labels_[Stage], first_stage(dt));
+    else if constexpr (Stage + 1 < stages)
+      run(labels_[Stage], stage<Stage>(prepared(), dt));
     else
-      run(stage<Stage>(
-          detail::prepare_term(generator, exec, level(Stage), t + Tableau::c[Stage] * dt), dt));
-    if constexpr (Stage + 2 < stages) stages_from<Stage + 1>(exec, generator, t, dt);
+      run(end_label_, end_stage(prepared(), dt, memory_.outputs_of_pass()));
+    if constexpr (Stage + 1 < stages) stages_from<Stage + 1>(exec, generator, t, dt);
   }
 
   template <class Exec>
   void deliver(Exec const& exec, Spins const& spins, double t) const {
     double const fraction = end_time_ > begin_time_ ? (t - begin_time_) / dt_ : 1;
-    if (std::abs(t - end_time_) <= 1e-9 * dt_ || fraction >= 1) {
-      Kokkos::deep_copy(exec, spins.allocation(), end_.allocation());
+    if (!ends_beyond(t, end_time_, dt_) || fraction >= 1) {
+      Kokkos::deep_copy(exec, spins.allocation(), memory_.end.allocation());
       return;
     }
-    detail::DenseOutput<Tableau, Update, Real> look(begin_.array(), end_.array(), last_.array(),
-                                                    increments(), spins.output(false), dt_,
-                                                    fraction);
-    detail::for_each_site<Real>(exec, dense_label_, begin_.layout(), look);
+    detail::DenseOutput<Tableau, Update, Real> look(memory_.begin.array(), memory_.end.array(),
+                                                    memory_.last.array(), memory_.all_increments(),
+                                                    spins.output(false), dt_, fraction);
+    detail::for_each_site<Real>(exec, dense_label_, spins.layout(), look);
     detail::update_ghosts(exec, this->lattice_, spins);
   }
 
   template <class Exec>
   double largest_square(Exec const& exec) const {
     return detail::reduce_sites<detail::Maximum, 1>(
-        exec, error_label_, square_.layout(), detail::LargestOfSites<Real>{square_.array()})[0];
-  }
-
-  detail::StepIncrements<Tableau, Real> increments() const {
-    detail::StepIncrements<Tableau, Real> all;
-    for (std::size_t i = 0; i < increments_.size(); ++i) all.array[i] = increments_[i].array();
-    return all;
+        exec, error_label_, memory_.square.layout(),
+        detail::LargestOfSites<Real>{memory_.square.array()})[0];
   }
 
   /// A step that reaches the end exactly, without a very short last step.
@@ -299,25 +311,25 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   }
 
   [[noreturn]] void give_up(double t, double dt) {
-    swap(begin_, end_);
-    swap(first_, last_);
+    memory_.exchange_begin_and_end();
     throw StepTooSmall(this->label("::step: from t = ") + detail::to_text(t) +
                        " the tolerance needs a step below " + detail::to_text(dt) +
                        "; the numbers are not finite, or the field is not smooth");
   }
 
-  std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
-              dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
-              step_label_ = this->label("::all_stages");
+  std::string name_,
+      begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
+      dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
+      step_label_ = this->label("::all_stages"), sweep_label_ = this->label("::sweep");
   std::array<std::string, std::size_t{stages}> labels_ =
       this->template stage_labels<std::size_t{stages}>();
   Isotropy isotropy_;
   StepOptions options_;
   detail::StepController controller_;
-  Spins begin_, end_, level_, first_, last_;
-  std::array<Spins, std::size_t{stages - 1}> increments_;
-  Scalars square_;
-  bool streaming_ = false, running_ = false;
+  detail::SweepPlan plan_;
+  Path path_ = Path::pass;
+  Memory memory_;
+  bool running_ = false;
   double begin_time_ = 0, end_time_ = 0, dt_ = 0, next_dt_ = 0;
   std::int64_t evaluations_done_ = 0, accepted_ = 0, rejected_ = 0;
 };

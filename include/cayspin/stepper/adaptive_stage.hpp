@@ -3,6 +3,7 @@
 
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/site.hpp>
+#include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/kernel.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -62,28 +63,41 @@ struct StepIncrements {
   }
 };
 
+/// What the end of a step leaves in memory. After a sweep these are its spins, too, and its
+/// increments if a time within the step is asked for: those of passes are there already.
+template <class Tableau, class Real>
+struct EndOutputs {
+  OutputArray<Real, 3> last;
+  OutputArray<Real, 1> square;
+  bool stores_spins = false, stores_increments = false;
+  OutputArray<Real, 3> increments[std::size_t{Tableau::stages - 1}] = {};
+};
+
 /// The generator at the end of a step, and the squared distance of that end from the embedded
 /// solution's.
 template <class Tableau, class Update, class Isotropy, class Generator, class Real>
 struct EndStage {
-  static constexpr int stages = Tableau::stages;
+  using Flow = StageDataFlow<Tableau, Update, Tableau::stages - 1>;
+  using value_type = Real;
+  using RowArrays = StageArrays<Rows<Real>, Tableau::stages>;
+  static constexpr int stages = Tableau::stages, stages_after = 0;
+
   Generator generator;
   Isotropy isotropy;
-  SiteArray<Real, 3> start, end;
-  StepIncrements<Tableau, Real> increments;
-  OutputArray<Real, 3> last;
-  OutputArray<Real, 1> square;
+  EndOutputs<Tableau, Real> to;
   Real dt;
 
   template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, RowArrays const& rows) const {
     using Value = typename Site::value_type;
-    Stencil<Site, Real> const stencil(site, end);
+    Stencil<Site, Real, RowStencil<Real>> const stencil(site, rows.level);
     Vec3<Value> const& m = stencil.center();
-    Vec3<Value> const m0 = site.load(start);
+    Vec3<Value> const m0 = site.load(rows.start);
     Vec3<Value> const xi = isotropy(m, evaluate(generator, stencil));
     Vec3<Value> f[std::size_t{stages}];
-    increments.load(site, f);
+    unrolled<stages - 1>([&](auto j) {
+      if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
+    });
     Vec3<Value> const total = weighted_sum<StageWeights<Tableau, stages - 1>, stages - 1>(f);
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
     Vec3<Value> const error = weighted_sum<ErrorWeights<Tableau>, stages>(f);
@@ -91,9 +105,14 @@ struct EndStage {
     // Large coordinates may differ although their rotations hardly do: take the larger error.
     Vec3<Value> const unbounded = cross(error, m0);
     Value const apart = dot(difference, difference), of_error = dot(unbounded, unbounded);
-    site.store(xi, last);
+    site.store(xi, to.last);
     site.store(select<Value>(Value(4) < dot(total, total), maximum(apart, of_error), apart),
-               square);
+               to.square);
+    if (to.stores_spins) site.store(m, rows.next);
+    if (to.stores_increments)
+      unrolled<stages - 1>([&](auto j) {
+        if constexpr (Flow::reads_increment(j())) site.store(f[j()], to.increments[j()]);
+      });
   }
 };
 

@@ -21,12 +21,6 @@
 
 namespace cayspin {
 
-/// How the stages of a step go through the lattice. Results have the same bits.
-enum class Path {
-  pass,  // one kernel per stage
-  sweep  // all stages together, on host spaces
-};
-
 /// An explicit one-step method on a spin field: a tableau, and an update that moves spins by
 /// increments (cayspin::update). Holds all work memory. A large field on a host is swept through
 /// once per step, unless the generator needs all spins of a stage beforehand (a nonlocal field).
@@ -51,20 +45,18 @@ class RungeKutta : public detail::StepperBase<Spins> {
       : Base(name, like.lattice(), ghosts),
         name_(name),
         isotropy_(isotropy),
-        plan_(sweep_plan(like.layout(), DefaultExec().concurrency())) {
-    use(sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep : Path::pass);
+        plan_(Sweeps::plan(like.layout(), DefaultExec().concurrency())) {
+    use(Sweeps::sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep
+                                                                             : Path::pass);
   }
 
   /// Takes this path from now on instead of the automatic choice, and allocates its memory.
   /// A compensated method forgets its residual, as after `reset`.
   /// Throws std::invalid_argument when the fields cannot be swept.
   void use(Path path) {
-    if (path == Path::sweep && !can_sweep(plan_.layout))
-      throw std::invalid_argument(
-          this->label("::use: a sweep needs two stages, a host space and, "
-                      "along a periodic y, as many rows as stages"));
+    if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
     path_ = path;
-    if constexpr (has_sweep) {
+    if constexpr (Sweeps::possible) {
       if (path == Path::sweep) return memory_.allocate_buffers(name_, this->lattice_, plan_);
     }
     memory_.allocate_fields(name_, this->lattice_);
@@ -78,9 +70,10 @@ class RungeKutta : public detail::StepperBase<Spins> {
   static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
     auto const layout = detail::RowLayout::of<Real>(lattice);
     std::size_t const field = layout.allocation(3) * sizeof(Real);
-    if (!by_time_alone || !sweeps_by_itself(layout, threads)) return work_fields * field;
+    if (!by_time_alone || !Sweeps::sweeps_by_itself(layout, threads)) return work_fields * field;
     std::size_t const fields = 1 + detail::carried_fields<Update>();
-    return fields * field + Memory::bytes_of_buffers(sweep_plan(layout, threads));
+    return fields * field + detail::SweepBuffers<Real, typename Spins::memory_space>::bytes(
+                                Sweeps::plan(layout, threads));
   }
 
   /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
@@ -90,7 +83,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
     if (exchanges()) this->require_other_memory(spins, memory_.end());
-    if constexpr (has_sweep && detail::is_host_execution<Exec>) {
+    if constexpr (Sweeps::possible && detail::is_host_execution<Exec>) {
       if (path_ == Path::sweep) {
         if (detail::needs_time_alone(generator, exec, spins)) {
           sweep(exec, generator, spins, t, dt);
@@ -150,11 +143,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
  private:
   static constexpr int stages = Tableau::stages;
   using DefaultExec = typename Spins::memory_space::execution_space;
-  using Memory = detail::StageMemory<Spins, Tableau, Update>;
-
-  static constexpr bool has_sweep =
-      stages > 1 &&
-      (stages <= detail::SweepPlan::most_stages) && detail::is_host_execution<DefaultExec>;
+  using Sweeps = detail::SweepChoice<Spins, Tableau, Update, work_fields>;
 
   template <class Exec>
   void update_ghosts(Exec const& exec, Spins const& spins) const {
@@ -165,26 +154,6 @@ class RungeKutta : public detail::StepperBase<Spins> {
 
   /// Does a step exchange the memory of the spins?
   bool exchanges() const { return stages == 1 || path_ == Path::sweep; }
-
-  static bool can_sweep(detail::RowLayout const& layout) {
-    return has_sweep && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
-  }
-  // No sweep while all fields fit the caches of the cores.
-  static bool sweeps_by_itself(detail::RowLayout const& layout, int threads) {
-    return can_sweep(layout) && layout.rows() > 1 &&
-           (work_fields + 1) * layout.allocation(3) * sizeof(Real) >
-               static_cast<std::size_t>(threads) * detail::core_cache_bytes();
-  }
-  static detail::SweepPlan sweep_plan(detail::RowLayout const& layout, int threads) {
-    if constexpr (has_sweep) {
-      return detail::SweepPlan::of<Real, detail::StageBuffers<Tableau, Update>>(
-          layout, threads, detail::core_cache_bytes() / 2);
-    } else {
-      detail::SweepPlan plan;
-      plan.layout = layout;
-      return plan;
-    }
-  }
 
   template <int Stage, class Prepared>
   auto kernel(Prepared prepared, double dt) const {
@@ -253,7 +222,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   Isotropy isotropy_;
   detail::SweepPlan plan_;
   Path path_ = Path::pass;
-  Memory memory_;
+  detail::StageMemory<Spins, Tableau, Update> memory_;
 };
 
 }  // namespace cayspin

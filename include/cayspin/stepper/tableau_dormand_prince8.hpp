@@ -4,7 +4,7 @@
 namespace cayspin::tableau {
 
 /// Dormand and Prince, order 8 in twelve stages: the steps of DOP853, Hairer, Nørsett and Wanner
-/// 1993, Sec. II.5. Its stages go one by one and are never swept.
+/// 1993, Sec. II.5.
 struct DormandPrince8 {
   static constexpr int stages = 12, order = 8;
   static constexpr double a[12][12] = {

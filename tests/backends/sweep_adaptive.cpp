@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// An adaptive method that sweeps takes the steps of one that goes by passes, to the bit: those that
+// it rejects, those that end where it is asked, and those that end later.
+#include "sweeping.hpp"
+
+using namespace cayspin;
+using namespace cayspin::test;
+
+namespace {
+
+template <class Real>
+struct AdaptiveSweep : ::testing::Test {
+  using Field = SpinField<Real, Kokkos::HostSpace>;
+};
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(AdaptiveSweep, Precisions);
+
+/// The first step is too long, and the last one ends where the run does.
+StepOptions const options{.tolerance = 3e-3, .first_dt = 1.5, .end = 0.9};
+
+/// What a stepper says and leaves at several times.
+template <class Real>
+struct Run {
+  std::vector<std::vector<Real>> spins;
+  std::vector<double> counts;
+  std::int64_t rejected = 0;
+};
+
+template <class Exec, class Stepper, class Generator>
+auto run(Path path, Generator const& generator, typename Stepper::spins_type const& start) {
+  Exec const exec;
+  auto spins = copy_of(start);
+  Stepper stepper(spins, options);
+  stepper.use(path);
+  Run<typename Stepper::Real> seen;
+  double t = 0;
+  for (double const asked : {0.6, 0.61, 0.62, 0.9}) {
+    stepper.step(exec, generator, spins, t, asked - t);
+    t = asked;
+    seen.spins.push_back(copy_to_host(spins));
+    seen.counts.insert(seen.counts.end(),
+                       {static_cast<double>(stepper.evaluations_done()),
+                        static_cast<double>(stepper.accepted_steps()),
+                        static_cast<double>(stepper.rejected_steps()), stepper.next_dt()});
+  }
+  EXPECT_EQ(stepper.path(), path);
+  seen.rejected = stepper.rejected_steps();
+  return seen;
+}
+
+template <class Real>
+void expect_same(Run<Real> const& one, Run<Real> const& other, std::string const& where) {
+  ASSERT_EQ(one.counts, other.counts) << where;
+  for (std::size_t i = 0; i < one.spins.size(); ++i)
+    expect_equal_bits(one.spins[i], other.spins[i], where + ", time " + std::to_string(i));
+}
+
+template <class Stepper>
+void expect_same_on_both_paths() {
+  using Field = typename Stepper::spins_type;
+  std::int64_t rejected = 0, lattices = 0;
+  for (Lattice const& lattice : smaller_swept_lattices()) {
+    if (!can_sweep(lattice, Stepper::ghosts)) continue;
+    auto const generator = turning(every_term(lattice));
+    auto const start = random_spins<Field>(lattice, 13);
+    auto const passed = run<Threaded, Stepper>(Path::pass, generator, start);
+    rejected += passed.rejected;
+    ++lattices;
+    ASSERT_NE(passed.spins[1], passed.spins[2]) << name_of(lattice);
+    expect_same(passed, run<Threaded, Stepper>(Path::sweep, generator, start), name_of(lattice));
+    expect_same(passed, run<Kokkos::Serial, Stepper>(Path::sweep, generator, start),
+                name_of(lattice) + "on Serial");
+  }
+  EXPECT_GE(rejected, lattices);
+}
+
+TYPED_TEST(AdaptiveSweep, OnTheGroup) {
+  using Field = typename TestFixture::Field;
+  expect_same_on_both_paths<AdaptiveRkmk<Field, tableau::Tsitouras5>>();
+  expect_same_on_both_paths<AdaptiveRkmk<Field, tableau::DormandPrince5, isotropy::Constant>>();
+}
+
+TYPED_TEST(AdaptiveSweep, InTheChart) {
+  expect_same_on_both_paths<
+      AdaptiveStereographic<typename TestFixture::Field, tableau::BogackiShampine3>>();
+}
+
+TYPED_TEST(AdaptiveSweep, InSpace) {
+  expect_same_on_both_paths<AdaptiveProjected<typename TestFixture::Field>>();
+}
+
+TYPED_TEST(AdaptiveSweep, LeavesOffUnderANonlocalField) {
+  using Field = typename TestFixture::Field;
+  auto const lattice = Lattice::cubic(70, 20, 20);
+  LandauLifshitz const generator(
+      EffectiveField(Exchange(lattice, 1),
+                     LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.7)),
+      0.1);
+  auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
+  AdaptiveRkmk<Field> passing(one, options), sweeping(other, options);
+  passing.use(Path::pass);
+  sweeping.use(Path::sweep);
+  Threaded const exec;
+  passing.step(exec, generator, one, 0, 0.5);
+  sweeping.step(exec, generator, other, 0, 0.5);
+  EXPECT_EQ(sweeping.path(), Path::pass);
+  EXPECT_EQ(sweeping.work_bytes(), passing.work_bytes());
+  expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
+}
+
+TYPED_TEST(AdaptiveSweep, ChosenAndPredictedBySize) {
+  using Field = typename TestFixture::Field;
+  using Stepper = AdaptiveRkmk<Field>;
+  int const threads = Threaded().concurrency();
+  for (auto const& [n, path] : {std::pair(8, Path::pass), std::pair(120, Path::sweep)}) {
+    auto const lattice = Lattice::cubic(n, n, n);
+    Field const like("spins", lattice);
+    Stepper const stepper(like, options);
+    EXPECT_EQ(stepper.path(), path) << n;
+    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << n;
+    std::size_t const of_passes =
+        11 * like.bytes() + ScalarField<typename Field::value_type>("square", lattice).bytes();
+    EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), of_passes) << n;
+  }
+}
+
+}  // namespace
