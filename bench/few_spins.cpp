@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps per second of a chain of 100 spins through cayspin::integrate, with an observer every 100
-// steps. Cases are named few spins/METHOD/EXECUTION SPACE.
+// steps, beside hand-written loops for the same scene: one over numbers, and the same as the
+// compiler vectorises it. Cases are named few spins/METHOD/EXECUTION SPACE, few spins/scalar METHOD
+// and few spins/vectorized METHOD.
 #include "context.hpp"
+#include "hand_written_chain.hpp"
 #include "scene.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -12,41 +19,98 @@ namespace {
 
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
 
+constexpr std::int64_t sites = 100, steps = 10000;
+
+cayspin::Lattice chain() { return cayspin::Lattice::chain(sites); }
+
+void report(benchmark::State& state) {
+  state.counters["steps/s"] = benchmark::Counter(static_cast<double>(state.iterations()) * steps,
+                                                 benchmark::Counter::kIsRate);
+}
+
 template <class Stepper, class Exec>
 void run(benchmark::State& state) {
-  constexpr std::int64_t steps = 10000;
-  auto const chain = cayspin::Lattice::chain(100);
-  auto spins = scene::random<typename Stepper::spins_type>(chain);
-  auto const generator = scene::Default::generator(chain);
+  auto spins = scene::random<typename Stepper::spins_type>(chain());
+  auto const generator = scene::Default::generator(chain());
   Stepper stepper(spins);
   Exec const exec;
   std::vector<cayspin::Sample> samples;
-  cayspin::Every every(100, cayspin::Record(scene::Default::field(chain), samples));
+  cayspin::Every every(100, cayspin::Record(scene::Default::field(chain()), samples));
   for (auto _ : state) {
     samples.clear();
     cayspin::integrate(exec, stepper, generator, spins,
                        {.begin = 0, .dt = scene::dt, .steps = steps}, every);
   }
-  state.counters["steps/s"] = benchmark::Counter(static_cast<double>(state.iterations()) * steps,
-                                                 benchmark::Counter::kIsRate);
+  report(state);
 }
 
-template <class Stepper>
-void add(std::string const& name) {
+/// How far the spins of the hand-written loop are from those of the library's renormalised method
+/// after a few steps.
+template <class Stepper, class Loop, class Method>
+double distance(Loop& loop, Method method) {
+  constexpr int few = 11;
+  auto spins = scene::random<Spins>(chain());
+  Stepper stepper(spins);
+  hand_written::Vectors<double> m(sites);
+  hand_written::fill(m, random_spins(sites));
+  (loop.*method)(m, scene::dt, few);
+  for (int step = 0; step < few; ++step)
+    stepper.step(Kokkos::DefaultHostExecutionSpace(), scene::Default::generator(chain()), spins, 0,
+                 scene::dt);
+  auto const ours = copy_to_host(spins);
+  double most = 0;
+  for (std::size_t i = 0; i < sites; ++i)
+    most = std::max({most, std::abs(ours[3 * i] - m.x.data[i]),
+                     std::abs(ours[3 * i + 1] - m.y.data[i]),
+                     std::abs(ours[3 * i + 2] - m.z.data[i])});
+  return most;
+}
+
+template <class Renormalized, class Loop, class Method>
+void run_hand_written(benchmark::State& state, Method method) {
+  Loop loop({sites, scene::exchange, scene::anisotropy, scene::applied, scene::damping});
+  if (!(distance<Renormalized>(loop, method) < 1e-13))
+    return state.SkipWithError("the loop does not take the steps that it stands for");
+  hand_written::Vectors<double> m(sites);
+  hand_written::fill(m, random_spins(sites));
+  for (auto _ : state) (loop.*method)(m, scene::dt, steps);
+  report(state);
+}
+
+template <class Renormalized, class Loop, class Method>
+void add_hand_written(std::string const& name, Method method) {
+  scene::add("few spins/" + name, [method](benchmark::State& state) {
+    run_hand_written<Renormalized, Loop>(state, method);
+  });
+}
+
+using Scalar = hand_written::ChainSteps<hand_written::Loops::scalar>;
+using Vectorized = hand_written::ChainSteps<hand_written::Loops::vectorized>;
+template <class Loop>
+using MethodOf = void (Loop::*)(hand_written::Vectors<double>&, double, std::int64_t);
+
+/// The library's method beside hand-written loops that take the steps of Renormalized.
+template <class Stepper, class Renormalized>
+void add(std::string const& name, MethodOf<Scalar> scalar, MethodOf<Vectorized> vectorized) {
   using Default = Kokkos::DefaultHostExecutionSpace;
   scene::add("few spins/" + name + "/" + Default::name(), run<Stepper, Default>);
 #if defined(KOKKOS_ENABLE_SERIAL)
   if constexpr (!std::is_same_v<Default, Kokkos::Serial>)
     scene::add("few spins/" + name + "/Serial", run<Stepper, Kokkos::Serial>);
 #endif
+  add_hand_written<Renormalized, Scalar>("scalar " + name, scalar);
+  add_hand_written<Renormalized, Vectorized>("vectorized " + name, vectorized);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
-  add<cayspin::LieEuler<Spins>>("Euler");
-  add<cayspin::LieHeun<Spins>>("Heun");
-  add<cayspin::Rkmk4<Spins>>("RKMK4");
+  add<cayspin::LieEuler<Spins>, cayspin::ProjectedEuler<Spins>>("Euler", &Scalar::euler,
+                                                                &Vectorized::euler);
+  add<cayspin::LieHeun<Spins>, cayspin::ProjectedHeun<Spins>>("Heun", &Scalar::heun,
+                                                              &Vectorized::heun);
+  add<cayspin::Rkmk4<Spins>, cayspin::ProjectedRk4<Spins>>("RKMK4", &Scalar::runge_kutta4,
+                                                           &Vectorized::runge_kutta4);
   return run_benchmarks(argc, argv);
 }

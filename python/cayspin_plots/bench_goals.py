@@ -119,6 +119,14 @@ def few_spins(results):
             if case.startswith(f"few spins/{method}/"):
                 yield Goal(f"100 spins, {method}, {case.split('/')[2]}, M steps/s",
                            results.median(case, "steps/s", file) / 1e6, goal, floor)
+    for loop, goal in (("scalar", 1.5), ("vectorized", 1)):
+        for method in ("Euler", "Heun", "RKMK4"):
+            for file, case in sorted(results.values):
+                if case.startswith(f"few spins/{method}/"):
+                    yield Goal(f"100 spins, {method}, {case.split('/')[2]}, x {loop} loop",
+                               ratio(results.median(case, "steps/s", file),
+                                     results.median(f"few spins/{loop} {method}", "steps/s", file)),
+                               goal)
 
 
 def per_evaluation(results):
