@@ -70,7 +70,7 @@ std::vector<WrongUse> wrong_scenes() {
       {"RigidBodyWithField",
        {"--set", "system={kind='rigid_body',inertia=[1,2,3]}", "--set", "lattice={shape=[4]}"},
        "rigid_body"},
-      {"UnknownSpace", {"--space", "abacus"}, another_space},
+      {"UnknownSpace", {"--space", "abacus"}, another_space.c_str()},
       {"UnknownPrecision", {"--precision", "half"}, "single"},
       {"ZeroThreads", {"--threads", "0"}, "--threads"},
       {"ThreadsNotANumber", {"--threads", "two"}, "--threads"},
