@@ -115,6 +115,3 @@ void run_blocks(std::int64_t count, std::int64_t block, void const* body,
                 void (*run)(void const* body, std::int64_t begin, std::int64_t end));
 
 }  // namespace cayspin::test
-
-#include "parallel.hpp"
-#include "specializations.hpp"

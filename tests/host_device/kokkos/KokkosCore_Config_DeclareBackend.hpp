@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "../host_device.hpp"
+#include "../parallel.hpp"
+#include "../specializations.hpp"
 
 #include_next <KokkosCore_Config_DeclareBackend.hpp>
