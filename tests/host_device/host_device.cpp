@@ -81,13 +81,17 @@ class Arena {
 
  private:
   Arena() {
-    void* const base =
-        mmap(nullptr, reserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    std::size_t reserved = std::size_t{16} << 30;
+    void* base = addresses(reserved);
+    while (base == MAP_FAILED && reserved > page_) base = addresses(reserved /= 2);
     if (base == MAP_FAILED) fail("mmap");
     base_ = static_cast<char*>(base);
     gaps_[0] = reserved;
   }
 
+  static void* addresses(std::size_t bytes) {
+    return mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  }
   void protect(int how) {
     if (used_ > 0 && mprotect(base_, used_, how) != 0) fail("mprotect");
   }
@@ -96,7 +100,6 @@ class Arena {
     std::abort();
   }
 
-  static constexpr std::size_t reserved = std::size_t{16} << 30;
   std::size_t const page_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   char* base_ = nullptr;
   std::size_t used_ = 0;

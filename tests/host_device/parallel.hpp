@@ -7,7 +7,7 @@
 
 namespace cayspin::test {
 
-template <class Functor, class Tag>
+template <class Functor, class Tag, class Index>
 struct LoopOverRange {
   Functor functor;
   std::int64_t begin;
@@ -19,14 +19,14 @@ struct LoopOverRange {
   template <class... Value>
   static void call(Functor const& functor, std::int64_t i, Value&... value) {
     if constexpr (std::is_void_v<Tag>)
-      functor(i, value...);
+      functor(static_cast<Index>(i), value...);
     else
-      functor(Tag{}, i, value...);
+      functor(Tag{}, static_cast<Index>(i), value...);
   }
 };
 
 /// A part of the sum for each block, whatever the threads: sums are the same in each call.
-template <class FunctorReducer, class Tag>
+template <class FunctorReducer, class Tag, class Index>
 struct ReductionOfBlocks {
   using Functor = typename FunctorReducer::functor_type;
   using Value = typename FunctorReducer::reducer_type::value_type;
@@ -43,7 +43,7 @@ struct ReductionOfBlocks {
       functor.get_reducer().init(&value);
       std::int64_t const end = std::min(count, (part + 1) * block);
       for (std::int64_t i = part * block; i < end; ++i)
-        LoopOverRange<Functor, Tag>::call(functor.get_functor(), begin + i, value);
+        LoopOverRange<Functor, Tag, Index>::call(functor.get_functor(), begin + i, value);
     }
   }
 };
@@ -59,7 +59,8 @@ class ParallelFor<Functor, RangePolicy<Traits...>, cayspin::test::HostDevice> {
   ParallelFor(Functor const& functor, Policy const& policy) : functor_(functor), policy_(policy) {}
 
   void execute() const {
-    using Loop = cayspin::test::LoopOverRange<Functor, typename Policy::work_tag>;
+    using Loop = cayspin::test::LoopOverRange<Functor, typename Policy::work_tag,
+                                              typename Policy::member_type>;
     std::int64_t const begin = policy_.begin(), count = policy_.end() - begin;
     policy_.space().enqueue([loop = Loop{functor_, begin}, count] {
       cayspin::test::run_blocks(count, 1024, &loop, Loop::run);
@@ -116,7 +117,8 @@ class ParallelReduce<FunctorReducer, RangePolicy<Traits...>, cayspin::test::Host
 
  private:
   void reduce() const {
-    using Blocks = cayspin::test::ReductionOfBlocks<FunctorReducer, typename Policy::work_tag>;
+    using Blocks = cayspin::test::ReductionOfBlocks<FunctorReducer, typename Policy::work_tag,
+                                                    typename Policy::member_type>;
     std::int64_t const begin = policy_.begin(), count = policy_.end() - begin;
     std::int64_t const parts = (count + Blocks::block - 1) / Blocks::block;
     std::vector<typename Blocks::Value> values(static_cast<std::size_t>(parts));

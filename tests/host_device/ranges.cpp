@@ -10,18 +10,20 @@ namespace {
 using Counts = Kokkos::View<int***, Kokkos::LayoutLeft, HostDeviceMemory>;
 constexpr int extents[3] = {37, 19, 11}, begins[3] = {3, 2, 5};
 
+template <class Index>
 struct CountVisits {
   Counts counts;
-  template <class Index>
-  KOKKOS_FUNCTION void operator()(Index x, Index y, Index z) const {
+  template <class Given>
+  KOKKOS_FUNCTION void operator()(Given x, Given y, Given z) const {
     ++counts(x, y, z);
   }
-  template <class Index>
-  KOKKOS_FUNCTION void operator()(Index x, Index y) const {
+  template <class Given>
+  KOKKOS_FUNCTION void operator()(Given x, Given y) const {
     ++counts(x, y, begins[2]);
   }
-  template <class Index>
-  KOKKOS_FUNCTION void operator()(Index x) const {
+  template <class Given>
+  KOKKOS_FUNCTION void operator()(Given x) const {
+    static_assert(std::is_same_v<Given, Index>);
     ++counts(x, begins[1], begins[2]);
   }
 };
@@ -31,7 +33,8 @@ void expect_each_index_once(int rank, Policy const& policy) {
   Counts const counts("counts", extents[0], extents[1], extents[2]);
   auto const here = Kokkos::create_mirror_view(counts);
   HostDevice const exec;
-  Kokkos::parallel_for("cayspin::test::count_visits", policy, CountVisits{counts});
+  Kokkos::parallel_for("cayspin::test::count_visits", policy,
+                       CountVisits<typename Policy::index_type>{counts});
   Kokkos::deep_copy(exec, here, counts);
   EXPECT_EQ(here(begins[0], begins[1], begins[2]), 0) << "before the fence";
   exec.fence();

@@ -25,6 +25,13 @@ inline std::string const default_space = "openmp", another_space = "openmp";
 inline std::string const default_space = "openmp", another_space = "serial";
 #endif
 
+/// Are the programs that it starts built, too? They compute on hosts.
+#if defined(CAYSPIN_HOST_DEVICE)
+inline constexpr bool has_siblings = false;
+#else
+inline constexpr bool has_siblings = true;
+#endif
+
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool address_sanitizer = true;
 #else

@@ -40,12 +40,13 @@ TEST_F(ReferencePage, HasTheOptionsOfEveryCommand) {
   int commands = 0;
   for (auto const& [command, synopsis] : page) {
     if (command.starts_with('[') || command.starts_with('-')) continue;
+    if (!has_siblings && (command == "reproduce" || command == "extremes")) continue;
     auto const help = start({command, "--help"});
     EXPECT_EQ(help.status, 0) << help.errors;
     EXPECT_EQ(options_in(synopsis), options_in(help.output)) << command;
     ++commands;
   }
-  EXPECT_EQ(commands, 12);
+  EXPECT_EQ(commands, has_siblings ? 12 : 10);
 }
 
 }  // namespace
