@@ -139,6 +139,28 @@ TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
   expect_chosen_and_predicted<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
+// Wide lattices of few rows: the buffers of twelve stages would exceed all fields of passes.
+TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
+  using Field = typename TestFixture::Field;
+  auto const expect_bounded = [](auto const& work_bytes) {
+    for (std::array<std::int64_t, 3> const shape :
+         {std::array<std::int64_t, 3>{2003, 41, 3}, {3001, 53, 2}, {4000, 64, 64}, {256, 256, 256}})
+      for (int const threads : {1, 2, 8, 64}) {
+        Lattice const lattice{shape, {1, 1, 1}, {}};
+        std::size_t const passes = work_bytes(lattice, false, threads);
+        std::size_t const field =
+            detail::RowLayout::of<typename Field::value_type>(lattice).allocation(3) *
+            sizeof(typename Field::value_type);
+        EXPECT_LE(work_bytes(lattice, true, threads), passes + field)
+            << name_of(lattice) << threads;
+      }
+  };
+  expect_bounded([](auto... arguments) { return Rkmk4<Field>::work_bytes(arguments...); });
+  expect_bounded([](auto... arguments) {
+    return Rkmk<Field, tableau::DormandPrince8>::work_bytes(arguments...);
+  });
+}
+
 TEST(SweepRefusals, OneStageAndFewPeriodicRows) {
   using Field = SpinField<double, Kokkos::HostSpace>;
   auto const lattice = Lattice::cubic(9, 3, 3, 1, Boundary::periodic);

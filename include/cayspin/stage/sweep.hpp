@@ -6,6 +6,7 @@
 #include <cayspin/detail/strip_crew.hpp>
 #include <cayspin/detail/sweep_plan.hpp>
 #include <cayspin/stage/pass.hpp>
+#include <cayspin/stage/sweep_buffers.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -86,11 +87,14 @@ struct SweepChoice {
   static bool can_sweep(RowLayout const& layout) {
     return possible && (!layout.periodic[1] || layout.ny == 1 || layout.ny >= stages);
   }
-  /// No sweep while all fields fit the caches of the cores.
+  /// No sweep while all fields fit the caches of the cores, nor where its buffers would take more
+  /// memory than the fields of passes.
   static bool sweeps_by_itself(RowLayout const& layout, int threads) {
+    std::size_t const field = layout.allocation(3) * sizeof(Real);
     return can_sweep(layout) && layout.rows() > 1 &&
-           (WorkFields + 1) * layout.allocation(3) * sizeof(Real) >
-               static_cast<std::size_t>(threads) * core_cache_bytes();
+           (WorkFields + 1) * field > static_cast<std::size_t>(threads) * core_cache_bytes() &&
+           SweepBuffers<Real, typename Spins::memory_space>::bytes(plan(layout, threads)) <=
+               WorkFields * field;
   }
   static SweepPlan plan(RowLayout const& layout, int threads) {
     if constexpr (possible) {
