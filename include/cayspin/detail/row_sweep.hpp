@@ -10,7 +10,7 @@
 namespace cayspin::detail {
 
 /// One part of a sweep through a lattice of one plane, at one of its ticks: each stage works on the
-/// next plan.block rows, one row behind the stage before it.
+/// next plan.block rows, after the stage before it at one row.
 template <class Real>
 struct RowSweepPart {
   SweepPlan const& plan;

@@ -17,9 +17,6 @@ struct Row {
   bool periodic_x;
   std::ptrdiff_t pitch;
 
-  KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int64_t row)
-      : Row(layout, static_cast<std::int32_t>(row % layout.ny),
-            static_cast<std::int32_t>(row / layout.ny)) {}
   KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int32_t at_y, std::int32_t at_z)
       : offset((std::int64_t(at_z) * layout.ny + at_y) * layout.pitch),
         nx(layout.nx),
