@@ -87,16 +87,17 @@ struct EndStage {
   EndOutputs<Tableau, Real> to;
   Real dt;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, RowArrays const& rows) const {
+  /// `rows`: StageArrays.
+  template <class Site, class Arrays>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Arrays const& rows) const {
     using Value = typename Site::value_type;
-    Stencil<Site, Real, RowStencil<Real>> const stencil(site, rows.level);
+    Stencil<Site, Real, decltype(rows.level)> const stencil(site, rows.level);
     Vec3<Value> const& m = stencil.center();
     Vec3<Value> const m0 = site.load(rows.start);
     Vec3<Value> const xi = isotropy(m, evaluate(generator, stencil));
     Vec3<Value> f[std::size_t{stages}];
     unrolled<stages - 1>([&](auto j) {
-      if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j()]);
+      if constexpr (Flow::reads_increment(j())) f[j()] = site.load(rows.increments[j]);
     });
     Vec3<Value> const total = weighted_sum<StageWeights<Tableau, stages - 1>, stages - 1>(f);
     f[stages - 1] = Update::increment(total, Vec3<Value>(Value(dt) * xi), m, m0);
