@@ -173,8 +173,11 @@ TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
   };
   Kokkos::DefaultHostExecutionSpace const exec;
   detail::for_each_site<TypeParam>(exec, "packs", packs.layout(), on(packs));
-  detail::SiteLoop<TypeParam, Kernel> const loop{on(sites), sites.layout(), sites.layout().all()};
-  for (std::int64_t site = 0; site < lattice.sites(); ++site) loop(site);
+  using Index = std::int32_t;
+  detail::DeviceTiles const tiles(77, sites.layout().all());
+  detail::TileLoop<Index, detail::OnDeviceSite<TypeParam, Kernel>> const loop{
+      {on(sites)}, detail::DeviceLayout<Index>(sites.layout()), tiles};
+  for (Index thread = 0; thread < tiles.thread_count(); ++thread) loop(thread);
   exec.fence();
   EXPECT_EQ(numbers_of(sites), numbers_of(packs));
   EXPECT_NE(numbers_of(sites), start);
