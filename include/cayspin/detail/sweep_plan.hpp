@@ -86,18 +86,18 @@ struct SweepPlan {
     std::ptrdiff_t const lines = (layout.nx + line - 1) / line;
     plan.pitch = (lines % 2 == 0 ? lines + 1 : lines) * line;
     plan.row = 3 * plan.pitch;
-    auto const planes_in_use = [&](std::int32_t lag) {
-      std::int32_t planes = lag * plan.stages + 2;  // of the state
-      for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b, lag);
+    auto const planes_in_use = [&](std::int32_t apart) {
+      std::int32_t planes = apart * plan.stages + 2;  // of the state
+      for (int b = 0; b < plan.buffers; ++b) planes += Buffers::planes(b, apart);
       return planes;
     };
     auto const rows_in_cache =
         static_cast<std::int32_t>(cache / (static_cast<std::size_t>(plan.row) * sizeof(Real)));
     // Rows per block, if stages follow each other at so many planes.
-    auto const block = [&](std::int32_t lag) {
-      return std::max(2 * plan.stages, std::min(rows_in_cache / planes_in_use(lag), layout.ny));
+    auto const rows_per_block = [&](std::int32_t apart) {
+      return std::max(2 * plan.stages, std::min(rows_in_cache / planes_in_use(apart), layout.ny));
     };
-    plan.cut(threads, block(1), block(lag_of_strips));
+    plan.cut(threads, rows_per_block(1), rows_per_block(lag_of_strips));
     if (layout.nz == 1 && plan.strips == 1)
       plan.allot_rows<Buffers>(rows_in_cache - planes_in_use(1), line);
     else
