@@ -42,8 +42,8 @@ std::vector<std::uint64_t> expected(std::int32_t strips) {
   return neighbours.numbers[steps % 2];
 }
 
-/// As many threads as `threads`, each of which starts strips one after the other. `begin_late`
-/// and `late` hold up some of them.
+/// So many threads, each of which starts strips one after the other. `late`: one begins late, and
+/// one strip takes long at some steps.
 std::vector<std::uint64_t> by_crew(std::int32_t strips, int threads, bool late) {
   Neighbours neighbours(strips);
   std::vector<StripProgress> progress(static_cast<std::size_t>(strips) + 1);
