@@ -2,6 +2,7 @@
 # Provides Kokkos::kokkos: a parent project's target, else an installed package, else a source tree.
 # Sets CAYSPIN_KOKKOS_VERSION, _ORIGIN and _BACKENDS for the summary and for the tests.
 set(CAYSPIN_KOKKOS_MINIMUM 4.5)
+set(CAYSPIN_KOKKOS_BEYOND 6)
 
 if(TARGET Kokkos::kokkos)
   set(CAYSPIN_KOKKOS_ORIGIN "the parent project's")
@@ -22,10 +23,6 @@ else()
     get_directory_property(Kokkos_VERSION DIRECTORY "${CAYSPIN_KOKKOS_SOURCE}" DEFINITION
                                                     Kokkos_VERSION)
     set(CAYSPIN_KOKKOS_ORIGIN "built from ${CAYSPIN_KOKKOS_SOURCE}")
-    if(Kokkos_VERSION VERSION_LESS CAYSPIN_KOKKOS_MINIMUM)
-      message(FATAL_ERROR "CAYSPIN_KOKKOS_SOURCE holds Kokkos ${Kokkos_VERSION}, "
-                          "cayspin needs ${CAYSPIN_KOKKOS_MINIMUM} or newer")
-    endif()
   else()
     set(refused "")
     foreach(config version IN ZIP_LISTS Kokkos_CONSIDERED_CONFIGS Kokkos_CONSIDERED_VERSIONS)
@@ -39,6 +36,14 @@ else()
         "  3. name a Kokkos source tree to build: -DCAYSPIN_KOKKOS_SOURCE=DIR\n"
         "or run: bash cmake/bootstrap.sh build${refused}")
   endif()
+endif()
+
+if(Kokkos_VERSION AND (Kokkos_VERSION VERSION_LESS CAYSPIN_KOKKOS_MINIMUM
+                       OR Kokkos_VERSION VERSION_GREATER_EQUAL CAYSPIN_KOKKOS_BEYOND))
+  message(
+    FATAL_ERROR
+      "cayspin needs Kokkos ${CAYSPIN_KOKKOS_MINIMUM} or newer, below ${CAYSPIN_KOKKOS_BEYOND}; "
+      "this is ${Kokkos_VERSION}: ${CAYSPIN_KOKKOS_ORIGIN}")
 endif()
 
 set(CAYSPIN_KOKKOS_VERSION "${Kokkos_VERSION}")

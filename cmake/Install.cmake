@@ -13,7 +13,7 @@ install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin
 
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-install(TARGETS cayspin EXPORT cayspinTargets)
+install(TARGETS cayspin cayspin_same_bits EXPORT cayspinTargets)
 install(EXPORT cayspinTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
 if(TARGET cayspin_io)
   set_target_properties(cayspin_io PROPERTIES EXPORT_NAME io)
@@ -38,7 +38,6 @@ install(FILES ${PROJECT_BINARY_DIR}/cayspinConfig.cmake
 
 include(${CMAKE_CURRENT_LIST_DIR}/PkgConfig.cmake)
 # What a target that links with cayspin gets.
-set(options $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_OPTIONS>)
 set(definitions $<TARGET_PROPERTY:cayspin,INTERFACE_COMPILE_DEFINITIONS>)
 set(folders "-I\${prefix}/include/kokkos") # of a Kokkos that is installed with cayspin
 if(Kokkos_DIR)
@@ -46,8 +45,11 @@ if(Kokkos_DIR)
   set(folders $<REMOVE_DUPLICATES:$<FILTER:${folders},EXCLUDE,^/usr/include$>>)
   set(folders "-I$<JOIN:${folders}, -I>")
 endif()
-set(flags "${CMAKE_CXX20_STANDARD_COMPILE_OPTION} ${folders} $<JOIN:${options}, >")
+set(flags "${CMAKE_CXX20_STANDARD_COMPILE_OPTION} ${folders}")
 string(APPEND flags " $<$<BOOL:${definitions}>:-D$<JOIN:${definitions}, -D>>")
 set(link_flags "")
 cayspin_link_flags(cayspin link_flags)
 cayspin_install_pkg_config(cayspin "${PROJECT_DESCRIPTION}" "${flags}" "${link_flags}")
+set(options $<TARGET_PROPERTY:cayspin_same_bits,INTERFACE_COMPILE_OPTIONS>)
+cayspin_install_pkg_config(cayspin_same_bits "${PROJECT_DESCRIPTION}, to the same bits"
+                           "${flags} $<JOIN:${options}, >" "${link_flags}")

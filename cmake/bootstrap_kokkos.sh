@@ -12,6 +12,7 @@ carrier_sha256=e620f05c742905e2db705d875f1cac92ef0ed453f9e6734e9beda26cc0f9cce7
 kokkos_options=(
   -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_STANDARD=20 -DKokkos_ARCH_NATIVE=ON
   -DKokkos_ENABLE_SERIAL=ON -DKokkos_ENABLE_OPENMP=ON -DKokkos_ENABLE_TESTS=OFF
+  -DKokkos_ENABLE_DEPRECATED_CODE_4=OFF # as in Kokkos 5
   -DCMAKE_POSITION_INDEPENDENT_CODE=ON # the Python module is a shared library
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=12 # a quarter of the processor time
 )
@@ -36,7 +37,7 @@ kokkos_is_found() {
   local probe=$root/build/find-kokkos
   mkdir -p "$probe" "$logs"
   printf '%s\n' 'cmake_minimum_required(VERSION 3.25)' 'project(probe LANGUAGES CXX)' \
-    'find_package(Kokkos 4.5 REQUIRED CONFIG)' >"$probe/CMakeLists.txt"
+    'find_package(Kokkos 4.5...<6 REQUIRED CONFIG)' >"$probe/CMakeLists.txt"
   cmake --fresh -G Ninja -S "$probe" -B "$probe/build" >"$logs/find-kokkos.log" 2>&1
 }
 
@@ -63,7 +64,7 @@ provide_kokkos_source() {
     rm -rf "$kokkos_source.part"
     source_from_package_index || source_from_upstream ||
       fail "no Kokkos source in reach; set CAYSPIN_KOKKOS_SOURCE to one, or CMAKE_PREFIX_PATH to an" \
-           "installed Kokkos >= 4.5 (what was tried: $logs/kokkos-*.log)"
+           "installed Kokkos 4.5 to 5 (what was tried: $logs/kokkos-*.log)"
     mv "$kokkos_source.part" "$kokkos_source"
   fi
   if [ -z "${CAYSPIN_KOKKOS_SOURCE:-}" ]; then

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Numbers and fields by name: what a run carries from one step to the next beside its spins. With
 /// the spins it gives the bits of a run without a break, on any host space and thread count.
@@ -48,4 +48,4 @@ class CheckpointInMemory final : public Checkpoint {
   std::map<std::string, std::vector<double>> fields_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

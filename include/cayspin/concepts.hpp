@@ -16,7 +16,7 @@
 // The five contracts of the library: what a user may bring, and what each of them may leave out.
 // Terms and generators are templates over the stencil; the concepts check them with the host's
 // stencil of Spins, by default spins of double precision in host memory.
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -205,4 +205,4 @@ bool is_due(Observer const& observer, Step const& step) {
 }
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -71,4 +71,4 @@ void exchange_memory(Stepper& stepper, Checkpoint& checkpoint, std::string const
   }
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Steps of length dt up to number `steps`; the time of step n is begin + n dt. A run that goes on
 /// begins after step `first`, at that step's time.
@@ -245,4 +245,4 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
   return summary;
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

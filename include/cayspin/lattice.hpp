@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// open: a missing neighbour adds nothing (Neumann). periodic: the axis closes on itself.
 enum class Boundary { open, periodic };
@@ -77,4 +77,4 @@ struct Lattice {
   }
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

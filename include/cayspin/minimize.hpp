@@ -18,7 +18,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Finds states of rest of the energy of a field, by L-BFGS on the spheres: along great circles by
 /// the Cayley map, with the pairs of steps and gradients projected to the present tangent planes.
@@ -65,13 +65,16 @@ class Minimizer {
       throw std::invalid_argument("cayspin::minimize: the evaluations must be at least 1");
     begin(exec, field, spins, options);
     for (;;) {
-      if (auto const end = descend(exec, field, spins, options)) return ended(*end);
-      if (auto const end = leave_saddle(exec, field, spins, options)) return ended(*end);
+      auto const end = descend(exec, field, spins, options);
+      if (end && *end != MinimizeEnd::stagnated) return ended(*end);
+      if (auto const at_rest = leave_saddle(exec, field, spins, options))
+        return ended(end ? *end : *at_rest);
     }
   }
 
  private:
   static constexpr double largest_turn = 1.5;  // of any spin in a step
+  static constexpr double least_turn = 1e-5;   // of the spin that turns most, out of a saddle
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
   static Spins named(char const* name, Spins const& like) {
@@ -182,7 +185,7 @@ class Minimizer {
     return false;
   }
 
-  /// At a state of rest: turns the spins out of a saddle, or says what the state is.
+  /// At a state of rest, or near one: turns the spins out of a saddle, or says what the state is.
   template <class Exec, class Field>
   std::optional<MinimizeEnd> leave_saddle(Exec const& exec, Field const& field, Spins& spins,
                                           MinimizeOptions const& options) {
@@ -194,23 +197,27 @@ class Minimizer {
     // Along what is flatter, a turn by a radian does not bring the torque above its bound.
     double const flat = std::max(options.torque, 64 * epsilon * strongest_field_);
     auto const found = detail::find_lowest_curvature(
-        exec, field, options.time, spins, moves_, flat, arrays,
+        exec, field, options.time, spins, moves_, strongest_field_, flat, arrays,
         [&](Spins const& from, Spins const& to) { lbfgs_.preconditioner().apply(exec, from, to); });
     so_far_.evaluations += found.evaluations;
     so_far_.curvature = found.value;
     if (!found.is_negative) return MinimizeEnd::converged;
     ++so_far_.saddles;
-    // Along a great circle each; so far that the energy clearly falls.
+    // Along a great circle each, to where the energy is clearly lower; or, near an instability, to
+    // where it falls further while round-off hides by how much.
     detail::combine(exec, 0, arrays.vector, 0, arrays.vector, arrays.product);
     double const longest = detail::largest_difference(exec, arrays.vector, arrays.product);
-    for (double turn : {0.3, 0.1, 0.03, 0.01}) {
-      auto const there = look(exec, field, spins, turn / longest, options);
-      if (!there.is_finite() || !(there.energy.value < so_far_.energy.value)) continue;
-      swap(spins, search_.trial);
-      swap(search_.gradient, search_.new_gradient);
-      take(there);
-      return std::nullopt;
-    }
+    for (double turn = 0.3; turn > least_turn; turn *= 0.3)
+      for (double const step : {turn / longest, -turn / longest}) {
+        auto const there = look(exec, field, spins, step, options);
+        double const change = there.energy.value - so_far_.energy.value;
+        bool const is_hidden = std::abs(change) <= round_off(there.energy);
+        if (!there.is_finite() || !(is_hidden ? step * there.slope < 0 : change < 0)) continue;
+        swap(spins, search_.trial);
+        swap(search_.gradient, search_.new_gradient);
+        take(there);
+        return std::nullopt;
+      }
     return MinimizeEnd::stagnated;
   }
 
@@ -231,4 +238,4 @@ Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
   return Minimizer<Spins>(spins).minimize(exec, field, spins, options);
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

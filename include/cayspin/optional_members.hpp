@@ -8,7 +8,7 @@
 // Field terms and generators as the library calls them: each function calls the member of its name
 // or, where there is none, does what the tables of concepts.hpp say. field/local_part.hpp has those
 // of the local part.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <class Term, class Stencil>
 concept has_field = requires(Term const& term, Stencil const& stencil) {
@@ -221,4 +221,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
     return evaluate(generator, stencil);
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

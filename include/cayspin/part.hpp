@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// The numbers of a field, without its types.
 struct FieldNumbers {
@@ -42,4 +42,4 @@ inline Lattice const& whole(Lattice const& lattice) {
   return lattice.part == nullptr ? lattice : lattice.part->whole();
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

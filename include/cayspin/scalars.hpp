@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -214,4 +214,4 @@ double largest_rate(Exec const& exec, Generator const& generator,
   return Kokkos::sqrt(square[0]);
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -266,4 +266,4 @@ std::vector<Real> copy_to_host(SiteField<Real, Components, MemorySpace> const& f
   return numbers;
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -21,7 +21,7 @@
 // The largest stable time step of a method for the Landau-Lifshitz equation, known before a run:
 // the method's own stages act on one transverse mode of a nearly uniform state,
 // u' = s (-damping + i) u, with a parallel part sigma in the generator.
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -261,4 +261,4 @@ double largest_stable_step(double field_bound, double damping, bool precession =
   }
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

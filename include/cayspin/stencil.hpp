@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/site.hpp>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// What a field term or generator sees: the spin of a site and its neighbours along the axes of
 /// the lattice. On the host a value is a pack: one number for each of several sites.
@@ -114,4 +114,4 @@ class SpinAlone {
 };
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

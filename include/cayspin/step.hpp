@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Where an integration stands when an observer is called.
 struct Step {
@@ -15,4 +15,4 @@ struct Step {
 /// What an observer may return to end an integration early. Observers that return nothing proceed.
 enum class Next { proceed, stop };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Three components. Value is float, double, or a pack of either: on the host one value holds
 /// several sites. Numbers of another type (2.0 * v, v * 2) become the scalar of Value first.
@@ -115,4 +115,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask
 /// packs of 512 bits the wrong way round with > and >=.
 using detail::select;
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,4 +86,4 @@ std::int64_t available_memory(fs::path const& root) {
   return std::min(kibibytes ? 1024 * *kibibytes : unlimited, left_in_groups(root));
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

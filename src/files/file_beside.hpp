@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// A file in the making, written as PATH.partial, which takes its name when commit() says so.
 /// Failures throw std::runtime_error("PATH: cannot write the file: REASON").
@@ -33,4 +33,4 @@ class FileBeside {
 /// Throws if a file is there that may not be replaced.
 void require_free(std::filesystem::path const& path, bool overwrite);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -3,7 +3,7 @@
 
 #include "error.hpp"
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 std::string action(char const* verb, char const* name) {
@@ -86,4 +86,4 @@ double RootAttributes::read_real(char const* name) const {
   return value;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// UTF-8 of variable length.
 DatatypeHandle text_type();
@@ -40,4 +40,4 @@ class RootAttributes {
   std::filesystem::path const& path_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 using Extents = std::vector<hsize_t>;
 
@@ -46,4 +46,4 @@ void write_raw_chunk(hid_t dataset, Extents const& begin, void const* stored, st
 void read_block(hid_t dataset, hid_t memory_type, Extents const& begin, Extents const& extents,
                 void* values, std::filesystem::path const& path);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Keeps HDF5 from printing its error stack while in scope.
 class QuietErrors {
@@ -36,4 +36,4 @@ Result check(Result result, std::filesystem::path const& path, std::string const
   return result;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -3,7 +3,7 @@
 
 #include "error.hpp"
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   std::string const action = "cannot open the file";
@@ -24,4 +24,4 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   throw_failure(path, action, reason);
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Owns one HDF5 identifier and closes it with `Close`.
 template <herr_t (*Close)(hid_t)>
@@ -50,4 +50,4 @@ enum class Locking { on, off };
 /// Opens an existing file for reading.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

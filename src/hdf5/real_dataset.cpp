@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 RealDataset::RealDataset(std::filesystem::path path, std::string name)
     : path_(std::move(path)), name_(std::move(name)) {
@@ -55,4 +55,4 @@ void RealDataset::refuse_extents(std::string const& accepted) const {
   refuse(fmt::format("its extents are ({}); accepted: {}", fmt::join(extents_, ", "), accepted));
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

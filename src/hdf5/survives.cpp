@@ -29,7 +29,7 @@
 #define CAYSPIN_SHADOW_MEMORY
 #endif
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 bool is_child = false;
@@ -165,4 +165,4 @@ void try_in_child(std::filesystem::path const& path, std::function<void()> const
     throw_failure(path, action, "it is damaged (reading it takes more memory than there is)");
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Runs `reading` in a forked child first. A damaged file can make HDF5 crash, loop, or ask for any
 /// amount of memory, and then the child alone suffers. Throws std::runtime_error with one line
@@ -19,4 +19,4 @@ auto read_guarded(std::filesystem::path const& path, Reading const& reading) {
   return reading();
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -10,7 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr std::size_t longest_line = 65536;
@@ -193,4 +193,4 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path) {
   refuse_ovf(path, "it ends before # Begin: Data");
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// The first datum of a binary block, by which readers know the byte order.
 inline constexpr float check_value_4 = 1234567.0F;
@@ -39,4 +39,4 @@ OvfHeader read_header(std::istream& stream, std::filesystem::path const& path);
 /// Throws std::runtime_error("PATH: cannot read the OVF file: REASON").
 [[noreturn]] void refuse_ovf(std::filesystem::path const& path, std::string const& reason);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

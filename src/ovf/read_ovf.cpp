@@ -13,7 +13,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "OVF 2.0 is little endian");
@@ -184,4 +184,4 @@ OvfField read_ovf(fs::path const& path) {
   return std::move(header.field);
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

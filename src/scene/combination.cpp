@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 [[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
@@ -154,4 +154,4 @@ void check_combination(Scene const& scene) {
            "a method without derivatives, or numbers in field.applied");
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // muParser would let "x = 3" write into the variable.
@@ -94,4 +94,4 @@ bool Expression::depends_on(std::string_view variable) const {
   return used.contains(std::string(variable));
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

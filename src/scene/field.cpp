@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 // A table with every parameter of the term.
@@ -161,9 +161,9 @@ Field read_field(Table const& root, SystemKind kind) {
   return field;
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 bool depends_on_time(Field const& field) {
   if (field.own.uniform) return true;
@@ -180,4 +180,4 @@ bool is_nonlocal(Field const& field) {
   return field.own.nonlocal || (slab && (slab->average_layer || slab->on_host));
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

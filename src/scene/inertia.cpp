@@ -13,7 +13,7 @@
 #include <cmath>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 Eigen::Matrix3d symmetric_part(InertiaTensor const& tensor) {
@@ -111,4 +111,4 @@ std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene) {
   return inverses;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 ExpressionStart read_expressions(Item const& item) {
@@ -59,4 +59,4 @@ Initial read_initial(Table const& root) {
   return FileStart{input_file(table, "file", "the name of an HDF5 or OVF 2.0 file")};
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using Site = std::array<std::int64_t, 3>;
@@ -139,4 +139,4 @@ std::vector<double> initial_spins(Scene const& scene, SiteBox const& box) {
   return spins;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

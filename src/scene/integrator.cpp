@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 // Times are n dt in double, so n itself has to be exact there.
@@ -180,4 +180,4 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   return integrator;
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

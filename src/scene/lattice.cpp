@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 // Of cayspin::Lattice::validate.
@@ -69,4 +69,4 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
   return lattice;
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

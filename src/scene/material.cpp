@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 // A number in SI, or { unit = number }.
@@ -215,4 +215,4 @@ void convert_to_reduced(Table const& root) {
   }
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 CheckpointPeriod checkpoint_period(Item const& item) {
@@ -64,4 +64,4 @@ Output read_output(Table const& root, std::int64_t steps) {
   return output;
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 std::vector<std::string> split_path(std::string_view path) {
@@ -104,4 +104,4 @@ void apply_override(toml::table& root, std::string const& assignment) {
   }
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 std::string read_text(std::filesystem::path const& path) {
@@ -193,4 +193,4 @@ std::int64_t sites(Scene const& scene) {
   return shape[0] * shape[1] * shape[2];
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

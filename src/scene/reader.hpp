@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 
 /// Control characters become '?', so that a name typed in a scene cannot break the line.
 std::string one_line(std::string text);
@@ -120,4 +120,4 @@ std::vector<std::string_view> with_flags(std::vector<std::string_view> keys,
   return keys;
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -5,7 +5,7 @@
 
 #include <cctype>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 bool begins_name(char c) { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -36,4 +36,4 @@ std::string scaled_expression(std::string_view text, double time, double field) 
   return scaled + fmt::format(")/{}", field);
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -3,7 +3,7 @@
 
 #include "reader.hpp"
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 
 /// Is it units = "SI"? The sections then hold what is typed until convert_to_reduced.
 bool read_is_si(Table const& root);
@@ -31,4 +31,4 @@ void apply_override(toml::table& root, std::string const& assignment);
 /// and positive definite.
 std::optional<std::string> inertia_fault(InertiaTensor const& tensor, double tolerance);
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

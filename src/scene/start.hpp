@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 
 /// What an expression in [initial] may use: the position (index + 1/2)/extent and the indices.
 inline std::vector<std::string> start_variables() { return {"x", "y", "z", "i", "j", "k"}; }
@@ -27,4 +27,4 @@ inline std::optional<std::array<double, 3>> normalise(std::array<double, 3> cons
   return std::array<double, 3>{x / norm, y / norm, z / norm};
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

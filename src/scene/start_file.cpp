@@ -12,7 +12,7 @@
 
 #include <stdexcept>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 void require_nodes(OvfMesh const& mesh, std::filesystem::path const& path,
@@ -39,4 +39,4 @@ std::vector<double> read_start_file(std::filesystem::path const& path,
   return numbers_in(box, shape, 3, read_ovf(path).values);
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 
 /// Throws std::runtime_error unless an HDF5 or OVF file has spins for a lattice (nx, ny, nz). Only
 /// types and shapes are looked at.
@@ -18,4 +18,4 @@ void check_start_file(std::filesystem::path const& path, std::array<std::int64_t
 std::vector<double> read_start_file(std::filesystem::path const& path,
                                     std::array<std::int64_t, 3> const& shape, SiteBox const& box);
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr std::string_view accepted = "key.path=VALUE,VALUE,... with TOML values";
@@ -97,4 +97,4 @@ std::vector<std::string> SweepHeader::overrides(std::int64_t run) const {
   return overrides;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 constexpr std::string_view inertia_accepted =
@@ -63,4 +63,4 @@ System read_system(Table const& root) {
   return system;
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace cayspin::io::detail {
+namespace cayspin::inline v0_1::io::detail {
 
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind) {
   auto const item = root.find("thermal");
@@ -48,4 +48,4 @@ void check_thermal(Scene const& scene) {
                        integrator.dt / half * scene.units.time));
 }
 
-}  // namespace cayspin::io::detail
+}  // namespace cayspin::inline v0_1::io::detail

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr auto system_kinds = std::to_array<Word<SystemKind>>({
@@ -59,4 +59,4 @@ std::span<Word<Rotation> const> words() {
   return rotations;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,6 +6,7 @@
 #include "failure.hpp"
 #include "files/available_memory.hpp"
 #include "ranks.hpp"
+#include "run_files.hpp"
 #include "text.hpp"
 #include "thermal.hpp"
 
@@ -127,9 +128,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.field += field_bytes<Real>(lattice, 6);
     start += 8 * (9 + 6 + 6) * all.sites();
   }
-  // Two frames or pieces of them on their way, and the copies of a chunk that filters make.
-  auto const pieces = io::frame_pieces(
-      all.shape, sizeof(Real), {scene.output.compression, scene.output.chunk}, planes_at_once);
+  // Two frames or pieces of them on their way, and the copies of a chunk that HDF5 makes.
+  auto const pieces = io::frame_pieces(all.shape, sizeof(Real), storage_of(scene), planes_at_once);
   std::int64_t const frames =
       (writes ? static_cast<std::int64_t>(2 * pieces.bytes + pieces.copied) : 0) +
       (is_part ? static_cast<std::int64_t>(sizeof(Real)) * numbers : 0);

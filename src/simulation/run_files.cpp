@@ -46,12 +46,18 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
   return header;
 }
 
+io::TrajectoryStorage storage_of(io::Scene const& scene) {
+  auto const& output = scene.output;
+  auto const frames = (scene.integrator.steps + output.every - 1) / output.every + 1;
+  return {output.compression, output.chunk, frames};
+}
+
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite) {
   auto const& output = scene.output;
   auto spacing = scene.lattice.spacing;
   for (double& along_axis : spacing) along_axis *= scene.units.length;
   return {.overwrite = overwrite,
-          .storage = {output.compression, output.chunk},
+          .storage = storage_of(scene),
           .xdmf = output.xdmf,
           .table = output.table,
           .spacing = spacing};

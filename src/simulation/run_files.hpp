@@ -18,6 +18,9 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& space, int threads,
                                 std::string const& git_commit);
 
+/// With the frames that the scene asks for.
+io::TrajectoryStorage storage_of(io::Scene const& scene);
+
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite);
 
 /// Throws if the trajectory `path`, or what is named like its checkpoint, must not be replaced. A

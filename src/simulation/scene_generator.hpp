@@ -7,7 +7,7 @@
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 struct Scene;
 }
 

@@ -20,7 +20,7 @@
 #include <span>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr char const* format_mark = "checkpoint_format";
@@ -305,4 +305,4 @@ bool is_checkpoint(std::filesystem::path const& path) {
   });
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // Bits of one sum reach all bits of the result.
@@ -45,4 +45,4 @@ std::uint64_t text_checksum(TrajectoryHeader const& header) {
   return hash;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

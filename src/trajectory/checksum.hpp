@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// The 32 bits that stand for step, time and scalars; never 0.
 std::uint32_t row_checksum(Sample const& sample);
@@ -17,4 +17,4 @@ std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32);
 /// Of the texts of a header.
 std::uint64_t text_checksum(TrajectoryHeader const& header);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

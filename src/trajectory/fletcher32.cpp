@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // Modulo 65535, but a sum that is not 0 does not become 0.
@@ -17,7 +17,6 @@ std::uint64_t folded(std::uint64_t sum) {
 void Fletcher32::add(std::byte const* data, std::size_t bytes) {
   constexpr std::size_t words_between_folds = std::size_t{1} << 20U;  // the sums stay below 2^57
   std::uint64_t sum = sum_, sum_of_sums = sum_of_sums_;
-  words_ += bytes / 2;
   for (std::size_t left = bytes / 2; left > 0;) {
     auto const words = std::min(left, words_between_folds);
     left -= words;
@@ -33,19 +32,8 @@ void Fletcher32::add(std::byte const* data, std::size_t bytes) {
   sum_of_sums_ = sum_of_sums;
 }
 
-void Fletcher32::add_zeros(std::size_t bytes) {
-  words_ += bytes / 2;
-  sum_of_sums_ = folded(sum_of_sums_ + folded(bytes / 2) * sum_);
-}
-
-void Fletcher32::add(Fletcher32 const& later) {
-  words_ += later.words_;
-  sum_of_sums_ = folded(sum_of_sums_ + folded(later.words_) * sum_ + later.sum_of_sums_);
-  sum_ = folded(sum_ + later.sum_);
-}
-
 std::uint32_t Fletcher32::value() const {
   return static_cast<std::uint32_t>(sum_of_sums_ << 16U | sum_);
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -4,20 +4,17 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// The checksum of HDF5's filter fletcher32, of bytes that come in pieces of an even number each.
 class Fletcher32 {
  public:
   void add(std::byte const* data, std::size_t bytes);
-  void add_zeros(std::size_t bytes);
-  /// What another one was given.
-  void add(Fletcher32 const& later);
 
   std::uint32_t value() const;
 
  private:
-  std::uint64_t words_ = 0, sum_ = 0, sum_of_sums_ = 0;
+  std::uint64_t sum_ = 0, sum_of_sums_ = 0;
 };
 
 inline std::uint32_t fletcher32(std::byte const* data, std::size_t bytes) {
@@ -26,4 +23,4 @@ inline std::uint32_t fletcher32(std::byte const* data, std::size_t bytes) {
   return sum.value();
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -19,7 +19,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 FollowedTrajectory::Clock::time_point as_time(std::int64_t seconds, std::uint32_t nanoseconds) {
@@ -91,4 +91,4 @@ std::optional<bool> is_being_written(std::filesystem::path const& path) {
   return error == EWOULDBLOCK ? std::optional(true) : std::nullopt;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

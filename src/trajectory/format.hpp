@@ -10,14 +10,14 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 inline constexpr int format_version = 1;
 inline constexpr char const* single_precision = "single";
 inline constexpr char const* double_precision = "double";
-inline constexpr std::size_t checksum_bytes = 4;
 /// Who reads or writes a part of a chunk has all of it in memory. HDF5 allows 4 GiB.
 inline constexpr std::uint64_t most_chunk_bytes = 256 << 20;
+inline constexpr std::uint64_t file_page_bytes = 4096;
 inline constexpr int most_pending = 512;  // samples that are written at once
 inline constexpr char const* reduced_units = "reduced";
 inline constexpr char const* si_units = "SI";
@@ -31,9 +31,25 @@ inline constexpr UnitAttribute unit_attributes[] = {{"time_unit", &Units::time},
                                                     {"field_unit", &Units::field},
                                                     {"energy_unit", &Units::energy}};
 
-/// Extents (1, z, y, x, 3) of a chunk of /spins for a lattice (nx, ny, nz): the whole frame or at
-/// most `planes` of it along z, and where that passes `limit` bytes, the frame cut into equal slabs
-/// along z, then y, then x.
+/// Chunks of a dataset that HDF5 finds by blocks of at most a page. From the next one on the blocks
+/// have 512 elements of 8 bytes, and a kill can stop the system within one.
+inline constexpr std::int64_t most_chunks = 8180;
+
+/// Frames in a chunk, if each of them takes so many bytes of it. Larger chunks begin on pages of
+/// the file: at most a sixteenth of the pages stays empty. For more frames than `most_chunks` such
+/// chunks hold, a chunk holds more.
+inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t planned) {
+  auto const empty_bytes = [&](std::uint64_t frames) {
+    return (file_page_bytes - frames * bytes % file_page_bytes) % file_page_bytes;
+  };
+  std::uint64_t frames = 1;
+  while (16 * empty_bytes(frames) > frames * bytes + empty_bytes(frames)) ++frames;
+  return std::max(static_cast<std::int64_t>(frames), (planned + most_chunks - 1) / most_chunks);
+}
+
+/// Extents (1, z, y, x, 3) of what a chunk of /spins holds of a frame for a lattice (nx, ny, nz):
+/// all of it or at most `planes` along z, and where that passes `limit` bytes, the frame cut into
+/// equal slabs along z, then y, then x.
 inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& shape,
                                           std::uint64_t bytes_per_component,
                                           std::int64_t planes = 0,
@@ -51,4 +67,4 @@ inline std::array<hsize_t, 5> frame_chunk(std::array<std::int64_t, 3> const& sha
   return chunk;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

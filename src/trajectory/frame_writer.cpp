@@ -6,21 +6,30 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
+
+// Without HDF5's filters a chunk is written again with each of its frames, and the frames before
+// keep their bytes.
+std::array<hsize_t, 5> chunk_of(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
+                                TrajectoryStorage const& storage) {
+  auto chunk = frame_chunk(shape, number_bytes, storage.chunk);
+  if (storage.compression == 0)
+    chunk[0] = static_cast<hsize_t>(
+        frames_of_chunk(3 * number_bytes * chunk[1] * chunk[2] * chunk[3], storage.frames));
+  return chunk;
+}
 
 // A frame that never reached the disk reads as NaN, not as zeros.
 DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
-                           TrajectoryStorage const& storage, std::filesystem::path const& path) {
+                           TrajectoryStorage const& storage, std::array<hsize_t, 5> const& chunk,
+                           std::filesystem::path const& path) {
   bool const single = header.precision == single_precision;
-  auto const chunk =
-      frame_chunk(header.shape, single ? sizeof(float) : sizeof(double), storage.chunk);
   std::array<hsize_t, 4> inner{0, 0, 0, 3};
   for (int axis = 0; axis < 3; ++axis) inner[2 - axis] = static_cast<hsize_t>(header.shape[axis]);
   PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
@@ -32,15 +41,14 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
     check(H5Pset_deflate(properties.get(), static_cast<unsigned>(storage.compression)), path,
           "cannot create dataset spins");
   }
-  check(H5Pset_fletcher32(properties.get()), path, "cannot create dataset spins");
   return create_growing_dataset(file, "spins", single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, chunk,
                                 std::move(properties), path, inner);
 }
 
-// Chunks of whole planes, as they lie in memory.
+// Chunks of whole planes of one frame, as they lie in memory.
 bool written_raw(std::array<std::int64_t, 3> const& shape, std::array<hsize_t, 5> const& chunk,
                  TrajectoryStorage const& storage) {
-  return std::endian::native == std::endian::little && storage.compression == 0 &&
+  return std::endian::native == std::endian::little && storage.compression == 0 && chunk[0] == 1 &&
          chunk[2] == static_cast<hsize_t>(shape[1]) && chunk[3] == static_cast<hsize_t>(shape[0]);
 }
 
@@ -48,27 +56,27 @@ bool written_raw(std::array<std::int64_t, 3> const& shape, std::array<hsize_t, 5
 
 FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
                          TrajectoryStorage const& storage, std::int64_t most_planes) {
-  auto const chunk = frame_chunk(shape, number_bytes, storage.chunk);
+  auto const chunk = chunk_of(shape, number_bytes, storage);
   auto const of_chunk = static_cast<std::int64_t>(chunk[1]);
   auto const plane_bytes = 3 * number_bytes * static_cast<std::size_t>(shape[0] * shape[1]);
   std::int64_t const most = most_planes > 0 ? std::min(most_planes, shape[2]) : shape[2];
   std::int64_t const chunks = most == shape[2] ? (most + of_chunk - 1) / of_chunk
                                                : std::max<std::int64_t>(1, most / of_chunk);
   auto const room = plane_bytes * static_cast<std::size_t>(chunks * of_chunk);
-  auto const of_chunk_bytes = 3 * number_bytes * chunk[1] * chunk[2] * chunk[3];
+  auto const of_chunk_bytes = 3 * number_bytes * chunk[0] * chunk[1] * chunk[2] * chunk[3];
   return {.planes = std::min(chunks * of_chunk, shape[2]),
-          .bytes = room + checksum_bytes,
+          .bytes = room,
           .copied = written_raw(shape, chunk, storage) ? 0 : 2 * of_chunk_bytes};
 }
 
 FrameWriter::FrameWriter(hid_t file, TrajectoryHeader const& header,
                          TrajectoryStorage const& storage, std::filesystem::path path)
     : path_(std::move(path)),
-      dataset_(create_spins(file, header, storage, path_)),
       shape_(header.shape),
       number_bytes_(header.precision == single_precision ? sizeof(float) : sizeof(double)),
       plane_bytes_(3 * number_bytes_ * static_cast<std::size_t>(shape_[0] * shape_[1])) {
-  chunk_ = frame_chunk(shape_, number_bytes_, storage.chunk);
+  chunk_ = chunk_of(shape_, number_bytes_, storage);
+  dataset_ = create_spins(file, header, storage, chunk_, path_);
   raw_ = written_raw(shape_, chunk_, storage);
 }
 
@@ -109,8 +117,7 @@ void FrameWriter::add_in_room(std::int64_t planes, std::byte* spins) {
   add_raw(planes, spins);
 }
 
-// What the filter of HDF5 would do takes it two copies of each chunk. Here the checksum takes the
-// place of what follows the chunk for a moment.
+// HDF5 would copy each chunk.
 void FrameWriter::add_raw(std::int64_t planes, std::byte* spins) {
   if (planes_ == 0) grow(dataset_.get(), static_cast<hsize_t>(frame_) + 1, path_);
   auto const of_chunk = static_cast<std::int64_t>(chunk_[1]);
@@ -118,19 +125,9 @@ void FrameWriter::add_raw(std::int64_t planes, std::byte* spins) {
   for (std::int64_t begin = 0; begin < planes; begin += of_chunk) {
     auto const bytes = plane_bytes_ * static_cast<std::size_t>(std::min(of_chunk, planes - begin));
     auto* const chunk = spins + plane_bytes_ * static_cast<std::size_t>(begin);
-    auto* const end = chunk + chunk_bytes;
-    std::fill(chunk + bytes, end, std::byte{0});
-    Fletcher32 sum;
-    sum.add(chunk, bytes);
-    checksum_.add(sum);
-    sum.add_zeros(chunk_bytes - bytes);
-    auto const stored = sum.value();
-    std::array<std::byte, checksum_bytes> next{};
-    std::memcpy(next.data(), end, checksum_bytes);
-    std::memcpy(end, &stored, checksum_bytes);
-    write_raw_chunk(dataset_.get(), place(planes_ + begin), chunk, chunk_bytes + checksum_bytes,
-                    path_);
-    std::memcpy(end, next.data(), checksum_bytes);
+    std::fill(chunk + bytes, chunk + chunk_bytes, std::byte{0});
+    checksum_.add(chunk, bytes);
+    write_raw_chunk(dataset_.get(), place(planes_ + begin), chunk, chunk_bytes, path_);
   }
   planes_ += planes;
 }
@@ -139,4 +136,4 @@ Extents FrameWriter::place(std::int64_t plane) const {
   return {static_cast<hsize_t>(frame_), static_cast<hsize_t>(plane), 0, 0, 0};
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

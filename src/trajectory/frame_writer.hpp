@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Dataset /spins of a trajectory file, to which frames are added by planes along z.
 class FrameWriter {
@@ -52,4 +52,4 @@ class FrameWriter {
   Fletcher32 checksum_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

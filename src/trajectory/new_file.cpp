@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "new_file.hpp"
 
+#include "format.hpp"
 #include "hdf5/error.hpp"
 #include "open_file_space.hpp"
 
@@ -13,7 +14,7 @@
 #include <cstring>
 #include <string>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,13 +59,16 @@ void create_with_room(fs::path const& written, fs::path const& path) {
   throw_failure(path, action, std::strerror(error));
 }
 
-// All that HDF5 writes for itself has checksums. Its version 3 of a file's head would have a mark
-// for files that are being written, which a kill leaves behind and others then refuse: so
+// All that HDF5 writes for itself has checksums, and a kill can stop a write between two pages of
+// the system: so blocks of less than a page lie within one. Version 3 of a file's head would have a
+// mark for files that are being written, which a kill leaves behind and others then refuse: so
 // version 2.
 FileHandle create_file(fs::path const& written, fs::path const& path) {
   PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_attr_phase_change(creation.get(), 64, 0);
   H5Pset_link_phase_change(creation.get(), 64, 0);
+  H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
+  H5Pset_file_space_page_size(creation.get(), file_page_bytes);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
   FileHandle file(H5Fcreate(written.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   if (file.get() < 0) {
@@ -119,4 +123,4 @@ FileHandle NewFile::commit() {
   return std::move(file_);
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// An HDF5 file in the making, written as PATH.partial until commit(): at no moment is there a torn
 /// file at PATH. An existing file stays untouched until then; with `shared` it may have readers.
@@ -30,4 +30,4 @@ class NewFile {
   FileHandle file_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

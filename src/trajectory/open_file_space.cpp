@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // Asked here because passing the limit would raise a signal that ends the program.
@@ -54,4 +54,4 @@ void OpenFileSpace::trim() const {
   [[maybe_unused]] auto const result = ::ftruncate(descriptor_, static_cast<off_t>(used()));
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Takes room on disk for the bytes from `begin` to `end` of a file: 0, or the system's error
 /// number where there is none. A file system that cannot tell counts as one with room.
@@ -34,4 +34,4 @@ class OpenFileSpace {
   std::uint64_t reserved_ = 0;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Of what a file is to hold: throws std::invalid_argument for what cannot be.
 inline void require_precision(std::string const& precision) {
@@ -35,4 +35,4 @@ Implementation& not_moved(std::unique_ptr<Implementation> const& writer) {
   return *writer;
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -264,4 +264,4 @@ void RunOutput::close(RunCost const& cost) { not_moved(implementation_).end(cost
 std::int64_t RunOutput::frames() { return not_moved(implementation_).frames(); }
 std::filesystem::path const& RunOutput::path() const { return not_moved(implementation_).path(); }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

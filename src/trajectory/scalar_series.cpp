@@ -9,7 +9,7 @@
 #include <array>
 #include <stdexcept>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr hsize_t samples_per_chunk = 512;
@@ -156,4 +156,4 @@ std::vector<std::uint64_t> ScalarSeries::read_checksums(std::int64_t begin, std:
   return read_column<std::uint64_t>(checksum_.get(), H5T_NATIVE_UINT64, begin, end, {}, path);
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

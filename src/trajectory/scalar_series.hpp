@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 struct Sample {
   std::int64_t step;
@@ -55,4 +55,4 @@ class ScalarSeries {
   hsize_t size_ = 0;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

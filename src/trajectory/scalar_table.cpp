@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 ScalarTable::ScalarTable(std::filesystem::path path, bool in_si, bool overwrite)
     : path_(std::move(path)) {
@@ -52,4 +52,4 @@ void ScalarTable::append(std::vector<Sample> const& samples) {
   }
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Samples as a text table in mumax3's style: columns with names and units, separated by tabs, and
 /// digits that give every double back. The file holds whole lines at every moment.
@@ -27,4 +27,4 @@ class ScalarTable {
   int file_ = -1;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -15,7 +15,7 @@
 #include <limits>
 #include <span>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // Only trajectory files say with which cayspin they were written.
@@ -121,4 +121,4 @@ std::vector<double> read_spins(std::filesystem::path const& path,
   return read_guarded(path, [&] { return StoredSpins(path, shape).frame(frame); });
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Dataset /spins of any HDF5 file, open for reading.
 class StoredSpins {
@@ -39,4 +39,4 @@ class StoredSpins {
   Extents begin_, frame_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

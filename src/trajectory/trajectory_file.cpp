@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -254,4 +254,4 @@ std::filesystem::path const& TrajectoryFile::path() const {
   return not_moved(implementation_).path();
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -16,7 +16,7 @@
 #include <bit>
 #include <string>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // Files of versions that knew no units are in reduced ones.
@@ -100,4 +100,4 @@ TrajectoryInfo read_info(std::filesystem::path const& path) {
   return read_guarded(path, [&] { return read_whole_info(path); });
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

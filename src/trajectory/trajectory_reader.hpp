@@ -7,9 +7,9 @@
 
 #include <filesystem>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Attributes and extents; the scalars are not read, and `frames` are those that have spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 
 #include <utility>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr std::int64_t always_written = 1000;
@@ -90,4 +90,4 @@ void XdmfFile::write(bool overwrite) {
   last_write_ = Clock::now();
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Describes /spins of a trajectory file to viewers such as ParaView: an XDMF time series of a
 /// vector field on a regular grid. It is replaced as a whole, so that it is valid at every moment.
@@ -35,4 +35,4 @@ class XdmfFile {
   Clock::time_point last_write_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -42,7 +42,8 @@ def kernel_name(symbol):
     name = subprocess.run(["c++filt", symbol], check=True, text=True,
                           stdout=subprocess.PIPE).stdout
     found = re.search(r"TileLoop<int, .*?OnDeviceSite<(float|double), .*?RungeKuttaStage<"
-                      r"cayspin::tableau::(\w+), cayspin::update::(\w+).*?, (\d+), cayspin", name)
+                      r"cayspin::v\w+::tableau::(\w+), cayspin::v\w+::update::(\w+).*?, (\d+), "
+                      r"cayspin", name)
     if not found:
         return None
     precision = {"float": "f32", "double": "f64"}[found[1]]

@@ -12,7 +12,7 @@
 
 #include <map>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -190,4 +190,4 @@ TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -10,7 +10,7 @@
 
 #include <iostream>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -82,4 +82,4 @@ TEST_F(DamagedSweeps, TakeInAWholeRunOrRefuseIt) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

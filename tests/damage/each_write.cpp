@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A process that is killed at any one of its writes to a trajectory file, or in the middle of it,
-// leaves every frame that was reported as written.
+// A process that is killed before any one of its writes to a trajectory file, or at any page in the
+// middle of it, leaves every frame that was reported as written.
 #include "trajectory/trajectory_test.hpp"
 
 #include <sys/mman.h>
@@ -11,24 +11,26 @@
 
 namespace {
 
-long writes_left = -1;  // before the kill; -1: there is none
-bool tears = false;     // at the kill, a chunk of a column is written up to the next page
+// Before the kill; -1: there is none. Before a write is one, each page that ends in it another.
+long moments_left = -1;
 
 }  // namespace
 
 // HDF5's writes come here. A kill can stop the system between two pages, not within one.
 extern "C" ssize_t pwrite(int file, void const* data, size_t bytes, off_t offset) {
-  constexpr off_t page = 4096;
-  if (writes_left >= 0 && writes_left-- == 0) {
-    auto const to_page = static_cast<size_t>(page - offset % page);
-    if (tears && bytes >= page && bytes % page == 0)
-      ::syscall(SYS_pwrite64, file, data, to_page, offset);
-    ::raise(SIGKILL);
+  constexpr size_t page = 4096;
+  if (moments_left >= 0) {
+    size_t const to_page = page - static_cast<size_t>(offset) % page;
+    for (size_t written = 0; written < bytes; written += written == 0 ? to_page : page)
+      if (moments_left-- == 0) {
+        if (written > 0) ::syscall(SYS_pwrite64, file, data, written, offset);
+        ::raise(SIGKILL);
+      }
   }
   return ::syscall(SYS_pwrite64, file, data, bytes, offset);
 }
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 // What a process has been told, which outlives it.
@@ -52,26 +54,25 @@ class Killed : public TrajectoryTest {
   }
   ~Killed() override { ::munmap(reported_, sizeof(Reported)); }
 
-  // False when the run ended before that write.
-  bool run_to_write(Course const& course, long write, bool torn) {
+  // False when the run ended before that moment.
+  bool run_to(Course const& course, long moment) {
     *reported_ = {};
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     pid_t const child = ::fork();
-    if (child == 0) perform(course, write, torn);
+    if (child == 0) perform(course, moment);
     int status = 0;
     ::waitpid(child, &status, 0);
     return WIFSIGNALED(status);
   }
 
-  [[noreturn]] void perform(Course const& course, long write, bool torn) {
-    tears = torn;
+  [[noreturn]] void perform(Course const& course, long moment) {
     auto const header = small_header();
-    if (course.first_frames == 0) writes_left = write;
+    if (course.first_frames == 0) moments_left = moment;
     TrajectoryFile file(path(), header, false);
     reported_->created = true;
     for (int frame = 0; frame < course.frames; ++frame) {
-      if (frame > 0 && frame == course.first_frames) writes_left = write;
+      if (frame > 0 && frame == course.first_frames) moments_left = moment;
       for (int sample = 0; sample < 2; ++sample) add_sample(file, 2 * frame + sample);
       file.write_frame(10 * frame, 0.1 * frame, numbered_scalars(frame),
                        numbered_spins<double>(header, frame).data());
@@ -123,20 +124,17 @@ class Killed : public TrajectoryTest {
 
   void kill_at_every_write(Course const& course, int stride) {
     int kills = 0;
-    for (bool const torn : {false, true}) {
-      for (long write = 0; run_to_write(course, write, torn); write += stride, ++kills) {
-        try {
-          expect_whole(course);
-        } catch (std::runtime_error const& error) {
-          ADD_FAILURE() << error.what();
-        }
-        if (!HasFailure()) continue;
-        FAIL() << "killed at write " << write << (torn ? ", torn" : "") << ", after "
-               << reported_->frames << " frames";
+    for (long moment = 0; run_to(course, moment); moment += stride, ++kills) {
+      try {
+        expect_whole(course);
+      } catch (std::runtime_error const& error) {
+        ADD_FAILURE() << error.what();
       }
-      EXPECT_TRUE(reported_->finished);
-      expect_whole(course);
+      if (!HasFailure()) continue;
+      FAIL() << "killed at moment " << moment << ", after " << reported_->frames << " frames";
     }
+    EXPECT_TRUE(reported_->finished);
+    expect_whole(course);
     std::cout << "killed " << kills << " times\n";
   }
 
@@ -155,4 +153,4 @@ TEST_F(Killed, AtTheEndOfAChunkOfSamples) { kill_at_every_write({254, 258}, stri
 TEST_F(Killed, AtTheEndOfAChunkOfFrames) { kill_at_every_write({510, 514}, stride(19)); }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

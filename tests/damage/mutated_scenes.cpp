@@ -13,7 +13,7 @@
 #include <regex>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using cayspin::test::Chance;
@@ -89,4 +89,4 @@ TEST(MutatedScenes, FormulaWithALineBreakIsRefusedWithOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -61,7 +61,7 @@ class Kokkos::View<Real*, cayspin::instructions::Memory> {
   std::vector<Real> numbers_;
 };
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 // In place of the launch; seen by all headers that follow.
 template <class Body>
@@ -72,7 +72,7 @@ void for_each_task(instructions::Here const&, std::string const&, std::int64_t c
   CALLGRIND_TOGGLE_COLLECT;
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail
 
 // Regions are all that a step asks of the library.
 void Kokkos::Tools::pushRegion(std::string const&) {}

@@ -37,6 +37,22 @@ TYPED_TEST(Copies, FromHostAndBack) {
   }
 }
 
+// Another instance waits for nobody.
+TYPED_TEST(Copies, FromHostIsOverWhenItReturns) {
+  using Real = typename TypeParam::Real;
+  auto const numbers = random_directions(33, 8);
+  typename TypeParam::Spins const field("spins", Lattice::chain(33));
+  Kokkos::View<Real* [3], typename TypeParam::MemorySpace> const view("view", 33);
+  Kokkos::fence();
+  copy_from_host(numbers, field);
+  auto const other = Kokkos::Experimental::partition_space(typename TypeParam::Exec(), 1)[0];
+  copy(other, field, view);
+  other.fence();
+  auto const found = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), view);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    EXPECT_EQ(found(i / 3, i % 3), static_cast<Real>(numbers[i])) << i;
+}
+
 TYPED_TEST(Copies, SixComponents) {
   SiteField<typename TypeParam::Real, 6, typename TypeParam::MemorySpace> const field(
       "six", Lattice::square(9, 2));

@@ -53,6 +53,8 @@ GENERATED = {"cayspin_git_commit.hpp", "cayspin/version.hpp"}
 PUBLIC_FOLDERS = {"cayspin/": "include", "cayspin_paper/": "paper/include"}
 
 SOURCE_FOLDERS = ["include", "src", "paper", "tests", "bench", "examples", "demo"]
+VERSION = re.compile(r"^project\(cayspin VERSION (\d+)\.(\d+)", re.M)
+NAMESPACE = re.compile(r"^namespace (cayspin(?:::inline \w+)?)", re.M)
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:<(cayspin[a-z_]*/[^>]+)>|"([^"]+)")', re.MULTILINE)
 
 
@@ -140,6 +142,15 @@ class Tree:
                 if word in path.stem.split("_"):
                     self.problems.append(f"{self.name(path)}: {word} is physics, not of detail/")
 
+    def check_versioned_namespace(self):
+        """Two versions of the library in one program keep apart by it."""
+        version = VERSION.search((self.root / "CMakeLists.txt").read_text(encoding="utf-8"))
+        expected = f"cayspin::inline v{version[1]}_{version[2]}"
+        for name in self.includes:
+            text = (self.root / name).read_text(encoding="utf-8")
+            if name.startswith("include/") and set(NAMESPACE.findall(text)) - {expected}:
+                self.problems.append(f"{name}: not all of it is in {expected}")
+
 
 def problems_of(root):
     tree = Tree(root.resolve())
@@ -150,6 +161,7 @@ def problems_of(root):
     tree.check_library_stands_alone()
     tree.check_cycles()
     tree.check_names_in_detail()
+    tree.check_versioned_namespace()
     return tree.problems
 
 
@@ -161,6 +173,7 @@ MISTAKES = [
     ("include/cayspin/stepper/b.hpp", '#include "../../../src/simulation/s.hpp"', "not of the lib"),
     ("include/cayspin/other/a.hpp", "", "in no room"),
     ("include/cayspin/detail/damping_loop.hpp", "", "damping is physics"),
+    ("include/cayspin/vec3.hpp", "namespace cayspin::detail {", "not all of it is in"),
     ("src/io/a.cpp", '#include "simulation/s.hpp"', "(reader and writer) includes"),
     ("src/io/a.cpp", '#include "../program/p.hpp"', "(reader and writer) includes"),
     ("src/program/p.cpp", '#include "../../paper/table.hpp"', "(program) includes"),
@@ -168,7 +181,9 @@ MISTAKES = [
     ("examples/a.cpp", "#include <cayspin/old.hpp>", "there is no cayspin/old.hpp"),
 ]
 SOUND = {
-    "include/cayspin/field/a.hpp": "#include <cayspin/concepts.hpp>",
+    "CMakeLists.txt": "project(cayspin VERSION 0.7.1 DESCRIPTION",
+    "include/cayspin/field/a.hpp": "#include <cayspin/concepts.hpp>\n"
+                                   "namespace cayspin::inline v0_7::detail {",
     "include/cayspin/concepts.hpp": "",
     "include/cayspin/vec3.hpp": "#include <cayspin/detail/pack.hpp>\n#include <cmath>",
     "include/cayspin/detail/pack.hpp": "// #include <cayspin/cayspin.hpp>",

@@ -2,6 +2,8 @@
 // A state without torque that is no minimum is left again.
 #include "films.hpp"
 
+#include <Eigen/Eigenvalues>
+
 namespace cayspin::test {
 namespace {
 
@@ -86,6 +88,108 @@ TYPED_TEST(Saddles, OfATermThatIsNotQuadratic) {
     EXPECT_NEAR(found.energy.value, 0.1 * 72, 1e-5);
     for (double const c : numbers_of(spins)) EXPECT_NEAR(std::abs(c), std::sqrt(1.0 / 3), 1e-3);
   }
+}
+
+/// The least eigenvalue of the Hessian on the tangent planes, for a field that is affine in m.
+template <class Field>
+double least_curvature(Field const& field, Lattice const& lattice, std::vector<double> const& m) {
+  using Doubles = SpinField<double, Kokkos::HostSpace>;
+  auto const spins = spins_of<Doubles>(lattice, m);
+  Doubles const result("field", lattice);
+  auto const field_of = [&](std::vector<double> const& numbers) {
+    copy_from_host(numbers, spins);
+    evaluate_field(Kokkos::DefaultHostExecutionSpace(), field, spins, 0, result);
+    return numbers_of(result);
+  };
+  auto const sites = static_cast<Eigen::Index>(lattice.sites());
+  auto const before = field_of(m);
+  auto const vector = [](std::vector<double> const& numbers, Eigen::Index site) {
+    return Eigen::Map<Eigen::Vector3d const>(numbers.data() + 3 * site);
+  };
+  auto const tangent = [&](Eigen::Index site, int which) {
+    Eigen::Vector3d const spin = vector(m, site);
+    Eigen::Vector3d const other =
+        std::abs(spin.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+    Eigen::Vector3d const first = spin.cross(other).normalized();
+    return which == 0 ? first : Eigen::Vector3d(spin.cross(first));
+  };
+  Eigen::MatrixXd hessian(2 * sites, 2 * sites);
+  for (Eigen::Index i = 0; i < 2 * sites; ++i) {
+    auto moved = m;
+    Eigen::Map<Eigen::Vector3d>(moved.data() + 3 * (i / 2)) += tangent(i / 2, i % 2);
+    auto const after = field_of(moved);
+    for (Eigen::Index j = 0; j < 2 * sites; ++j)
+      hessian(j, i) = tangent(j / 2, j % 2).dot(vector(before, j / 2) - vector(after, j / 2));
+    hessian(i, i) += vector(before, i / 2).dot(vector(m, i / 2));
+  }
+  Eigen::MatrixXd const symmetric = 0.5 * (hessian + hessian.transpose());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
+}
+
+std::vector<double> alternating(Lattice const& lattice, bool alternates, double tilt) {
+  std::vector<double> numbers;
+  for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+    auto const x = site % lattice.shape[0], y = site / lattice.shape[0];
+    double const sign = alternates && (x + y) % 2 == 1 ? -1 : 1;
+    for (double const c : {std::sin(tilt), 0.0, sign * std::cos(tilt)}) numbers.push_back(c);
+  }
+  return numbers;
+}
+
+// An antiferromagnet above its spin flop: round-off keeps the torque near the saddle above the
+// bound.
+TYPED_TEST(Saddles, WhereTheTorqueStaysAboveTheBound) {
+  Lattice const ring{{8, 1, 1}, {1, 1, 1}, {Boundary::periodic, Boundary::open, Boundary::open}};
+  EffectiveField const field(Exchange(ring, -1), UniaxialAnisotropy(0.1, {0, 0, 1}),
+                             Zeeman{{0, 0, 0.66}});
+  constexpr bool is_double = std::is_same_v<typename TypeParam::Real, double>;
+  for (double const tilt : {0.0, 1e-12, 1e-9, 1e-6, 1e-3})
+    for (double const torque : {1e-5, 1e-9, 1e-12}) {
+      if (!is_double && torque < 1e-5) continue;
+      auto spins = spins_of<typename TestFixture::Spins>(ring, alternating(ring, true, tilt));
+      auto const found = minimize(this->exec, field, spins, {.torque = torque});
+      EXPECT_EQ(found.end, MinimizeEnd::converged) << tilt << ' ' << torque;
+      EXPECT_NEAR(found.energy.value, -16.446769, 2e-6) << tilt << ' ' << torque;
+    }
+}
+
+// Rings and films of either sign of exchange, at fields next to those where their states lose
+// stability: where the torque vanishes, no curvature is below zero by much.
+TYPED_TEST(Saddles, NearInstabilities) {
+  std::mt19937 engine(5);
+  auto const uniform = [&](double low, double high) {
+    return low + (high - low) * engine() * 0x1p-32;
+  };
+  auto const below = [&](unsigned count) { return engine() % count; };
+  constexpr bool is_double = std::is_same_v<typename TypeParam::Real, double>;
+  int ended[4] = {};
+  for (int scene = 0; scene < 200; ++scene) {
+    bool const is_film = below(2) == 0;
+    auto const nx = 2 * (1 + below(is_film ? 3 : 8)), ny = is_film ? 2 * (1 + below(3)) : 1;
+    auto const boundary = below(2) == 0 ? Boundary::periodic : Boundary::open;
+    Lattice const lattice{{nx, ny, 1}, {1, 1, 1}, {boundary, boundary, Boundary::open}};
+    double const stiff = uniform(0.2, 3), all = (is_film ? 8 : 4) * stiff;
+    double const easy = uniform(0.02, 0.5) * (below(4) == 0 ? -1 : 1), k = std::abs(easy);
+    bool const alternates = below(2) == 0;
+    double const losses[] = {k, std::sqrt(k * (all + k)), all - easy, all + easy};
+    double const beside = (below(2) == 0 ? 1 : -1) * std::pow(10, -uniform(1, 6));
+    double const applied = losses[below(alternates ? 4 : 1)] * (1 + beside);
+    double const skew = below(3) == 0 ? uniform(0, 1e-3) : 0;
+    EffectiveField const field(Exchange(lattice, alternates ? -stiff : stiff),
+                               UniaxialAnisotropy(easy, {0, 0, 1}),
+                               Zeeman{{applied * skew, 0, applied}});
+    auto const start = alternating(lattice, alternates, std::pow(10, -uniform(1, 9)));
+    auto spins = spins_of<typename TestFixture::Spins>(lattice, start);
+    double const torque = is_double ? std::pow(10, -uniform(5, 11)) : 1e-4 * (all + applied);
+    auto const found = minimize(this->exec, field, spins, {.torque = torque});
+    ++ended[static_cast<int>(found.end)];
+    if (found.end == MinimizeEnd::evaluation_limit) continue;
+    double const allowed = 2 * torque + (is_double ? 1e-6 : 1e-3) * (all + applied);
+    EXPECT_GT(least_curvature(field, lattice, numbers_of(spins)), -allowed)
+        << "scene " << scene << ", " << to_string(found.end);
+  }
+  EXPECT_GT(ended[static_cast<int>(MinimizeEnd::converged)], 190);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace cayspin::mpi {
+namespace cayspin::inline v0_1::mpi {
 namespace {
 
 /// The number that component c of a site has, by its place in the whole lattice.
@@ -85,4 +85,4 @@ TEST(Ghosts, HoldWhatTheNeighboursHold) {
 }
 
 }  // namespace
-}  // namespace cayspin::mpi
+}  // namespace cayspin::inline v0_1::mpi

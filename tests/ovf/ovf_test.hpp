@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 
 /// A folder of its own for each test, removed afterwards.
 class OvfTest : public testing::Test {
@@ -97,4 +97,4 @@ inline std::string small_text() {
 
 inline std::vector<double> small_values() { return {1, 0, 0, 0, 0.6, -0.8}; }
 
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 TEST_F(OvfTest, TextOfTheUserGuideIsRead) {
@@ -70,4 +70,4 @@ TEST_F(OvfTest, FilesAreKnownByNameOrBegin) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -4,7 +4,7 @@
 
 #include <sys/stat.h>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 class OvfRefusal : public OvfTest {
@@ -111,4 +111,4 @@ TEST_F(OvfRefusal, NoFile) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

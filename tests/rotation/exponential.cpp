@@ -64,7 +64,7 @@ TYPED_TEST(ExponentialMap, SmallAnglesToFullRelativePrecision) {
 // pi must not cost more digits the larger it is.
 TYPED_TEST(ExponentialMap, KnownAnglesToFullPrecision) {
   using Real = TypeParam;
-  for (long double size = 1; size < 1e6L; size *= 1.01L) {
+  for (long double size = 1; size < 1e6L; size *= 1.0003L) {
     Vec3<Real> const f{0, static_cast<Real>(size), 0};
     Long const expected = exponential(widen(f), {0.6L, 0, 0.8L});
     auto const found = widen(Exponential::rotate(f, narrow<Real>({0.6L, 0, 0.8L})));

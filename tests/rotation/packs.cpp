@@ -19,10 +19,10 @@ class Packs : public ::testing::Test {
 
   // Equal bits where the compiler may not contract what the packs leave apart.
   static void expect_equal(Real pack, Real number, char const* what) {
-#if defined(CAYSPIN_TEST_SAME_BITS)
-    EXPECT_EQ(pack, number) << what;
-#else
+#if defined(CAYSPIN_TEST_CONTRACTED)
     EXPECT_NEAR(pack, number, 8 * epsilon<Real> * std::max(Real(1), std::abs(number))) << what;
+#else
+    EXPECT_EQ(pack, number) << what;
 #endif
   }
 

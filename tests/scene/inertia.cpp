@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 constexpr InertiaTensor tensor = {2, 0.5, 0.25, 0.5, 3, -0.125, 0.25, -0.125, 4};
@@ -110,4 +110,4 @@ TEST(Inertia, WrongFilesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_file.hpp"
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 TEST(Override, ReplacesAValue) {
@@ -105,4 +105,4 @@ TEST(Override, WithASecondLineIsRefused) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

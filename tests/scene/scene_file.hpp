@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 
 /// A folder of its own for each test, removed afterwards.
 class Folder {
@@ -137,4 +137,4 @@ inline void expect_refused(std::string_view scene, WrongScene const& wrong) {
   EXPECT_EQ(message->find('\n'), std::string::npos) << *message;
 }
 
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 // mu0 and gamma stand here again: the tests do not take them from the library.
@@ -310,4 +310,4 @@ TEST(SiScene, UndampedMotionNeedsNoFormOfDamping) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -10,7 +10,7 @@
 #include <memory>
 #include <numbers>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -269,4 +269,4 @@ TEST(Start, WrongFilesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 using Values = std::vector<std::string>;
@@ -43,4 +43,4 @@ TEST(SweptGrid, TheLastKeyTurnsFastest) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -2,7 +2,7 @@
 // The table [thermal]: what arrives, in reduced units and in SI, and what is refused.
 #include "scene_file.hpp"
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 constexpr double mu0 = 1.25663706127e-6, boltzmann = 1.380649e-23;
@@ -119,4 +119,4 @@ TEST(ThermalScene, RigidBodiesHaveNone) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 constexpr std::string_view least_scene = R"toml([system]
@@ -228,4 +228,4 @@ TEST(Scene, FilesLieBesideTheScene) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -6,7 +6,7 @@
 
 #include <set>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 template <class Value>
@@ -70,4 +70,4 @@ TEST(Methods, AreConsistent) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

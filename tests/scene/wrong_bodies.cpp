@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_file.hpp"
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 class WrongBodyScene : public testing::TestWithParam<WrongScene> {};
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 struct Combination {
@@ -258,4 +258,4 @@ TEST(Combinations, CapIsRead) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

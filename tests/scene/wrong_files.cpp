@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_file.hpp"
 
-namespace cayspin::io::test {
+namespace cayspin::inline v0_1::io::test {
 namespace {
 
 TEST(SceneFile, ThatDoesNotExistIsNamed) {
@@ -45,4 +45,4 @@ TEST(SceneFile, ErrorFoundLaterPointsAtItsKey) {
 }
 
 }  // namespace
-}  // namespace cayspin::io::test
+}  // namespace cayspin::inline v0_1::io::test

@@ -115,7 +115,9 @@ void expect_round_off_of_increments(char const* name) {
     std::printf("    %-12s %6ld steps: %.3g epsilon, without %.3g\n", name, long(steps), with,
                 without);
     EXPECT_LT(with, 16) << name << ' ' << steps;
-    if (steps > 1000) EXPECT_GT(without, 80) << name;
+    if (steps > 1000) {
+      EXPECT_GT(without, 80) << name;
+    }
   }
 }
 

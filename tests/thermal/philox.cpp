@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 namespace {
 
 struct Answer {
@@ -44,4 +44,4 @@ TEST(Philox, GivesTheKnownAnswersInEveryLane) {
 }
 
 }  // namespace
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

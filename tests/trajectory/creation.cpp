@@ -9,7 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ TEST_F(TrajectoryTest, ImpossibleHeader) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 #include <array>
 #include <csignal>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 TEST_F(TrajectoryTest, FinishedRunIsComplete) {
@@ -83,4 +83,4 @@ TEST_F(TrajectoryTest, FrameWithoutItsScalarsDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 /// A process that writes a trajectory when it is told to.
@@ -170,4 +170,4 @@ TEST_F(TrajectoryTest, AFollowerBelievesNothingHalfWritten) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

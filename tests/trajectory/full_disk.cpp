@@ -2,6 +2,7 @@
 // The disk fills, or fails, under a run. All of it happens in child processes, whose exit status
 // also tells that HDF5 was left fit to close.
 #include "hdf5/handle.hpp"
+#include "trajectory/format.hpp"
 #include "trajectory_test.hpp"
 
 #include <cayspin/io/scene.hpp>
@@ -12,7 +13,7 @@
 #include <cstdlib>
 #include <iostream>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,7 +84,7 @@ TEST_F(TrajectoryTest, FullDiskAtOverwritingKeepsTheOldFile) {
 [[noreturn]] void end_on_full_disk(fs::path const& path) {
   try {
     auto file = write_frames(path, 5);
-    for (int sample = 0; sample < 9; ++sample)
+    for (int sample = 0; sample < most_pending + 9; ++sample)
       file.write_scalars(50 + sample, 5, numbered_scalars(5));
     limit_file_size(fs::file_size(path));
     file.finish({});
@@ -156,4 +157,4 @@ TEST_F(TrajectoryTest, FailedWriteOfARunFromAFileIsReported) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 struct Layout {
@@ -44,7 +44,7 @@ Layout layout_of(std::filesystem::path const& path, char const* name) {
 using Sizes = std::vector<hsize_t>;
 constexpr hsize_t unlimited = H5S_UNLIMITED;
 
-TEST_F(TrajectoryTest, SpinsAreOneCheckedChunkPerFrame) {
+TEST_F(TrajectoryTest, SpinsAreInChunksOfAPageOrMore) {
   for (std::string const precision : {"single", "double"}) {
     auto const path = folder_ / (precision + ".h5");
     auto const header = small_header(precision);
@@ -59,8 +59,8 @@ TEST_F(TrajectoryTest, SpinsAreOneCheckedChunkPerFrame) {
     auto const spins = layout_of(path, "/spins");
     EXPECT_EQ(spins.extents, (Sizes{3, 2, 3, 4, 3}));
     EXPECT_EQ(spins.largest, (Sizes{unlimited, 2, 3, 4, 3}));
-    EXPECT_EQ(spins.chunk, (Sizes{1, 2, 3, 4, 3}));
-    EXPECT_EQ(spins.filters, std::vector<H5Z_filter_t>{H5Z_FILTER_FLETCHER32});
+    EXPECT_EQ(spins.chunk, (Sizes{precision == "single" ? 14U : 7U, 2, 3, 4, 3}));
+    EXPECT_TRUE(spins.filters.empty());
     EXPECT_EQ(spins.type, H5T_FLOAT);
     EXPECT_EQ(spins.bytes, precision == "single" ? 4u : 8u);
   }
@@ -76,13 +76,40 @@ TEST_F(TrajectoryTest, SpinsAreCompressedAndCutWhereAsked) {
   file.write_frame(0, 0, {}, spins.data());
   file.finish({});
   auto const layout = layout_of(path, "/spins");
-  EXPECT_EQ(layout.filters, (std::vector<H5Z_filter_t>{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE,
-                                                       H5Z_FILTER_FLETCHER32}));
+  EXPECT_EQ(layout.filters, (std::vector<H5Z_filter_t>{H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE}));
   EXPECT_EQ(layout.chunk, (Sizes{1, 3, 32, 64, 3}));
   EXPECT_EQ(read_spins(path, header.shape), spins);
   EXPECT_LT(std::filesystem::file_size(path), sizeof(double) * spins.size() / 4);
   EXPECT_THROW(TrajectoryFile(path, header, true, {.compression = 10}), std::invalid_argument);
   EXPECT_THROW(TrajectoryFile(path, header, true, {.chunk = -1}), std::invalid_argument);
+}
+
+TEST_F(TrajectoryTest, ChunksOfFramesLeaveLittleOfPagesEmpty) {
+  constexpr std::int64_t page = file_page_bytes;
+  for (std::int64_t bytes = 12; bytes < 20 * page; bytes += 12) {
+    auto const frames = frames_of_chunk(static_cast<std::uint64_t>(bytes), 0);
+    auto const pages = (frames * bytes + page - 1) / page;
+    EXPECT_LE(16 * (pages * page - frames * bytes), pages * page) << bytes;
+    EXPECT_LE(pages, 16 + (bytes + page - 1) / page) << bytes;
+  }
+  EXPECT_EQ(frames_of_chunk(12 * page, most_chunks), 1);
+  EXPECT_EQ(frames_of_chunk(12 * page, most_chunks + 1), 2);
+  EXPECT_EQ(frames_of_chunk(1 << 20, 10 * most_chunks), 10);
+}
+
+TEST_F(TrajectoryTest, SmallFramesTakeLittleMoreThanTheirNumbers) {
+  auto header = small_header();
+  header.shape = {100, 1, 1};
+  auto const path = folder_ / "a.h5";
+  constexpr int frames = 2000;
+  TrajectoryFile file(path, header, false);
+  auto const spins = numbered_spins<double>(header, 0);
+  for (int frame = 0; frame < frames; ++frame)
+    file.write_frame(frame, 0.1 * frame, numbered_scalars(frame), spins.data());
+  file.finish({});
+  std::uintmax_t const numbers = frames * (100 * 3 + 8) * sizeof(double);
+  EXPECT_LT(std::filesystem::file_size(path), numbers + numbers / 10);
+  EXPECT_EQ(read_spins(path, header.shape, 1234), spins);
 }
 
 TEST_F(TrajectoryTest, ScalarsAreDoublesAndStepsAreIntegers) {
@@ -165,4 +192,4 @@ TEST(FrameChunk, HoldsAtMostThePlanesAskedFor) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

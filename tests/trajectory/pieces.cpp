@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr std::array<std::int64_t, 3> odd_shape{4, 3, 7};
@@ -93,8 +93,9 @@ TEST_F(TrajectoryTest, PiecesAreWholeChunks) {
   EXPECT_EQ(planes(3, 9), 7);
   constexpr std::size_t plane_bytes = 3 * 8 * 4 * 3;
   auto const last_is_short = frame_pieces(odd_shape, 8, {.chunk = 2});
-  EXPECT_EQ(last_is_short.bytes, 8 * plane_bytes + 4);
-  EXPECT_EQ(last_is_short.copied, 0U);
+  EXPECT_EQ(last_is_short.bytes, 8 * plane_bytes);
+  EXPECT_EQ(last_is_short.copied, 2 * 7 * 2 * plane_bytes);  // 7 frames fill a page
+  EXPECT_EQ(frame_pieces({64, 32, 7}, 8, {}).copied, 0U);
   EXPECT_EQ(frame_pieces(odd_shape, 8, {.compression = 1, .chunk = 2}).copied, 2 * 2 * plane_bytes);
 }
 
@@ -159,24 +160,11 @@ TEST_F(TrajectoryTest, ABoxIsRefusedWhenItsFrameIsDamagedElsewhere) {
 TEST(Fletcher, OfPiecesIsThatOfAll) {
   std::vector<std::byte> bytes(2 * 3'000'001);
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * i >> 3U);
-  std::vector<std::byte> const zeros(70'000), full(140'000, std::byte{0xff});
   for (std::size_t const cut : {0, 2, 131'070, 4'000'000, 6'000'002}) {
-    Fletcher32 in_order, first, second;
-    first.add(bytes.data(), cut);
-    second.add(bytes.data() + cut, bytes.size() - cut);
-    in_order = first;
-    in_order.add(bytes.data() + cut, bytes.size() - cut);
-    first.add(second);
-    EXPECT_EQ(in_order.value(), fletcher32(bytes.data(), bytes.size())) << cut;
-    EXPECT_EQ(first.value(), in_order.value()) << cut;
-  }
-  for (auto const* const start : {&zeros, &full}) {
-    Fletcher32 counted, added;
-    counted.add(start->data(), start->size());
-    added = counted;
-    counted.add_zeros(zeros.size());
-    added.add(zeros.data(), zeros.size());
-    EXPECT_EQ(counted.value(), added.value());
+    Fletcher32 sum;
+    sum.add(bytes.data(), cut);
+    sum.add(bytes.data() + cut, bytes.size() - cut);
+    EXPECT_EQ(sum.value(), fletcher32(bytes.data(), bytes.size())) << cut;
   }
 }
 
@@ -216,4 +204,4 @@ TEST_F(TrajectoryTest, FieldsOfACheckpointAreNotMixedOrCutShort) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ TEST_F(TrajectoryTest, Hdf5KeepsPrintingItsErrorsForOthers) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -18,7 +18,7 @@
 #include <set>
 #include <sstream>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -297,4 +297,4 @@ TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// A folder of its own for each test, removed afterwards. Children of the test, also those started
 /// afresh, use the same.
@@ -95,4 +95,4 @@ inline testing::AssertionResult contains(std::string const& text, std::string co
   return testing::AssertionFailure() << '"' << text << "\" lacks \"" << part << '"';
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

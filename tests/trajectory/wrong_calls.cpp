@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 namespace {
 
 using test::expect_refused;
@@ -213,4 +213,4 @@ TEST_F(TrajectoryTest, SweepsHaveAResultForEachRun) {
 }
 
 }  // namespace
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 #include <string>
 #include <tuple>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Several host loops over a small lattice, one after the other, `count` times.
 template <class... Loops>
@@ -39,9 +39,7 @@ struct RepeatLoops {
 template <class... Loops>
 void repeat_on_calling_thread(std::string const& label, std::int64_t count,
                               std::tuple<Loops...> const& loops) {
-#if defined(KOKKOS_ENABLE_SERIAL)
-  for_each_task(Kokkos::Serial(), label, 1, 1, RepeatLoops<Loops...>{loops, count});
-#endif
+  for_each_task(CallingThread(), label, 1, 1, RepeatLoops<Loops...>{loops, count});
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -5,7 +5,7 @@
 #include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Sites of one colour of a checkerboard, as many as Value has lanes, two apart in one row: x,
 /// x + 2, ... Loads stay in the row's memory, between the neighbour before the first lane and the
@@ -145,4 +145,4 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -14,7 +14,7 @@
 // How a thread of a device finds its numbers. Addresses are most of what a device kernel could
 // compute, so these are made of few 32-bit operations: one place in memory for each row of the
 // stencil, chosen without a branch at the ends, and one multiply-add for each number.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Where the three components of a field begin.
 template <class Real>
@@ -171,4 +171,4 @@ class DeviceSite {
   Index offset_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -12,7 +12,7 @@
 // Which sites a thread of a device works on. Threads are numbered; 128 of them, a block of Kokkos
 // on most devices, share a tile of rows, and each walks along z. So most neighbours along y and z
 // come from the cache of the multiprocessor, and what is found once serves several sites.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Division of numbers below 2^31 by a positive divisor that is known at the launch: a product and
 /// a shift.
@@ -90,4 +90,4 @@ class DeviceTiles {
   QuickDivision by_row_, by_plane_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 // Packs of numbers that lie two apart.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// from[Odd], from[Odd + 2], ...; loads two whole packs.
 template <int Odd, class Value, class Real>
@@ -103,4 +103,4 @@ KOKKOS_FORCEINLINE_FUNCTION void store_every_other(Value const& value, scalar_t<
     to[2 * lane] = value[static_cast<std::size_t>(lane)];
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// A sum of doubles without round-off, rounded once when it is read: its bits do not depend on the
 /// order of the summands. A fixed-point number of 32-bit digits that overlap, as in R. Neal, "Fast
@@ -102,4 +102,4 @@ class ExactSum {
   std::int32_t until_carry_ = most_between_carries;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

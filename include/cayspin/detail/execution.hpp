@@ -14,7 +14,7 @@
 #define CAYSPIN_DETAIL_NOINLINE
 #endif
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Host spaces run over rows with packs; the threads of device spaces take single sites.
 template <class Exec>
@@ -41,12 +41,15 @@ inline constexpr bool is_synchronous =
 /// Does a kernel over so many sites run on the calling thread?
 template <class Exec>
 bool runs_on_calling_thread(std::int64_t sites) {
-#if defined(KOKKOS_ENABLE_SERIAL)
   return is_synchronous<Exec> && sites <= calling_thread_sites;
-#else
-  return false;
-#endif
 }
+
+/// What names the kernels of the calling thread to Kokkos' tools.
+#if defined(KOKKOS_ENABLE_SERIAL)
+using CallingThread = Kokkos::Serial;
+#else
+using CallingThread = Kokkos::DefaultHostExecutionSpace;
+#endif
 
 /// A body by its address. So Kokkos compiles its launch code once for all kernels.
 struct HostTask {
@@ -69,17 +72,15 @@ template <class Exec>
 CAYSPIN_DETAIL_NOINLINE void run_tasks(Exec const& exec, std::string const& label,
                                        std::int64_t count, std::int64_t sites,
                                        HostTask const& task) {
-#if defined(KOKKOS_ENABLE_SERIAL)
   if (runs_on_calling_thread<Exec>(sites)) {
     if (!Kokkos::Tools::profileLibraryLoaded()) {
       // A launch by Kokkos would cost as much as a small kernel.
       for (std::int64_t i = 0; i < count; ++i) task(i);
       return;
     }
-    Kokkos::parallel_for(label, Kokkos::RangePolicy<Kokkos::Serial, TaskIndex>(0, count), task);
+    Kokkos::parallel_for(label, Kokkos::RangePolicy<CallingThread, TaskIndex>(0, count), task);
     return;
   }
-#endif
   Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), task);
 }
 
@@ -127,4 +128,4 @@ inline void require_size(char const* where, std::size_t size, std::int64_t expec
                                 " numbers for a field of " + std::to_string(expected));
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

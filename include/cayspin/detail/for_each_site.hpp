@@ -12,7 +12,7 @@
 #include <string>
 #include <type_traits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Rows are cut into pieces of this many sites, so that threads can share one long row.
 inline constexpr std::int32_t sites_per_task = 4096;
@@ -169,4 +169,4 @@ void for_each_site(Exec const& exec, std::string const& label, RowLayout const& 
   for_each_site<Real>(exec, label, layout, functor, layout.all());
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -15,7 +15,7 @@
 // A host pack also loads the sites between its own, in its rows and in the neighbour rows. No other
 // task may write these at the same time. Rows of even y + z therefore run first, then rows of odd
 // y + z: no task writes to a neighbour row, and in its own row a pack writes its own sites only.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Rows whose y + z has a parity, or all.
 enum class RowsOf : std::int32_t { even = 0, odd = 1, both = 2 };
@@ -129,4 +129,4 @@ void for_each_site_of_colour(Exec const& exec, std::string const& label, RowLayo
   }
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <class Field>
 FieldNumbers field_numbers(Field const& field) {
@@ -57,4 +57,4 @@ CAYSPIN_DETAIL_NOINLINE inline void require_ghosts(std::string const& who, Latti
                                     std::to_string(ghosts));
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -15,16 +15,20 @@
 
 // Loads and stores of packs, and the few things that depend on processor or operating system:
 // non-temporal stores, huge pages, the size of the last cache.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <class Value, class Real>
 KOKKOS_FORCEINLINE_FUNCTION Value load(Real const* from) {
   if constexpr (std::is_floating_point_v<Value>) {
     return static_cast<Value>(*from);
   } else if constexpr (std::is_same_v<scalar_t<Value>, Real>) {
+#if KOKKOS_VERSION >= 50000
+    return Value(from, Kokkos::Experimental::simd_flag_default);
+#else
     Value value;
     value.copy_from(from, Kokkos::Experimental::simd_flag_default);
     return value;
+#endif
   } else {
     return Value([from](auto lane) { return static_cast<scalar_t<Value>>(from[lane()]); });
   }
@@ -35,7 +39,11 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
   if constexpr (std::is_floating_point_v<Value>) {
     *to = value;
   } else {
+#if KOKKOS_VERSION >= 50000
+    Kokkos::Experimental::simd_unchecked_store(value, to, Kokkos::Experimental::simd_flag_default);
+#else
     value.copy_to(to, Kokkos::Experimental::simd_flag_default);
+#endif
   }
 }
 
@@ -140,4 +148,4 @@ inline void advise_huge_pages([[maybe_unused]] void* begin, [[maybe_unused]] std
 #endif
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -19,7 +19,7 @@
 // numbers. Compilation passes for devices see plain numbers only, because nvcc rejects host SIMD
 // types in `__host__ __device__` functions. No kernel has a pack in its name or arguments, so all
 // passes agree on these. The operations here take packs and numbers: kernels are written once.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
 // no pack type
@@ -198,4 +198,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value lane_numbers() {
   }
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 // Numbers side by side in registers, by the vectors of GCC and Clang.
 template <class Number, int Lanes>
@@ -109,4 +109,4 @@ KOKKOS_FORCEINLINE_FUNCTION void encrypt(PhiloxKeys const& keys, Philox<Lanes>& 
   }
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// 16 random bits for each of numbered places, by Philox with 64 places to eight counters. One
 /// place gets the same bits alone as in a register. Devices draw for one place at a time.
@@ -95,4 +95,4 @@ class RandomBits {
   mutable std::conditional_t<OnHost, Last, Nothing> last_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

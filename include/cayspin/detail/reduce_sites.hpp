@@ -20,7 +20,7 @@
 // first and then the packs between them, the lanes of a pack in a fixed tree; rows are summed
 // without round-off. So the result has the same bits on every host space, for any number of threads
 // and for any division of a lattice into parts. Devices sum with twice the digits, in their order.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 struct Sum {
   template <int>
@@ -292,4 +292,4 @@ struct LargestOfSites {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 inline constexpr std::int64_t cache_line_bytes = 64;
 
@@ -107,4 +107,4 @@ struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

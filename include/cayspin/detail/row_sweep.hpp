@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// One part of a sweep through a lattice of one plane, at one of its ticks: each stage works on the
 /// next plan.block rows, after the stage before it at one row.
@@ -46,4 +46,4 @@ struct RowSweepPart {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -9,7 +9,7 @@
 #include <cstdint>
 
 // Rows of spins, in a field or in the buffers of a sweep. A Runge-Kutta stage works on them.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The first site of a row: component c of site x is data[c * stride + x].
 template <class Real>
@@ -82,4 +82,4 @@ CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& arr
   return {plane + layout.ny * layout.pitch, plane, plane, 0, layout.ny, layout.pitch, array.stride};
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

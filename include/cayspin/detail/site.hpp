@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Neighbouring sites of a row, as many as Value has lanes.
 template <class Value, bool AtEdge = true>
@@ -183,4 +183,4 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

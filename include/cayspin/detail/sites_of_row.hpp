@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// A row along x and the way to its neighbour rows; an open end leads back to the row itself.
 struct Row {
@@ -102,4 +102,4 @@ class SitesOfRow {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -13,7 +13,7 @@
 
 // Threads that work side by side, step by step, each on a strip. A strip waits for its two
 // neighbours alone.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Twice the steps that a strip has done, and one more while a thread is at the next. In a place
 /// of its own in the cache.
@@ -93,4 +93,4 @@ struct StripCrew {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -12,7 +12,7 @@
 // How a sweep divides a lattice among threads, and each part into blocks of rows whose buffers fit
 // the cache. Seams hold the rows that two blocks share. In a lattice of one plane stages follow
 // each other by rows instead (row_sweep.hpp).
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The planes or rows of one part. At an end inside the lattice, at ghosts or at a periodic end,
 /// each earlier stage goes one plane or row further. The next part computes these sites, too.
@@ -32,7 +32,7 @@ struct SweepRange {
 /// the part. By rows: a ring of `planes` rows.
 struct SweepBuffer {
   std::int32_t producer = 0, planes = 0, seam_rows = 0;
-  std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip
+  std::ptrdiff_t ring = 0, seam = 0;  // offsets in the memory of a strip, in the seams of a part
 };
 
 /// The lattice is cut into parts that know nothing of each other, along z and y. A part may be
@@ -49,14 +49,15 @@ struct SweepPlan {
   std::int32_t block = 1;  // rows, at least; less than twice as many. By rows: so many at a time
   std::int32_t ring_rows = 0, seam_planes = 0;
   std::ptrdiff_t pitch = 0, row = 0;  // component to component in a buffer's row, row to row
-  std::ptrdiff_t strip_size = 0;      // numbers of memory per strip
+  std::ptrdiff_t strip_size = 0, seams_size = 0;  // numbers of memory per strip, of a part's seams
   SweepBuffer buffer[3 * most_stages];
 
   std::int64_t parts() const { return std::int64_t(parts_y) * parts_z; }
   std::int64_t tasks() const { return parts() * strips; }
-  std::ptrdiff_t part_size() const { return strips * strip_size; }
+  /// The strips of a part, and its seams behind the last of them.
+  std::ptrdiff_t part_size() const { return strips * strip_size + seams_size; }
   /// Numbers of memory of the buffers.
-  std::size_t size() const { return static_cast<std::size_t>(tasks() * strip_size); }
+  std::size_t size() const { return static_cast<std::size_t>(parts() * part_size()); }
 
   SweepRange range_y(std::int64_t part) const {
     return range(static_cast<std::int32_t>(part % parts_y), parts_y, layout.own.y_begin,
@@ -174,7 +175,7 @@ struct SweepPlan {
     strip_size += line;
   }
 
-  // Where the buffers lie in the memory of a strip. The seams of a part are those of its last one.
+  // Where the buffers lie in the memory of a strip, and the seams behind the last strip of a part.
   template <class Buffers>
   void allot(std::ptrdiff_t line) {
     std::int32_t const rows = (layout.ny + parts_y - 1) / parts_y;
@@ -192,10 +193,12 @@ struct SweepPlan {
       of_stage.seam_rows = Buffers::planes(b, 1) - 1;  // blocks follow each other row by row
       of_stage.ring = size;
       size += of_stage.planes * ring_rows * row;
-      of_stage.seam = size;
-      if (blocks(rows) > 1) size += of_stage.seam_rows * (seam_planes + seam_shift(of_stage)) * row;
+      if (blocks(rows) == 1) continue;
+      of_stage.seam = seams_size;
+      seams_size += of_stage.seam_rows * (seam_planes + seam_shift(of_stage)) * row;
     }
     strip_size = size + line;
+    if (seams_size > 0) seams_size += line;
   }
 };
 
@@ -207,7 +210,10 @@ struct FillSweepBuffers {
   SweepPlan plan;
 
   void operator()(std::int64_t task) const {
-    std::fill_n(data + task * plan.strip_size, plan.strip_size, Real(0));
+    std::int64_t const part = task / plan.strips, strip = task % plan.strips;
+    bool const is_last = strip + 1 == plan.strips;
+    std::fill_n(data + part * plan.part_size() + strip * plan.strip_size,
+                plan.strip_size + (is_last ? plan.seams_size : 0), Real(0));
   }
 };
 
@@ -294,7 +300,7 @@ struct SweepPart {
     std::int32_t const slots = plan.seam_planes + plan.seam_shift(buffer);
     std::int32_t slot = (from_begin - of_block * plan.seam_shift(buffer)) % slots;
     if (slot < 0) slot += slots;
-    return memory + (plan.strips - 1) * plan.strip_size + buffer.seam +
+    return memory + plan.strips * plan.strip_size + buffer.seam +
            slot * buffer.seam_rows * plan.row;
   }
 
@@ -302,4 +308,4 @@ struct SweepPart {
   std::int32_t bounds_[3] = {};  // of the strip before, this one and the next
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

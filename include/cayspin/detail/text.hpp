@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// A number for a message, to nine digits: 1e-12 rather than 0.000000.
 inline std::string to_text(double number) {
@@ -13,4 +13,4 @@ inline std::string to_text(double number) {
   return text;
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

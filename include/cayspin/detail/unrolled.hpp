@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <int... I, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void unrolled(std::integer_sequence<int, I...>, Body const& body) {
@@ -33,4 +33,4 @@ KOKKOS_FORCEINLINE_FUNCTION void leibniz(Term const& term) {
   });
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

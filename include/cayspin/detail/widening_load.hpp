@@ -4,7 +4,7 @@
 #include <cayspin/detail/memory.hpp>
 
 // Reductions of float fields work on packs of double: half a register of floats, converted at once.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 #if defined(CAYSPIN_DETAIL_AVX512)
 template <>
@@ -18,4 +18,4 @@ KOKKOS_FORCEINLINE_FUNCTION Pack<double> load<Pack<double>, float>(float const* 
 }
 #endif
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

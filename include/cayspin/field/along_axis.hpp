@@ -3,7 +3,7 @@
 
 #include <cayspin/stencil.hpp>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// A term that sees the spin along one axis: H = c (m.e) e, E = -c (m.e)^2 / 2. An axis of the
 /// coordinates is found once, and costs one product instead of seven.
@@ -61,4 +61,4 @@ class AlongAxis {
   Coordinate coordinate_ = Coordinate::none;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

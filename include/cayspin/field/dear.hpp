@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -197,4 +197,4 @@ class Dear {
   std::shared_ptr<State> state_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

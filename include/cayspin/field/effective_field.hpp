@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// The sum of field terms, composed by type: what is not listed is not computed. A term is a plain
 /// struct with two const, device-callable templates:
@@ -199,4 +199,4 @@ inline constexpr bool comes_in_parts<EffectiveField<Terms...>, Stencil> =
     (comes_in_parts<Terms, Stencil> && ...);
 }  // namespace detail
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -154,4 +154,4 @@ class Exchange : public detail::TermOnLattice<detail::UniformExchange> {
                       detail::finite(constant, "cayspin::Exchange: the constant")) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

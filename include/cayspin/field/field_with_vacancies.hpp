@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -190,4 +190,4 @@ class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, Mem
   ScalarField<Real, MemorySpace> occupation_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -4,7 +4,7 @@
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// The host members of a term or generator that is made of others (CRTP): those that are called
 /// before a kernel are forwarded to its parts from here. Derived has two members:
@@ -84,4 +84,4 @@ class ForwardingEnergy {
 };
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -107,4 +107,4 @@ class HostField {
 template <class Solver>
 HostField(Lattice, Solver) -> HostField<SpinField<double>, Solver>;
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

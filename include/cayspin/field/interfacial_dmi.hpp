@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -92,4 +92,4 @@ class InterfacialDmi : public detail::TermOnLattice<detail::UniformInterfacialDm
                       detail::finite(constant, "cayspin::InterfacialDmi: the constant"), normal) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -245,4 +245,4 @@ class LayerAveragedSlabDemag {
   Words words_;  // of all layers, where parts share them
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

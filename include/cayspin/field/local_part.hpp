@@ -10,7 +10,7 @@
 // A field in two parts: the local part at a site depends on the spin there and on t alone, the rest
 // is the neighbour field. For methods that move each spin in the field of the others. A term that
 // says nothing is neighbour field altogether; the members are listed in concepts.hpp.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The local part of what has none.
 struct NoField {
@@ -103,4 +103,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field_of
     return zero<typename Stencil::value_type>();  // generator_at says what is wrong
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -148,4 +148,4 @@ class SiteDependentExchange {
   ScalarField<Real, MemorySpace> constants_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -129,4 +129,4 @@ SiteDependentUniaxialAnisotropy(SiteField<Real, 1, MemorySpace>, SiteField<Real,
     -> SiteDependentUniaxialAnisotropy<SiteField<Real, 1, MemorySpace>,
                                        SiteField<Real, 3, MemorySpace>>;
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

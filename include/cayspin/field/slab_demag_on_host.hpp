@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// The slab's demagnetising field computed on the host, a solver for HostField: the numbers of
 /// SlabDemag, or of LayerAveragedSlabDemag, which needs an axis-aligned normal.
@@ -72,4 +72,4 @@ class SlabDemagOnHost {
   int layer_axis_ = -1;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -4,7 +4,7 @@
 #include <cayspin/lattice.hpp>
 #include <cayspin/spin_field.hpp>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// A term made for one lattice, the same at all times. Prepared: what kernels hold of it, made from
 /// the lattice and the term's numbers.
@@ -36,4 +36,4 @@ class TermOnLattice : public Prepared {
   Lattice lattice_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -6,7 +6,7 @@
 #include <concepts>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// A uniform applied field: H = applied, E = -m.H per site. What evaluates it throws
 /// std::invalid_argument when it is not finite.
@@ -86,4 +86,4 @@ class TimeDependentZeeman {
   Applied applied_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

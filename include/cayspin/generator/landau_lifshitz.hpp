@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// m' = -m x H - damping m x (m x H), as A x m with A = H + damping m x H; overdamped, without
 /// precession, A = damping m x H. Reduced units.
@@ -166,4 +166,4 @@ template <class Field, class Real, class MemorySpace>
 LandauLifshitz(Field, SiteField<Real, 1, MemorySpace>, bool = true)
     -> LandauLifshitz<Field, SiteField<Real, 1, MemorySpace>>;
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

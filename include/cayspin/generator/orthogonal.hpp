@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -129,4 +129,4 @@ Orthogonal<Generator> orthogonal(Generator generator) {
   return Orthogonal<Generator>(std::move(generator));
 }
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// A symmetric 3 x 3 matrix: xx, yy, zz, xy, xz, yz.
 using SymmetricTensor = std::array<double, 6>;
@@ -164,4 +164,4 @@ class RigidBodyEnsemble {
   Tensors tensors_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -13,7 +13,7 @@
 
 /// The file that a run is continued from (HDF5, laid out as docs/reference/file_format.md says).
 /// Failures throw std::runtime_error with one line: the file, what could not be done, and why.
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Of which run, and where it stands.
 struct CheckpointHeader {
@@ -77,4 +77,4 @@ class CheckpointReader final : public Checkpoint {
 /// Is this an HDF5 file that says it is a checkpoint?
 bool is_checkpoint(std::filesystem::path const& path);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// A formula typed in a scene, such as "0.3 + 0.2*cos(pi*x)", compiled once and evaluated on the
 /// host. Knows the variables it is given, the constants pi, _pi and _e, and muParser's functions
@@ -35,4 +35,4 @@ class Expression {
   std::unique_ptr<Compiled> compiled_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

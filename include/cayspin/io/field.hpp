@@ -17,12 +17,12 @@
 // here: a struct with the members of Exchange, a member of Field, and its place in
 // Field::lattice_terms. The scene reader, `cayspin check`, the stability bound and the kernels go
 // through that list.
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 class Exchange;
 class InterfacialDmi;
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 using Triple = std::array<double, 3>;
 
@@ -146,4 +146,4 @@ void for_each_lattice_term(AnyField&& field, Work&& work) {
   std::apply([&](auto... member) { (work(field.*member), ...); }, Field::lattice_terms);
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

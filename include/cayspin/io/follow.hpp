@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// A trajectory file that another process may be writing.
 ///
@@ -69,4 +69,4 @@ class FollowedTrajectory {
 /// Does a process have the file open for writing? Unknown where files are not locked.
 std::optional<bool> is_being_written(std::filesystem::path const& path);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// What a method takes for the field of a spin's neighbours while the spin moves.
 enum class Neighbors {
@@ -59,4 +59,4 @@ std::span<Method const* const> methods();
 /// The method of this word, or nullptr.
 Method const* find_method(std::string_view word);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

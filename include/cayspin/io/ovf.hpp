@@ -12,7 +12,7 @@
 /// Vector fields in OVF 2.0, the file format of OOMMF and mumax3: three components on a rectangular
 /// mesh. Every failure throws std::runtime_error whose message is one line that begins with the
 /// file.
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// How an OVF file stores its values. `text` has as many digits as a double needs.
 enum class OvfFormat { text, binary4, binary8 };
@@ -53,4 +53,4 @@ OvfField read_ovf(std::filesystem::path const& path);
 void write_ovf(std::filesystem::path const& path, OvfField const& field, OvfFormat format,
                bool overwrite);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -3,7 +3,7 @@
 
 #include <cayspin/io/scene.hpp>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Reads a scene for `cayspin relax`: as read_scene does, but [integrator] may be missing, and
 /// field.applied may be a list of fields (Field::applied_in_turn). Throws SceneError, also for
@@ -32,4 +32,4 @@ bool is_to_relax(Scene const& scene);
 /// The [field] of each state of rest that the scene asks for: one, or those of its list.
 std::vector<Field> fields_in_turn(Scene const& scene);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

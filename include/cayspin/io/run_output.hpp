@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// What a run writes besides its trajectory.
 struct RunOutputOptions {
@@ -61,4 +61,4 @@ class RunOutput {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

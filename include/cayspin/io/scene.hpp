@@ -21,7 +21,7 @@
 #include <vector>
 
 /// A scene file as plain data. docs/reference/scene.md describes every key.
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// what() is one line: `FILE:LINE: key: what is wrong; accepted: ...`, or
 /// `--set key=value: key: ...` when an override is to blame.
@@ -222,4 +222,4 @@ std::vector<InertiaTensor> inertia(Scene const& scene);
 /// Their inverses in the order xx, yy, zz, xy, xz, yz. Throws as inertia does.
 std::vector<std::array<double, 6>> inverse_inertia(Scene const& scene);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

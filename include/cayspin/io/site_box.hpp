@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// Sites from `begin`, so many along each axis.
 struct SiteBox {
@@ -73,4 +73,4 @@ inline std::int64_t planes_to_read(std::array<std::int64_t, 3> const& shape,
   return std::max<std::int64_t>(1, at_once / (bytes_of_site * shape[0] * shape[1]));
 }
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -13,7 +13,7 @@
 
 /// The file of a sweep: one scene run with every combination of the values of some keys. It is
 /// laid out as docs/reference/file_format.md says. Errors are those of trajectory.hpp.
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// A key of a scene and the values that it takes.
 struct SweptKey {
@@ -81,4 +81,4 @@ bool is_sweep(std::filesystem::path const& path);
 /// Reads all but the runs' trajectories. Throws std::runtime_error with one line.
 SweepInfo read_sweep(std::filesystem::path const& path);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

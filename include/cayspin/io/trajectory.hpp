@@ -18,7 +18,7 @@
 /// Every failure of the file system or of HDF5 throws std::runtime_error whose message is one line:
 /// the file, what could not be done, and why. HDF5 itself prints nothing. Not thread-safe.
 /// Where this is a program's first use of HDF5, HDF5 does not close files of others at exit.
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 /// What a trajectory file says about the run that writes it.
 struct TrajectoryHeader {
@@ -37,8 +37,9 @@ struct TrajectoryHeader {
 
 /// How /spins lies in the file.
 struct TrajectoryStorage {
-  int compression = 0;     ///< level of deflate with shuffle, 0 (none) to 9
-  std::int64_t chunk = 0;  ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
+  int compression = 0;      ///< level of deflate with shuffle, 0 (none) to 9
+  std::int64_t chunk = 0;   ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
+  std::int64_t frames = 0;  ///< that are planned; a kill loses none of them, or of 8180 chunks
 };
 
 /// How a frame goes into a file: by pieces of so many planes along z; the last may have fewer.
@@ -150,4 +151,4 @@ std::vector<double> read_spins(std::filesystem::path const& path,
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape, std::int64_t frame);
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

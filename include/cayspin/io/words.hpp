@@ -7,7 +7,7 @@
 #include <string_view>
 
 /// The words a scene may use, but for those of methods, which cayspin/io/method.hpp has.
-namespace cayspin::io {
+namespace cayspin::inline v0_1::io {
 
 enum class SystemKind { llg, rigid_body };
 enum class BoundaryKind { open, periodic };
@@ -83,4 +83,4 @@ class SetOf {
   unsigned bits_ = 0;
 };
 
-}  // namespace cayspin::io
+}  // namespace cayspin::inline v0_1::io

@@ -5,16 +5,16 @@
 #include <cayspin/isotropy/sigma.hpp>
 #include <cayspin/vec3.hpp>
 
-namespace cayspin::isotropy {
+namespace cayspin::inline v0_1::isotropy {
 
 /// For rigid bodies: adds dt^p s m to a step's coordinates F. The number s cancels the leading
 /// energy error of LieHeun (p = 3), Rkmk4 and Series4 (p = 4). It is zero for a body at rest.
 /// Lewis and Nigam 2002, Sec. 5.2, here coordinate free and for any symmetric inertia.
 struct Energy {};
 
-}  // namespace cayspin::isotropy
+}  // namespace cayspin::inline v0_1::isotropy
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The invariants of B = I^-1 and m from which the corrections are computed.
 template <class Value>
@@ -112,4 +112,4 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Si
   return multiply_add(Value(scale * sigma), m, f);
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

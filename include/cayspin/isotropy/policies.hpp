@@ -7,7 +7,7 @@
 
 // An isotropy policy turns the generator's A at a spin m into xi = A + sigma m. The exact flow does
 // not depend on sigma. Methods of finite order do.
-namespace cayspin::isotropy {
+namespace cayspin::inline v0_1::isotropy {
 
 /// sigma = 0: the generator as it is.
 struct Zero {
@@ -54,4 +54,4 @@ struct FiniteDifferenceBackward {
   double cap = std::numeric_limits<double>::infinity();  ///< of |dt sigma|
 };
 
-}  // namespace cayspin::isotropy
+}  // namespace cayspin::inline v0_1::isotropy

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Squares below this are not resolved: a quotient with such a divisor is taken as zero.
 template <class Value>
@@ -39,4 +39,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value turn_from_difference(Vec3<Value> const& dt_tim
   return clamp(guarded_quotient(numerator, dot(w, w)), cap);
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

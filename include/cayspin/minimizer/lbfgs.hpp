@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// L-BFGS with a preconditioner as the first approximation (Nocedal and Wright 2006, Alg. 7.4).
 template <class Spins>
@@ -145,4 +145,4 @@ class Lbfgs {
   double step_square_ = 1;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -12,12 +12,13 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 // The lowest curvature of the energy at a state of rest: the least eigenvalue of the Hessian on the
-// tangent planes, P (-dH/dm) P + (H.m). Negative at a saddle. Conjugate gradients on the Rayleigh
-// quotient, preconditioned (Knyazev 2001, in two directions at a time).
-namespace cayspin::detail {
+// tangent planes, P (-dH/dm) P + (H.m). Negative at a saddle. The locally optimal preconditioned
+// conjugate gradients of Knyazev (2001).
+namespace cayspin::inline v0_1::detail {
 
 /// Is H affine in the spins, of a prepared field?
 template <class Field, class Stencil>
@@ -75,10 +76,41 @@ struct HessianProduct {
   }
 };
 
+/// The least eigenvalue of a symmetric matrix, and its eigenvector: by Jacobi's rotations.
+struct LowestOfThree {
+  double value, vector[3];
+
+  explicit LowestOfThree(double (&a)[3][3]) {
+    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int sweep = 0; sweep < 30; ++sweep)
+      for (auto const& [p, q] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+        if (a[p][q] == 0) continue;
+        double const ratio = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+        double const t = std::copysign(1, ratio) / (std::abs(ratio) + std::hypot(1.0, ratio));
+        double const c = 1 / std::hypot(1.0, t), s = c * t;
+        auto const rotate = [&](double& x, double& y) {
+          double const old = x;
+          x = c * old - s * y;
+          y = s * old + c * y;
+        };
+        for (int i = 0; i < 3; ++i) rotate(a[i][p], a[i][q]);
+        for (int i = 0; i < 3; ++i) rotate(a[p][i], a[q][i]);
+        for (int i = 0; i < 3; ++i) rotate(v[i][p], v[i][q]);
+        a[p][q] = a[q][p] = 0;
+      }
+    int least = 0;
+    for (int i = 1; i < 3; ++i)
+      if (a[i][i] < a[least][least]) least = i;
+    value = a[least][least];
+    for (int i = 0; i < 3; ++i) vector[i] = v[i][least];
+  }
+};
+
 /// Memory that a search for the lowest curvature works in.
 template <class Spins>
 struct CurvatureArrays {
-  Spins vector, product, direction, its_product, rest, preconditioned, shifted, at_rest, before;
+  Spins vector, product, residual, its_product, direction, direction_product;
+  Spins shifted, at_rest, before;
 };
 
 struct LowestCurvature {
@@ -87,18 +119,19 @@ struct LowestCurvature {
   std::int64_t evaluations = 0;
 };
 
-/// Ends when the quotient is below -tolerance, or when it is not about to fall below zero.
+/// Ends when the quotient is below -tolerance, or when it is not about to fall below zero. `scale`:
+/// of the strongest field.
 /// `precondition(from, to)`. Leaves the vector in arrays.vector.
 template <class Exec, class Field, class Spins, class Moves, class Precondition>
 LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, double time,
-                                      Spins const& spins, Moves const& moves, double tolerance,
-                                      CurvatureArrays<Spins> const& arrays,
+                                      Spins const& spins, Moves const& moves, double scale,
+                                      double tolerance, CurvatureArrays<Spins> const& arrays,
                                       Precondition const& precondition) {
   using Real = typename Spins::value_type;
   constexpr int most_steps = 40;
   LowestCurvature found;
-  Spins const &x = arrays.vector, &hx = arrays.product, &d = arrays.direction,
-              &hd = arrays.its_product, &r = arrays.rest, &w = arrays.preconditioned,
+  Spins const &x = arrays.vector, &hx = arrays.product, &w = arrays.residual,
+              &hw = arrays.its_product, &p = arrays.direction, &hp = arrays.direction_product,
               &shifted = arrays.shifted, &at_rest = arrays.at_rest, &before = arrays.before;
 
   evaluate_field(exec, field, spins, time, at_rest);
@@ -130,19 +163,18 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
         exec, "cayspin::minimize::keep_tangent", spins.layout(),
         KeepTangent<Real>{spins.array(), v.array(), moves.array(), v.output(false)});
   };
-  auto const scale = [&](double factor, Spins const& v) { combine(exec, factor, v, 0, v, v); };
+  auto const multiply = [&](double factor, Spins const& v) { combine(exec, factor, v, 0, v, v); };
 
   auto const& shape = spins.lattice().shape;
   for_each_site<Real>(exec, "cayspin::minimize::random_signs", spins.layout(),
-                      RandomSigns<Real>{shape[0], shape[1], r.output(false)});
-  keep_tangent(r);
-  precondition(r, x);
+                      RandomSigns<Real>{shape[0], shape[1], 1, w.output(false)});
+  keep_tangent(w);
+  precondition(w, x);
   keep_tangent(x);
   double const size = length(exec, x);
   if (!(size > 0)) return found;
-  scale(1 / size, x);
+  multiply(1 / size, x);
   found.value = product(x, hx)[0];
-  double old_decrease = 0;
   for (int step = 0; step < most_steps; ++step) {
     if (found.value < -tolerance) {
       // Once more from the field: round-off of the steps so far is left behind.
@@ -151,38 +183,47 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
       found.is_negative = found.value < -tolerance;
       if (found.is_negative) break;
     }
-    // w, preconditioned, of the residual r; and r.w, by which the quotient is about to fall.
-    double const r_old_w = [&] {
-      combine(exec, 1, hx, -found.value, x, shifted);
-      precondition(shifted, w);
-      keep_tangent(w);
-      combine(exec, -inner_product(exec, w, x), x, 1, w, w);
-      return step == 0 ? 0.0 : inner_product(exec, r, w);
-    }();
-    combine(exec, 1, shifted, 0, shifted, r);
-    double const decrease = inner_product(exec, r, w);
-    if (!(decrease > 0.01 * std::abs(found.value)) || decrease < tolerance) break;
-    double const beta = step == 0 ? 0 : std::max(0.0, (decrease - r_old_w) / old_decrease);
-    old_decrease = decrease;
-    if (beta == 0)
-      combine(exec, -1, w, 0, w, d);
-    else
-      combine(exec, -1, w, beta, d, d);
-    combine(exec, -inner_product(exec, d, x), x, 1, d, d);
-    double const d_size = length(exec, d);
-    if (!(d_size > 0)) break;
-    scale(1 / d_size, d);
-    // The lower of the two quotients on the plane of x and d.
-    double const d_value = product(d, hd)[0], mixed = inner_product(exec, x, hd);
-    double const mean = 0.5 * (found.value + d_value), half = 0.5 * (found.value - d_value);
-    double const lower = mean - std::hypot(half, mixed);
-    if (mixed == 0 || !std::isfinite(lower)) break;
-    double const ratio = (lower - found.value) / mixed, norm = std::hypot(1.0, ratio);
-    combine(exec, 1 / norm, x, ratio / norm, d, x);
-    combine(exec, 1 / norm, hx, ratio / norm, hd, hx);
-    found.value = lower;
+    // w, the preconditioned residual; and by how much it is about to lower the quotient.
+    combine(exec, 1, hx, -found.value, x, shifted);
+    precondition(shifted, w);
+    keep_tangent(w);
+    combine(exec, -inner_product(exec, w, x), x, 1, w, w);
+    double const decrease = inner_product(exec, shifted, w), rest = length(exec, shifted);
+    // An eigenvalue is within `rest` of the quotient. Near an instability several may be close.
+    bool const is_positive = found.value > 1e-4 * scale && rest < found.value;
+    if (!(decrease > 0) || rest < 0.1 * tolerance || (is_positive && decrease < 0.01 * found.value))
+      break;
+    if (step > 0) combine(exec, -inner_product(exec, w, p), p, 1, w, w);
+    double const w_size = length(exec, w);
+    if (!(w_size > 0)) break;
+    multiply(1 / w_size, w);
+    double of_pairs[3][3] = {{found.value}};  // v.Hv of x, w and p, the step before
+    auto const set = [&](int i, int j, double value) { of_pairs[i][j] = of_pairs[j][i] = value; };
+    set(1, 1, product(w, hw)[0]);
+    set(0, 1, inner_product(exec, x, hw));
+    if (step > 0) {
+      set(0, 2, inner_product(exec, x, hp));
+      set(1, 2, inner_product(exec, w, hp));
+      set(2, 2, inner_product(exec, p, hp));
+    } else {
+      set(2, 2, std::numeric_limits<double>::infinity());
+    }
+    LowestOfThree const lowest(of_pairs);
+    auto const [of_x, of_w, of_p] = lowest.vector;
+    double const sideways = std::hypot(of_w, of_p);
+    if (!std::isfinite(lowest.value) || !(sideways > 0)) break;
+    // x <- of_x x + (of_w w + of_p p), and p normal to that.
+    for (auto const& [x_or_hx, w_or_hw, p_or_hp] : {std::tie(x, w, p), std::tie(hx, hw, hp)}) {
+      if (step > 0)
+        combine(exec, of_w, w_or_hw, of_p, p_or_hp, w_or_hw);
+      else
+        combine(exec, of_w, w_or_hw, 0, w_or_hw, w_or_hw);
+      combine(exec, -sideways, x_or_hx, of_x / sideways, w_or_hw, p_or_hp);
+      combine(exec, of_x, x_or_hx, 1, w_or_hw, x_or_hx);
+    }
+    found.value = lowest.value;
   }
   return found;
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

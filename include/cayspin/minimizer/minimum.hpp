@@ -9,7 +9,7 @@
 #include <limits>
 #include <string_view>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Why a minimisation ended.
 enum class MinimizeEnd {
@@ -53,4 +53,4 @@ struct MinimizeOptions {
   std::function<Next(Minimum const&)> observer = {};  ///< after each iteration
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -13,7 +13,7 @@
 // Hessian (Nocedal and Wright 2006, Sec. 7.2). Both are tangent where they were made, and are
 // projected to the present tangent planes where they are used. All inner products of an iteration
 // come from two passes, and the recursion goes over numbers alone.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 inline constexpr std::size_t pairs_kept = 4;
 
@@ -170,4 +170,4 @@ class Pairs {
   std::size_t count_ = 0;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

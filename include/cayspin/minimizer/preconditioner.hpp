@@ -12,7 +12,7 @@
 
 // A first guess of the inverse Hessian: (K + c)^-1 with the exchange K that a field is found to
 // have.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <class Spins>
 class Preconditioner {
@@ -51,4 +51,4 @@ class Preconditioner {
   double first_shift_ = 1, shift_ = 1;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -17,7 +17,7 @@
 
 // What a minimiser wants to know of a field of which it knows nothing: how strong the exchange is
 // along each axis, how strong the rest is, and which spins it leaves alone.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The same direction everywhere, or reversed from site to site.
 template <class Real>
@@ -34,10 +34,12 @@ struct AlternateSpins {
   }
 };
 
-/// Components of random sign: a direction in no symmetry.
+/// Components of random sign, and of sizes that differ by up to `scatter`: a direction in no
+/// symmetry.
 template <class Real>
 struct RandomSigns {
   std::int64_t nx, ny;
+  Real scatter;
   OutputArray<Real, 3> output;
 
   template <class Site>
@@ -50,7 +52,8 @@ struct RandomSigns {
     for (int lane = 0; lane < lanes; ++lane) {
       std::uint64_t const bits = mixed(first + static_cast<std::uint64_t>(lane));
       for (int c = 0; c < 3; ++c)
-        signs[c][lane] = Real((bits >> (20 + c)) & 1U ? 0.57735027 : -0.57735027);
+        signs[c][lane] = Real((bits >> (20 + c)) & 1U ? 0.57735027 : -0.57735027) *
+                         (1 + scatter * Real(0x1p-16) * Real(bits >> (16 * c) & 0xffffU));
     }
     Vec3<Value> const v{load<Value>(signs[0]), load<Value>(signs[1]), load<Value>(signs[2])};
     site.store(v, output);
@@ -148,8 +151,9 @@ FieldStrengths probe(
   }
   if (is_frustrated)
     for (double& coupling : found.couplings) coupling = std::max(0.0, coupling);
-  if (rests > 0) look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], spins.output(false)});
+  if (rests > 0)
+    look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], 0, spins.output(false)});
   return found;
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

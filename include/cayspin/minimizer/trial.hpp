@@ -16,7 +16,7 @@
 
 // A point along the path m(a) = cay(a m x d) m of a line search, and all that is known of it from
 // one evaluation of the field. Spins turn on great circles from m towards d.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// v without its part along m.
 template <class Value>
@@ -115,4 +115,4 @@ PointOnPath look_along(Exec const& exec, Field const& field, double time, Spins 
           std::sqrt(v[Look::torque])};
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

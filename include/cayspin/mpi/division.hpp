@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin::mpi {
+namespace cayspin::inline v0_1::mpi {
 
 /// Numbers of parts along y and z. Rows along x stay whole.
 struct Division {
@@ -59,4 +59,4 @@ inline void require_division(Lattice const& lattice, int depth, Division const& 
                                 std::to_string(depth) + " that its neighbours need");
 }
 
-}  // namespace cayspin::mpi
+}  // namespace cayspin::inline v0_1::mpi

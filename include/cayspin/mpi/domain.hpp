@@ -15,7 +15,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace cayspin::mpi {
+namespace cayspin::inline v0_1::mpi {
 
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
 /// with `depth` ghosts at each end that is inside the lattice. Fields on local() are like any
@@ -166,4 +166,4 @@ class Domain final : public Part {
   mutable std::array<detail::GhostMessages, 3> messages_;
 };
 
-}  // namespace cayspin::mpi
+}  // namespace cayspin::inline v0_1::mpi

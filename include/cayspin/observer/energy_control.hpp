@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -165,4 +165,4 @@ class EnergyControl {
   SiteField<Real, 3, typename Spins::memory_space> axes_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

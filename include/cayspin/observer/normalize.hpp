@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -68,4 +68,4 @@ struct Normalize {
   }
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Energy, norm defect and magnetization at one step.
 struct Sample {
@@ -91,4 +91,4 @@ class Record {
   std::vector<Sample>& samples_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -174,4 +174,4 @@ class ThermalNoise {
   ThermalNoiseOptions options_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -5,10 +5,10 @@
 
 #include <cstddef>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Taylor polynomial 1 + x/c1 (1 + x/c2 (1 + ...)) with ck = -(2k + Odd)(2k - 1 + Odd), the series
-/// of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. For |a| <= pi/2 the
+/// of sin(a)/a (Odd = 1) and cos(a) (Odd = 0) in x = a^2. For |a| <= 1.62 the
 /// first term left out is below a quarter of the precision's epsilon.
 template <int Odd, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value trigonometric_series(Value const& x) {
@@ -66,13 +66,14 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   constexpr bool is_double = sizeof(Scalar) == sizeof(double);
   Value const a = Value(Scalar(0.5)) * angle;
 
-  // Reduce by multiples of pi, given as a sum of three numbers. The clamp acts only if |f| eps is
-  // not small. It keeps the result on the sphere.
+  // Reduce by multiples of pi, given as a sum of three numbers. Their count is one too many or too
+  // few where a / pi rounds to the other side of a half: r may pass pi / 2 by some |f| eps. The
+  // clamp acts only if that is not small. It keeps the result on the sphere.
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317636e-16,
                    pi_lowest = -2.99476980971833966592e-33;
   constexpr float pi_f = 3.14159274101257324f, pi_low_f = -8.74227800037247e-08f,
                   pi_lowest_f = -3.42e-15f;
-  constexpr Scalar limit = Scalar(1.5707963267948966);
+  constexpr Scalar limit = Scalar(1.62);
   Value const turns = nearest<Value>(Value(a * Value(Scalar(1 / pi))));
   Value const minus = Value(Scalar(0)) - turns;
   Value r = multiply_add(minus, Value(is_double ? Scalar(pi) : Scalar(pi_f)), a);
@@ -122,4 +123,4 @@ KOKKOS_FORCEINLINE_FUNCTION Value inverse_tangent_coefficient(Vec3<Value> const&
   return select<Value>(small, sum, closed);
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// m <- exp(v) m for a random v made of five bits. Of the 32 cases v is 0 in 12, +-2 s along one of
 /// the axes in 12, and sqrt(2) s (+-1, +-1, +-1) in 8. These have the moments of normal numbers of
@@ -128,4 +128,4 @@ class RandomTurn {
   std::conditional_t<OnHost, Tables, Nothing> tables_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// -1 where the indices along some axes have an odd sum, 1 elsewhere.
 struct AlternatingSigns {
@@ -32,4 +32,4 @@ struct AlternatingSigns {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// One axis of a cell-centred grid, and the coarser axes of its multigrid hierarchy.
 class CellAxis {
@@ -158,4 +158,4 @@ class CellAxisTables {
   Kokkos::View<std::int32_t*, MemorySpace> beside_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

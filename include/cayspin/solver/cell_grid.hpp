@@ -23,7 +23,7 @@
 #define CAYSPIN_DETAIL_INDEPENDENT
 #endif
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Row y of plane z, from cell x on.
 struct CellPlace {
@@ -159,4 +159,4 @@ struct RunInside {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

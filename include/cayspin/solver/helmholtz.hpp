@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Approximates z = (c + b K)^-1 r for fields of vectors, with K = -J Lap over the neighbours of a
 /// lattice, b >= 0 and c > 0. Along an axis with J < 0 it takes the sum with a neighbour in place
@@ -66,4 +66,4 @@ class Helmholtz {
   Multigrid<ShiftedExchange<float>, 2, true, float, MemorySpace> multigrid_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

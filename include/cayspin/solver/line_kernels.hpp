@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Lines are solved from both ends, with the same factors for either half:
 /// y_i = inverse_i r_i + ratio_i y_(i-1) towards the middle, z_i = y_i + ratio_i z_(i+1) back. In
@@ -196,4 +196,4 @@ struct SolveLinesOnDevice {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The axis along which alone a lattice couples, or any one where none does. Couplings of axes
 /// without neighbours become 0.
@@ -156,4 +156,4 @@ class LineSolver {
   std::size_t oldest_ = 0;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

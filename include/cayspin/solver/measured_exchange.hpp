@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// z + sign (-1)^(index along `axis`) x on every site; uniform where axis is 3.
 template <class Real>
@@ -114,4 +114,4 @@ struct MeasuredExchange {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -16,7 +16,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// One multigrid cycle on cell-centred grids for an Operation, ShiftedExchange or ShiftedSpinWaves,
 /// in numbers of type Real. It relaxes after the correction by a coarser grid, and where it
@@ -222,4 +222,4 @@ class Multigrid {
   std::vector<Level> levels_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

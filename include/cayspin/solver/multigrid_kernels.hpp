@@ -9,7 +9,7 @@
 #include <cstdint>
 
 // Relaxation on one grid. K = -J Lap >= 0 over the neighbours of a lattice.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// 1 + b K, and the weight of a relaxation.
 template <class Real>
@@ -229,4 +229,4 @@ struct TurnRightSide {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 // Between a grid and the next coarser one, one axis at a time.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <class Array>
 KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t stride_along(Array const& array, int axis) {
@@ -175,4 +175,4 @@ struct InterpolateAlongRows {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

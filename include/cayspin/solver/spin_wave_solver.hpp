@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Approximates v with v + b K v = r across the directions m, where i of the complex b stands for
 /// m x, and K = -J Lap over the neighbours of a lattice. Where one axis alone couples, by lines,
@@ -62,4 +62,4 @@ class SpinWaveSolver {
   Multigrid<ShiftedSpinWaves<float>, 5, false, float, MemorySpace> multigrid_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

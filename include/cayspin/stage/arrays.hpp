@@ -14,7 +14,7 @@
 // The one list of the arrays of a Runge-Kutta stage. It holds whole fields, planes of them, or
 // rows: a pass goes from fields to rows, a sweep from the planes of its buffers. A new array
 // enters here, and in the kernel that uses it.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Kind says what an array is: WholeFields, Planes or Rows.
 template <class Kind, int Stages>
@@ -244,4 +244,4 @@ struct ToComponents {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

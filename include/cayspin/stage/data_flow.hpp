@@ -5,7 +5,7 @@
 
 // Which arrays the stages of an explicit Runge-Kutta step read and write. The tableau and the
 // update decide, at compile time.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Every stage starts from the increment before it alone, as in the classical Runge-Kutta methods.
 template <class Tableau>
@@ -123,4 +123,4 @@ struct StageDataFlow {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

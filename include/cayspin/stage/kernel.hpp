@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <type_traits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Are the weights before number j 0?
 template <class Weights>
@@ -248,4 +248,4 @@ struct RungeKuttaStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -13,7 +13,7 @@
 #include <string>
 #include <tuple>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what
 /// one step leaves for the next.
@@ -165,4 +165,4 @@ class StageMemory {
   bool streaming_ = false;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -9,7 +9,7 @@
 
 // A Runge-Kutta stage over the whole lattice: on hosts a pack of spins at a time along rows, on
 // devices a site per thread.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 template <class Kernel>
 using FieldsOf = StageArrays<WholeFields<typename Kernel::value_type>, Kernel::stages>;
@@ -136,4 +136,4 @@ void run_pass(Exec const& exec, std::string const& label, RowLayout const& layou
   }
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -17,7 +17,7 @@
 
 // All stages of a Runge-Kutta step in one pass through the lattice. Each stage follows the stage
 // before it at a distance of one plane and one row, on numbers that are still in the cache.
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// How the stages of a step go through the lattice. Results have the same bits.
 enum class Path {
@@ -224,4 +224,4 @@ struct SweepLoop {
 };
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

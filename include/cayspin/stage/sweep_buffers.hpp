@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The memory of a sweep beside fields; none at first.
 template <class Real, class MemorySpace>
@@ -47,4 +47,4 @@ class SweepBuffers {
   Kokkos::View<StripProgress*, MemorySpace> progress_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -15,7 +15,7 @@
 // stages, `finish` for the end of the step, and displacement(f, m0) is finish(f, m0) - m0.
 // recovers_increments(stages): a chain of so many stages (each starts from the increment before it
 // alone) computes increments again from the spins to which they move m0.
-namespace cayspin::update {
+namespace cayspin::inline v0_1::update {
 
 /// Runge-Kutta-Munthe-Kaas: f in the Lie algebra, m = Rotation(f) m0, f' = dRotation_f^-1 (A).
 template <class Rotation>
@@ -253,4 +253,4 @@ struct Stereographic {
   }
 };
 
-}  // namespace cayspin::update
+}  // namespace cayspin::inline v0_1::update

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The work memory of an adaptive step, and the state between steps. Passes need one field more,
 /// a sweep its buffers.
@@ -139,4 +139,4 @@ struct AdaptiveMemory {
   bool streaming_ = false;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

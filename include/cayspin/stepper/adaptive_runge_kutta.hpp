@@ -27,7 +27,7 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
 /// angle of any spin between the two solutions, and is kept below the tolerance.
@@ -361,4 +361,4 @@ class AdaptiveProjected : public AdaptiveRungeKutta<Spins, Embedded, update::Pro
       : AdaptiveProjected::AdaptiveRungeKutta("AdaptiveProjected", like, options) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

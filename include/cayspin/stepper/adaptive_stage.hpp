@@ -10,7 +10,7 @@
 #include <cstddef>
 
 // What an adaptive Runge-Kutta step does besides its stages. Tableau is a FirstSameAsLast.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The generator at the begin of a run, and the square of the spin's rate |A x m|.
 template <class Isotropy, class Generator, class Real>
@@ -161,4 +161,4 @@ struct DenseOutput {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

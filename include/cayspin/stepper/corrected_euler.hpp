@@ -8,7 +8,7 @@
 #include <cayspin/stepper/two_point.hpp>
 
 // Geometric Euler with a sigma that makes its energy error one order smaller.
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// With sigma from a forward difference; energy error of order 2, two evaluations.
 template <class Spins, class Rotation>
@@ -70,4 +70,4 @@ class LieEuler<Spins, Isotropy, Rotation> : public detail::StepperBase<Spins> {
   detail::Rates<Spins> rates_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -168,4 +168,4 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
 template <class Spins, class Stepper>
 EnergyProjection(Spins, Stepper, int = 3) -> EnergyProjection<Stepper>;
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// When a stepper that estimates its errors starts again, because the neighbour field is not what
 /// its past predicted. Infinity: never. If both are infinite, no step waits for its estimate.
@@ -259,4 +259,4 @@ class FieldExtrapolation4 : public FieldExtrapolation<Spins, 4, Estimates> {
       : FieldExtrapolation4::FieldExtrapolation("FieldExtrapolation4", like, options) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -12,7 +12,7 @@
 // The largest stable time step of field extrapolation, for one transverse mode of a nearly uniform
 // state: u' = (-damping + i) (a u + b v). The term a u comes from the spin itself, in the field of
 // the others and in its local field. The term b v comes from the extrapolated field of the others.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The amplitude after a step from those now and before, newest first. z = dt (a + b) (-damping +
 /// i); `own` = a / (a + b); q = dt times the part of A along the spin.
@@ -91,4 +91,4 @@ double largest_stable_extrapolation(double field_bound, double damping, bool pre
   return limit;
 }
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -10,7 +10,7 @@
 
 #include <cstddef>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The neighbour field of every spin.
 template <class Generator, class Real>
@@ -133,4 +133,4 @@ struct FieldExtrapolationStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The weights at time x of the polynomial through Count fields at times `nodes`.
 template <std::size_t Count>
@@ -84,4 +84,4 @@ class FieldHistory {
   std::size_t newest_ = 0, known_ = 0;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

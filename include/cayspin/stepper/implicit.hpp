@@ -11,7 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// An implicit step whose equation was not solved. The spins are those before the step.
 class NotConverged : public std::runtime_error {
@@ -173,4 +173,4 @@ class ImplicitMidpoint : public detail::Implicit<Spins, isotropy::Zero, Cayley, 
       : ImplicitMidpoint::Implicit("ImplicitMidpoint", like, {}, options) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -5,7 +5,7 @@
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/rate.hpp>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// One iterate of an implicit step, from A at `level`: the estimate of the end or of the middle.
 template <class Isotropy, class Rotation, class Generator, class Real>
@@ -49,4 +49,4 @@ struct ImplicitSigmaStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -11,7 +11,7 @@
 #include <cayspin/stepper/tableau.hpp>
 
 // The named Runge-Kutta methods of equal steps: each one a tableau, an update and an isotropy.
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Geometric Euler, order 1: m <- cay(dt xi) m, xi = A(m) + sigma m.
 /// Lewis and Nigam 2002, Sec. 4.2. <cayspin/stepper/corrected_euler.hpp> adds the isotropies
@@ -167,4 +167,4 @@ struct EnergyCorrection<tableau::Classical4, update::Lie<Cayley>> {
 };
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -17,7 +17,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Options of Multirate.
 struct MultirateOptions {
@@ -199,4 +199,4 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   std::int64_t evaluations_done_ = 0, dear_evaluations_done_ = 0;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

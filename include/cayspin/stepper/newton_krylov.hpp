@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// Solves v = g(v) on a field by Newton's method with halved steps. GMRES solves the linear
 /// systems, with g' times a vector from a difference of g. Allocates 16 fields at its first use.
@@ -121,4 +121,4 @@ class NewtonKrylov {
   Spins correction_, point_, image_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

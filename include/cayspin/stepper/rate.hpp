@@ -10,7 +10,7 @@
 
 // sigma from the derivative of the generator along the flow: first the rates X of all spins, then
 // the generator's derivative along them.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// X = A x m and m.A of every spin.
 template <class Generator, class Real>
@@ -128,4 +128,4 @@ struct CorrectedEulerStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Splitting by the two colours of a checkerboard, of order 2 or 4, for the Landau-Lifshitz
 /// equation with couplings of nearest neighbours. While the spins of one colour move, their
@@ -163,4 +163,4 @@ class RedBlack4 : public RedBlack<Spins, 4> {
   explicit RedBlack4(Spins const& like) : RedBlack4::RedBlack(like) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

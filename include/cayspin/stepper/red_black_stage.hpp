@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// One pass over a colour, for parts of a step's length: one flow of every spin, or two flows where
 /// two steps meet. `length` and `middle` of each flow are in steps, from the begin of the step.
@@ -233,4 +233,4 @@ struct RedBlackSteps {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

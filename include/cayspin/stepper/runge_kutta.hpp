@@ -19,7 +19,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// An explicit one-step method on a spin field: a tableau, and an update that moves spins by
 /// increments (cayspin::update). Holds all work memory. A large field on a host is swept through
@@ -225,4 +225,4 @@ class RungeKutta : public detail::StepperBase<Spins> {
   detail::StageMemory<Spins, Tableau, Update> memory_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -10,7 +10,7 @@
 #include <array>
 #include <cstddef>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// The symbolic series of order 4 in Cayley coordinates:
 /// F = dt a + dt^2 a_1/2 + dt^3 (2 a_2 + |a|^2 a + a_1 x a)/12
@@ -114,4 +114,4 @@ class Series4Paper : public Series4<Spins, Isotropy, detail::PaperSeries> {
       : Series4Paper::Series4(like, isotropy) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

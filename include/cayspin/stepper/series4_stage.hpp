@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <type_traits>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The truncated series of F from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002,
 /// Sec. 5.3, any isotropy.
@@ -151,4 +151,4 @@ struct SeriesStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
 /// The numbers are not finite, or the field is not smooth. The spins are those before the step.
@@ -109,4 +109,4 @@ class StepController {
 };
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// What a stepper says of itself; 0 for one that does not run on parts of a lattice.
 template <class Stepper>
@@ -84,4 +84,4 @@ class StepperBase {
   std::string region_;
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -10,7 +10,7 @@
 #include <cstddef>
 
 // The passes of StiffGauss. x is the estimate of A at the stages.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// x = sums of coefficients times x of earlier steps, and the spins at the stages.
 template <int Stages, int Earlier, class Real>
@@ -111,4 +111,4 @@ struct CorrectStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

@@ -12,7 +12,7 @@
 #include <limits>
 #include <string>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// How StiffGauss solves a step's equations.
 struct StiffOptions {
@@ -99,4 +99,4 @@ class StiffHistory {
 };
 
 }  // namespace detail
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -10,7 +10,7 @@
 // error: weights of all stages and that one, of the step less the embedded solution of order
 // embedded_order; dense: of each stage, the coefficients of s, s^2, ... s^5 in its weight at
 // t + s dt, of order dense_order.
-namespace cayspin::tableau {
+namespace cayspin::inline v0_1::tableau {
 
 /// Euler's method: order 1, one stage.
 struct Euler {
@@ -213,4 +213,4 @@ struct FirstSameAsLast {
   static constexpr auto const& dense = Embedded::dense;
 };
 
-}  // namespace cayspin::tableau
+}  // namespace cayspin::inline v0_1::tableau

@@ -10,7 +10,7 @@
 
 #include <limits>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 /// A step that keeps A between its two evaluations, or from one step to the next. Method says how
 /// the step uses both (detail::ForwardDifferenceMethod and so on). Work memory: two fields.
@@ -155,4 +155,4 @@ class LieAdamsBashforth2
       : LieAdamsBashforth2::TwoPoint("LieAdamsBashforth2", like, {}, isotropy) {}
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -8,7 +8,7 @@
 
 // Steps from the generator at two points, one of which is kept in a field: finite differences of
 // A_o, and the two-step method of Adams and Bashforth.
-namespace cayspin::detail {
+namespace cayspin::inline v0_1::detail {
 
 /// The inputs of a rule at a site: the spin m that A belongs to, the spin m0 of the step's begin, A
 /// there with its isotropy added, the kept vector, and dt. It returns the step's coordinates F and
@@ -114,4 +114,4 @@ struct TwoPointStage {
   }
 };
 
-}  // namespace cayspin::detail
+}  // namespace cayspin::inline v0_1::detail

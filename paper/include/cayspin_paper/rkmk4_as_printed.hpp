@@ -17,7 +17,7 @@
 #include <string>
 #include <utility>
 
-namespace cayspin {
+namespace cayspin::inline v0_1 {
 
 namespace detail {
 
@@ -135,4 +135,4 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   std::array<std::string, 4> labels_;
 };
 
-}  // namespace cayspin
+}  // namespace cayspin::inline v0_1

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::mpi::detail {
+namespace cayspin::inline v0_1::mpi::detail {
 
 /// Sites from `begin` to before `end`.
 struct Box {
@@ -22,4 +22,4 @@ struct Faces {
   std::array<Box, 2> sent, received;
 };
 
-}  // namespace cayspin::mpi::detail
+}  // namespace cayspin::inline v0_1::mpi::detail

@@ -18,7 +18,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::mpi::detail {
+namespace cayspin::inline v0_1::mpi::detail {
 
 /// Copies a box of a field on a device to consecutive numbers, or back. A task is a row of one
 /// component.
@@ -158,4 +158,4 @@ class GhostMessages {
   std::array<Buffer, 2> sent_, received_;
 };
 
-}  // namespace cayspin::mpi::detail
+}  // namespace cayspin::inline v0_1::mpi::detail

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cayspin::mpi::detail {
+namespace cayspin::inline v0_1::mpi::detail {
 
 /// A box of a field in host memory, as it lies there: the same number of bytes again and again.
 struct BytesInPlace {
@@ -131,4 +131,4 @@ class MessagesInPlace {
   std::vector<MPI_Request> requests_;
 };
 
-}  // namespace cayspin::mpi::detail
+}  // namespace cayspin::inline v0_1::mpi::detail

@@ -6,7 +6,7 @@
 #include <span>
 #include <thread>
 
-namespace cayspin::mpi::detail {
+namespace cayspin::inline v0_1::mpi::detail {
 
 /// Waits for requests, and soon lets other threads run: MPI's own waiting takes a core to itself,
 /// which is slow where ranks share cores.
@@ -20,4 +20,4 @@ inline void wait_for(std::span<MPI_Request> requests) {
   }
 }
 
-}  // namespace cayspin::mpi::detail
+}  // namespace cayspin::inline v0_1::mpi::detail

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+add_library(Kokkos::kokkos INTERFACE IMPORTED)

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# cayspin::cayspin adds folders of headers to what Kokkos asks for, and no other flag.
+file(READ ${COMMANDS} entries)
+
+# flags_of(<result> <target>): of its command, without folders and names of files
+function(flags_of result target)
+  string(JSON count LENGTH "${entries}")
+  math(EXPR last "${count} - 1")
+  foreach(i RANGE ${last})
+    string(JSON command GET "${entries}" ${i} command)
+    if(command MATCHES "/${target}\\.dir/")
+      string(REGEX REPLACE " -o .*" "" command "${command}")
+      string(REGEX REPLACE " (-I|-isystem )[^ ]+" "" command "${command}")
+      set(${result} "${command}" PARENT_SCOPE)
+    endif()
+  endforeach()
+endfunction()
+flags_of(by_kokkos by_Kokkos_kokkos)
+flags_of(by_cayspin by_cayspin_cayspin)
+flags_of(by_same_bits by_cayspin_same_bits)
+if(NOT by_kokkos OR NOT by_cayspin STREQUAL by_kokkos)
+  message(FATAL_ERROR "By Kokkos:\n${by_kokkos}\nby cayspin::cayspin:\n${by_cayspin}")
+endif()
+string(REPLACE " -ffp-contract=off" "" less "${by_same_bits}")
+if(less STREQUAL by_same_bits OR NOT less STREQUAL by_kokkos)
+  message(FATAL_ERROR "By Kokkos:\n${by_kokkos}\nby cayspin::same_bits:\n${by_same_bits}")
+endif()
