@@ -24,7 +24,7 @@ class Cayspin(CMakePackage):
     depends_on("fortran", type="build", when="+program+examples")
     depends_on("cmake@3.25:", type="build")
     # Backends and architecture are those of Kokkos: cayspin ^kokkos+openmp, ^kokkos+cuda cuda_arch=90
-    depends_on("kokkos@4.5:")
+    depends_on("kokkos@4.5:5")
     depends_on("kokkos+pic", when="+shared")
     depends_on("fftw-api@3", when="+examples")
     with when("+program"):

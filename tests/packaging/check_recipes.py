@@ -38,6 +38,7 @@ class BuildFiles:
         self.version = re.search(r"project\(cayspin VERSION (\S+)", top)[1]
         self.cmake = re.search(r"cmake_minimum_required\(VERSION (\S+)\)", top)[1]
         self.kokkos = re.search(r"CAYSPIN_KOKKOS_MINIMUM (\S+)\)", kokkos)[1]
+        self.beyond_kokkos = int(re.search(r"CAYSPIN_KOKKOS_BEYOND (\d+)\)", kokkos)[1])
         self.options = set(re.findall(r"option\((CAYSPIN_\w+)", top))
         self.packages = set(re.findall(r"find_package\((\w+) REQUIRED", source)) | {"Kokkos"}
 
@@ -132,9 +133,10 @@ def problems_of_spack(text, build_files):
     for name, (spack, _) in PACKAGES.items():
         if spack not in recipe.dependencies:
             problems.append(f"{name} is required and {spack} is no dependency")
-    for spack, minimum in (("kokkos", build_files.kokkos), ("cmake", build_files.cmake)):
-        if all(spec != f"{spack}@{minimum}:" for spec, _ in recipe.dependencies.get(spack, [])):
-            problems.append(f"{spack} has to be @{minimum}:")
+    for spack, versions in (("kokkos", f"{build_files.kokkos}:{build_files.beyond_kokkos - 1}"),
+                            ("cmake", f"{build_files.cmake}:")):
+        if all(spec != f"{spack}@{versions}" for spec, _ in recipe.dependencies.get(spack, [])):
+            problems.append(f"{spack} has to be @{versions}")
     for uses in recipe.dependencies.values():
         for spec, conditions in uses:
             for variant in re.findall(r"[+~](\w+)", " ".join(filter(None, conditions))):
@@ -156,8 +158,9 @@ def problems_of_conda(text, build_files):
     for name, (_, conda) in PACKAGES.items():
         if conda not in recipe.host:
             problems.append(f"{name} is required and {conda} is no host requirement")
-    if recipe.host.get("kokkos") != f"kokkos >={build_files.kokkos}":
-        problems.append(f"kokkos has to be >={build_files.kokkos}")
+    versions = f">={build_files.kokkos},<{build_files.beyond_kokkos}"
+    if recipe.host.get("kokkos") != f"kokkos {versions}":
+        problems.append(f"kokkos has to be {versions}")
     if f"cmake >={build_files.cmake}" not in recipe.fields["requirements"]["build"]:
         problems.append(f"cmake has to be >={build_files.cmake}")
     return problems + wrong_options(set(re.findall(r"-D(\w+)=", recipe.script)), build_files)
