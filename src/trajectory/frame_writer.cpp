@@ -19,9 +19,14 @@ namespace {
 std::array<hsize_t, 5> chunk_of(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
                                 TrajectoryStorage const& storage) {
   auto chunk = frame_chunk(shape, number_bytes, storage.chunk);
-  if (storage.compression == 0)
-    chunk[0] = static_cast<hsize_t>(
-        frames_of_chunk(3 * number_bytes * chunk[1] * chunk[2] * chunk[3], storage.frames));
+  if (storage.compression > 0) return chunk;
+  std::int64_t chunks = storage.frames;
+  for (int axis = 0; axis < 3; ++axis) {
+    auto const of_chunk = static_cast<std::int64_t>(chunk[3 - axis]);
+    chunks *= (shape[axis] + of_chunk - 1) / of_chunk;
+  }
+  chunk[0] = static_cast<hsize_t>(
+      frames_of_chunk(3 * number_bytes * chunk[1] * chunk[2] * chunk[3], chunks));
   return chunk;
 }
 
@@ -81,7 +86,7 @@ FrameWriter::FrameWriter(hid_t file, TrajectoryHeader const& header,
 }
 
 std::uint64_t FrameWriter::frame_bytes() const {
-  return plane_bytes_ * static_cast<std::uint64_t>(shape_[2]);
+  return plane_bytes_ * static_cast<std::uint64_t>(shape_[2]) * chunk_[0];
 }
 
 void FrameWriter::begin(std::int64_t frame) {

@@ -21,6 +21,7 @@ class FrameWriter {
   FrameWriter(hid_t file, TrajectoryHeader const& header, TrajectoryStorage const& storage,
               std::filesystem::path path);
 
+  /// Of the file, that a frame may take: the first of a chunk takes all of that.
   std::uint64_t frame_bytes() const;
 
   /// Begins frame number `frame`, also again.

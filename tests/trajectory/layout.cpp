@@ -95,6 +95,19 @@ TEST_F(TrajectoryTest, ChunksOfFramesLeaveLittleOfPagesEmpty) {
   EXPECT_EQ(frames_of_chunk(12 * page, most_chunks), 1);
   EXPECT_EQ(frames_of_chunk(12 * page, most_chunks + 1), 2);
   EXPECT_EQ(frames_of_chunk(1 << 20, 10 * most_chunks), 10);
+  EXPECT_EQ(frames_of_chunk(most_chunk_bytes, 10 * most_chunks), 1);
+}
+
+// As many chunks of planes as there are planes in all frames.
+TEST_F(TrajectoryTest, ManyPlannedFramesShareChunks) {
+  auto header = small_header();
+  header.shape = {32, 16, 3};  // three pages a plane
+  auto const path = folder_ / "a.h5";
+  for (auto const& [frames, of_chunk] : {std::pair{100, 1U}, {most_chunks, 3U}}) {
+    TrajectoryFile file(path, header, true, {.chunk = 1, .frames = frames});
+    file.close({});
+    EXPECT_EQ(layout_of(path, "/spins").chunk, (Sizes{of_chunk, 1, 16, 32, 3})) << frames;
+  }
 }
 
 TEST_F(TrajectoryTest, SmallFramesTakeLittleMoreThanTheirNumbers) {
