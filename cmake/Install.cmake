@@ -49,7 +49,8 @@ set(flags "${CMAKE_CXX20_STANDARD_COMPILE_OPTION} ${folders}")
 string(APPEND flags " $<$<BOOL:${definitions}>:-D$<JOIN:${definitions}, -D>>")
 set(link_flags "")
 cayspin_link_flags(cayspin link_flags)
-cayspin_install_pkg_config(cayspin "${PROJECT_DESCRIPTION}" "${flags}" "${link_flags}")
-set(options $<TARGET_PROPERTY:cayspin_same_bits,INTERFACE_COMPILE_OPTIONS>)
-cayspin_install_pkg_config(cayspin_same_bits "${PROJECT_DESCRIPTION}, to the same bits"
-                           "${flags} $<JOIN:${options}, >" "${link_flags}")
+foreach(target cayspin cayspin_same_bits)
+  set(options $<TARGET_PROPERTY:${target},INTERFACE_COMPILE_OPTIONS>)
+  cayspin_install_pkg_config(${target} "${PROJECT_DESCRIPTION}" "${flags} $<JOIN:${options}, >"
+                             "${link_flags}")
+endforeach()

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import h5py
 import numpy as np
 
+from cayspin_plots import checksum
+
 
 @dataclass
 class Series:
@@ -54,6 +56,18 @@ def _series(file, group=""):
     return Series(*(column[:whole] for column in columns))
 
 
+def _require_undamaged(file, frames, spins):
+    """Compares frames with their checksums. Files of early versions have none."""
+    if "checksum" not in file:
+        return
+    stored, steps = _dataset(file, "checksum", 1), _dataset(file, "step", 1)
+    for i, frame in enumerate(spins):
+        numbers = (frames.time[i], frames.energy[i], frames.norm_defect[i],
+                   *frames.magnetization[i])
+        if checksum.of_frame(steps[i], numbers, frame) != int(stored[i]):
+            raise ValueError(f"frame {i} is damaged: its checksum differs")
+
+
 def read_trajectory(path):
     """Whole frames only; a run that was killed or is unfinished has its complete flag at 0."""
     if not os.path.isfile(path):
@@ -66,10 +80,12 @@ def read_trajectory(path):
             if count == 0:
                 raise SystemExit(f"{path}: it holds no frame")
             samples = _series(file, "scalars/")
+            spins = spins[:count]
+            _require_undamaged(file, frames, spins)
             return Trajectory(
                 path=str(path),
                 time=frames.time[:count],
-                spins=spins[:count],
+                spins=spins,
                 scalars=samples if len(samples.time) >= count else frames,
                 precision=file.attrs["precision"],
                 complete=bool(file.attrs["complete"]),

@@ -27,6 +27,13 @@ ask(compiler cayspin --variable=cxx)
 ask(flags cayspin --cflags --libs)
 run(${compiler} ${own} -O1 ${SOURCES}/main.cpp ${flags} -o ${WORK}/program)
 run(${WORK}/program)
+# Beside the flags of Kokkos: none, and the one for equal bits.
+ask(flags cayspin --cflags)
+ask(with_same_bits cayspin_same_bits --cflags)
+list(REMOVE_ITEM with_same_bits -ffp-contract=off)
+if("-ffp-contract=off" IN_LIST flags OR NOT flags STREQUAL with_same_bits)
+  message(FATAL_ERROR "cayspin.pc: ${flags}\ncayspin_same_bits.pc: ${with_same_bits}")
+endif()
 
 # A scene from C and from Fortran, where the C interface is built.
 if(NOT EXISTS ${folder}/cayspin_c.pc)

@@ -118,7 +118,10 @@ TEST_F(Extremes, RunsKeepTheirPromises) {
   for (auto const* situation : {"Steps: dt 1e-300", "Steps: dt 1e-12", "Fields: A along m"})
     each(situation,
          [](Json const& run, std::string const& fate) { EXPECT_EQ(fate, "exact") << run; });
+  // Of such angles round-off decides, and with them whether an implicit step is solved.
   each("Turns: 1e160", [](Json const& run, std::string const&) {
+    auto const message = run.at("message").get<std::string>();
+    if (message.find("is not solved") != std::string::npos) return;
     EXPECT_LE(run.at("step"), 1) << run;  // -1 where nothing overflows
   });
   for (auto const* situation : {"A = 0", "A along m", "denormal", "dt 1e-300"})

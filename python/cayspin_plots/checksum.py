@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""The checksums of frames in a trajectory file, as docs/reference/file_format.md has them."""
+
+import numpy as np
+
+MASK = (1 << 64) - 1
+
+
+def fletcher32(data):
+    """Of an even number of bytes."""
+    words = np.frombuffer(data, ">u2").astype(np.uint64)
+    total = total_of_totals = 0
+    for block in np.array_split(words, len(words) // (1 << 20) + 1):
+        weights = np.arange(len(block), 0, -1, dtype=np.uint64)
+        total_of_totals = _folded(total_of_totals + len(block) * total + int(weights @ block))
+        total = _folded(total + int(block.sum()))
+    return total_of_totals << 16 | total
+
+
+def _folded(total):
+    """Modulo 65535, but what is not 0 does not become 0."""
+    return (total - 1) % 65535 + 1 if total else 0
+
+
+def _mixed(total, checksum):
+    total = ((total ^ checksum) * 0x9E3779B97F4A7C15) & MASK
+    return total ^ total >> 32
+
+
+def of_frame(step, numbers, spins):
+    """The 64 bits that stand for a frame. `numbers`: time, energy, norm_defect, magnetization."""
+    row = np.array([step], "<i8").tobytes() + np.array(numbers, "<f8").tobytes()
+    of_row = _mixed(0, fletcher32(row))
+    of_spins = _mixed(of_row, fletcher32(spins.tobytes()))
+    halves = [max(1, total & 0xFFFFFFFF) for total in (of_row, of_spins)]
+    return halves[0] << 32 | halves[1]
