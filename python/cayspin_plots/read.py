@@ -42,7 +42,7 @@ class Trajectory:
 def _dataset(file, name, rank, columns=()):
     """A dataset of numbers with `rank` extents, the last of them `columns` where it is given."""
     dataset = file[name]
-    if (not isinstance(dataset, h5py.Dataset) or dataset.dtype.kind not in "fi"
+    if (not isinstance(dataset, h5py.Dataset) or dataset.dtype.kind not in "fiu"
             or len(dataset.shape or ()) != rank or dataset.shape[rank - len(columns):] != columns):
         raise ValueError(f"{name} is not the dataset of a trajectory")
     return dataset
