@@ -175,7 +175,7 @@ TEST_F(Kills, SigtermLosesNoFrameThatWasSeen) {
 TEST_F(Kills, FullDiskLosesNoFrameThatWasSeen) {
   for (long run = 0; run < kills_; ++run) {
     auto const name = fresh_name();
-    auto const limit = static_cast<long>(700'000 + chance_.below(2'000'000));
+    auto const limit = static_cast<long>(1'200'000 + chance_.below(2'000'000));
     auto const outcome = start(run_to(name), {.file_limit = limit});
     EXPECT_EQ(outcome.status, 2);
     EXPECT_TRUE(is_one_line(outcome.errors));
