@@ -84,7 +84,7 @@ void expect_same_on_host_spaces(Choose const& choose,
     auto const generator = choose(every_term(lattice));
     using Generator = std::remove_const_t<decltype(generator)>;
     auto const start = random_spins<Field>(lattice, 11);
-    Outcome<Kokkos::Serial, Stepper, Generator> const one(generator, start);
+    Outcome<Host, Stepper, Generator> const one(generator, start);
     Outcome<Threaded, Stepper, Generator> const many(generator, start);
     auto const where = name_of(lattice);
     ASSERT_NE(one.numbers, copy_to_host(start)) << "nothing moved: " << where;

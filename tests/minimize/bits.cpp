@@ -20,7 +20,7 @@ TYPED_TEST(MinimizerBits, AreTheSame) {
       auto const field = every_term(lattice).field();
       auto const start = random_directions(lattice.sites(), 8);
       auto one = spins_of<Field>(lattice, start), many = spins_of<Field>(lattice, start);
-      auto const a = minimize(Kokkos::Serial(), field, one, {.torque = 1e-3});
+      auto const a = minimize(Host(), field, one, {.torque = 1e-3});
       auto const c = minimize(Threaded(), field, many, {.torque = 1e-3});
       auto const where = name_of(lattice);
       expect_equal_bits(copy_to_host(one), copy_to_host(many), where);

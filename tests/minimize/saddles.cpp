@@ -166,7 +166,7 @@ TYPED_TEST(Saddles, NearInstabilities) {
   int ended[4] = {};
   for (int scene = 0; scene < 200; ++scene) {
     bool const is_film = below(2) == 0;
-    auto const nx = 2 * (1 + below(is_film ? 3 : 8)), ny = is_film ? 2 * (1 + below(3)) : 1;
+    std::int64_t const nx = 2 * (1 + below(is_film ? 3 : 8)), ny = is_film ? 2 * (1 + below(3)) : 1;
     auto const boundary = below(2) == 0 ? Boundary::periodic : Boundary::open;
     Lattice const lattice{{nx, ny, 1}, {1, 1, 1}, {boundary, boundary, Boundary::open}};
     double const stiff = uniform(0.2, 3), all = (is_film ? 8 : 4) * stiff;
