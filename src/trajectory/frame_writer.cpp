@@ -14,8 +14,8 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Without HDF5's filters a chunk is written again with each of its frames, and the frames before
-// keep their bytes.
+// Without HDF5's filters a frame is written alone into its chunk, whose other frames keep their
+// bytes.
 std::array<hsize_t, 5> chunk_of(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
                                 TrajectoryStorage const& storage) {
   auto chunk = frame_chunk(shape, number_bytes, storage.chunk);

@@ -72,8 +72,8 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path) 
   return series;
 }
 
-// Without the filter fletcher32: a chunk is written again and again, and a kill in between would
-// then lose all 512 of its samples.
+// Without the filter fletcher32: its sum would stand for a chunk of 512 samples that is written in
+// pieces.
 void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
                           std::uint32_t spins) {
   if (samples.empty()) return;
