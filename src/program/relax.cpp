@@ -32,8 +32,8 @@ class Relaxation {
       : scene_(scene), options_(options), spins_("spins", lattice), minimizer_(spins_) {
     copy_from_host(io::initial_spins(scene), spins_);
     int const threads = cayspin::detail::is_host_execution<Space> ? exec_.concurrency() : 1;
-    auto header =
-        run_header(scene, options.precision, space_name<Space>(), threads, CAYSPIN_GIT_COMMIT);
+    auto header = run_header(scene, options.precision, chosen_space(options.space), threads,
+                             CAYSPIN_GIT_COMMIT);
     header.relaxes = true;
     // That of another run would be taken for one of this file.
     auto const path = output_file(scene, options.output);

@@ -113,8 +113,8 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         require_free_output(path, options.overwrite);
         auto const& exec = simulation.exec;
         int const threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
-        auto header =
-            run_header(typed, options.precision, space_name<Space>(), threads, CAYSPIN_GIT_COMMIT);
+        auto header = run_header(typed, options.precision, chosen_space(options.space), threads,
+                                 CAYSPIN_GIT_COMMIT);
         if (typed.integrator.method->automatic) header.resolved_scene = scene.text;
         auto files = run_output_options(scene, options.overwrite);
         files.most_planes = ranks.planes_at_once(plan.lattice);

@@ -18,7 +18,6 @@ Kokkos::InitializationSettings settings(std::string const& space, std::optional<
                                         std::optional<int> device) {
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
-  // Threads that never get work would only cost.
   if (space == "serial") threads = 1;
   if (threads) settings.set_num_threads(*threads);
   if (!device) return settings;
@@ -53,11 +52,16 @@ std::string chosen_space(std::optional<std::string> const& asked) {
   bool known = false;
   EnabledSpaces::for_each([&]<class Space>() {
     auto const name = space_name<Space>();
-    known = known || name == *asked;
+    known = known || has_name<Space>(*asked);
     names += (names.empty() ? "" : ", ") + name;
+    if (name != "serial" && has_name<Space>("serial")) names += ", serial";
   });
   if (!known)
     throw UsageError(fmt::format("--space {}: not compiled in; accepted: {}", *asked, names));
+  if (int const threads = expected_threads();
+      *asked == "serial" && Kokkos::is_initialized() && threads > 1)
+    throw UsageError(
+        fmt::format("--space serial: Kokkos runs with {} threads; accepted: one thread", threads));
   return *asked;
 }
 

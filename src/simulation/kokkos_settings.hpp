@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
+
 #include <Kokkos_Core.hpp>
 
 #include <algorithm>
@@ -18,7 +20,15 @@ std::string space_name() {
   return name;
 }
 
-/// The word asked for, or Kokkos' default. Throws UsageError when it is not compiled in.
+/// Is this a word for the space? "serial" is the host's space with one thread.
+template <class Space>
+bool has_name(std::string const& word) {
+  return word == space_name<Space>() ||
+         (word == "serial" && cayspin::detail::is_host_execution<Space>);
+}
+
+/// The word asked for, or Kokkos' default. Throws UsageError when it is not compiled in, and for
+/// "serial" where Kokkos already runs with more threads.
 std::string chosen_space(std::optional<std::string> const& asked);
 
 /// Threads of the default space on hosts: how many there are, or will be by default.

@@ -88,7 +88,7 @@ template <class Work>
 auto in_space(std::string const& space, Precision precision, Work const& work) {
   std::optional<decltype(work.template operator()<double, Kokkos::DefaultExecutionSpace>())> result;
   EnabledSpaces::for_each([&]<class Space>() {
-    if (space_name<Space>() != space) return;
+    if (!has_name<Space>(space)) return;
     if (precision == Precision::double_precision)
       result.emplace(work.template operator()<double, Space>());
     else

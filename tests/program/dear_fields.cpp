@@ -50,7 +50,8 @@ TEST_F(DearFields, RunAndGoOnWithTheSameBits) {
     };
     EXPECT_EQ(run("whole.h5", with({})).errors, "");
     EXPECT_EQ(run("first.h5", with(steps_of_12)).errors, "");
-    EXPECT_EQ(run("second.h5", with({"--restart", "first.h5"})).errors, "");
+    EXPECT_EQ(run("second.h5", with({"--restart", "first.h5", "--space", another_space})).errors,
+              "");
     EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
     auto const whole = io::read_info(in_folder("whole.h5"));
     EXPECT_EQ(whole.cost.evaluations, 3 * 4 * (1 + 2 * 19));

@@ -16,11 +16,9 @@ namespace cayspin::program::test {
 
 using Arguments = std::vector<std::string>;
 
-/// The program's default space, and one with the same bits: another where it is compiled in.
+/// The program's default space, and another word for one with the same bits.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline std::string const default_space = "host_device", another_space = "host_device";
-#elif defined(CAYSPIN_WITHOUT_SERIAL)
-inline std::string const default_space = "openmp", another_space = "openmp";
 #else
 inline std::string const default_space = "openmp", another_space = "serial";
 #endif

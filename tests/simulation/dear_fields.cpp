@@ -142,13 +142,6 @@ TEST(DearFields, GoOnWithTheSameBits) {
   fs::remove(file);
 }
 
-#if !defined(CAYSPIN_WITHOUT_SERIAL)
-TEST(DearFields, HaveTheSameBitsOnEachSpace) {
-  auto const scene = film("method='cf4'\nsubsteps=3\ndt=0.05\nsteps=20");
-  EXPECT_EQ(end_of(scene, 20, {.space = "serial"}), end_of(scene, 20, {.space = "openmp"}));
-}
-#endif
-
 TEST(DearFields, AreRefusedInOneLine) {
   struct Wrong {
     std::string integrator;

@@ -15,15 +15,6 @@
 
 namespace cayspin::simulation::test {
 
-/// Two spaces whose bits are the same.
-#if defined(CAYSPIN_HOST_DEVICE)
-inline std::string const spaces[] = {"host_device", "host_device"};
-#elif defined(CAYSPIN_WITHOUT_SERIAL)
-inline std::string const spaces[] = {"openmp", "openmp"};
-#else
-inline std::string const spaces[] = {"serial", "openmp"};
-#endif
-
 /// A small scene for a method, drawn by seed and number.
 class RandomRun {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A run that was stored and goes on, on another space, is the run without a break: the same bits
-// and counts, by every method.
+// A run that was stored and goes on is the run without a break: the same bits and counts, by every
+// method.
 #include "random_run.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/scene_run.hpp"
@@ -45,8 +45,7 @@ class Restarting : public testing::Test {
   ~Restarting() override { fs::remove_all(folder_); }
 
   /// Runs a scene without and with a break after `cut` steps. False when it has no meaning.
-  bool holds(std::string const& text, Precision precision, std::int64_t cut,
-             std::vector<std::string> const& in) {
+  bool holds(std::string const& text, Precision precision, std::int64_t cut) {
     std::optional<io::Scene> scene;
     try {
       scene = io::parse_scene(text, "scene.toml");
@@ -55,18 +54,17 @@ class Restarting : public testing::Test {
     }
     SCOPED_TRACE(fmt::format("{}{} precision, cut after {} steps, seed {}", text,
                              to_string(precision), cut, seed()));
-    auto const whole = SceneRun::open(*scene, {.precision = precision, .space = in[0]});
+    auto const whole = SceneRun::open(*scene, {.precision = precision});
     try {
       whole->advance(cut);
       whole->advance(RandomRun::steps - cut);
     } catch (NumbersFailed const&) {
       return false;
     }
-    auto const first = SceneRun::open(*scene, {.precision = precision, .space = in[0]});
+    auto const first = SceneRun::open(*scene, {.precision = precision});
     first->advance(cut);
     first->save(file_);
-    auto const second =
-        SceneRun::open(*scene, {.precision = precision, .space = in[1], .restart = file_});
+    auto const second = SceneRun::open(*scene, {.precision = precision, .restart = file_});
     EXPECT_EQ(second->steps(), cut);
     EXPECT_EQ(state_of(*second).spins, state_of(*first).spins);
     second->advance(RandomRun::steps - cut);
@@ -91,9 +89,7 @@ TEST_F(Restarting, GivesTheBitsOfARunWithoutABreakByEveryMethod) {
       auto const text = random.scene(variant);
       auto const precision =
           random.one_in(2) ? Precision::single_precision : Precision::double_precision;
-      std::vector<std::string> in(std::begin(spaces), std::end(spaces));
-      if (random.one_in(2)) std::swap(in[0], in[1]);
-      done += holds(text, precision, 1 + random.below(RandomRun::steps - 1), in);
+      done += holds(text, precision, 1 + random.below(RandomRun::steps - 1));
     }
     EXPECT_EQ(done, scenes_each) << variant.method->word;
     scenes += done;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Runs at a temperature have the same bits on any space, in pieces, however they are looked at, and
-// after a restart, by every one-step method.
+// Runs at a temperature have the same bits in pieces, however they are looked at, and after a
+// restart, by every one-step method.
 #include "random_run.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/scene_run.hpp"
@@ -36,14 +36,12 @@ class ThermalRuns : public testing::Test {
     std::optional<io::Scene> scene;
     std::unique_ptr<SceneRun> whole;
     auto const steps = RandomRun::steps, cut = 1 + random.below(steps - 1);
-    auto const first_space = random.below(2);
-    auto const open = [&](std::int64_t space, std::optional<fs::path> const& restart = {}) {
-      return SceneRun::open(*scene,
-                            {.precision = precision, .space = spaces[space], .restart = restart});
+    auto const open = [&](std::optional<fs::path> const& restart = {}) {
+      return SceneRun::open(*scene, {.precision = precision, .restart = restart});
     };
     try {
       scene = io::parse_scene(text, "scene.toml");
-      whole = open(first_space);
+      whole = open();
       whole->advance(steps, {.period = steps});
     } catch (io::SceneError const&) {
       return false;
@@ -54,16 +52,16 @@ class ThermalRuns : public testing::Test {
                  std::to_string(cut));
     auto const expected = spins_of(*whole);
 
-    auto const cut_run = open(1 - first_space);
+    auto const cut_run = open();
     cut_run->advance(cut, {.period = 1 + random.below(7)});
     cut_run->save(file_);
-    auto const restarted = open(first_space, file_);
+    auto const restarted = open(file_);
     EXPECT_EQ(restarted->steps(), cut);
     for (auto const* const run : {&cut_run, &restarted}) {
       (*run)->advance(steps - cut, {.period = 1 + random.below(7)});
       EXPECT_EQ(spins_of(**run), expected);
     }
-    auto const one_by_one = open(first_space);
+    auto const one_by_one = open();
     for (std::int64_t step = 0; step < steps; ++step) one_by_one->advance(1);
     EXPECT_EQ(spins_of(*one_by_one), expected);
     EXPECT_LT(one_by_one->sample().norm_defect,
