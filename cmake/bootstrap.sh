@@ -5,11 +5,13 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh deps|build|compile|test|python|demo|bench|gpu [--preset NAME]
+Usage: bash cmake/bootstrap.sh VERB [--preset NAME]
   deps     install everything that any of the others needs, and print the option for CMake
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
   test     build everything but the benchmarks and run the tests
+  test-all the same, with the tests that compile the library once more: each header alone, with
+           sanitizers, for nvcc, by clang, on a device that host threads play
   python   build the Python package and install it into build/venv
   demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
@@ -44,7 +46,7 @@ logged() {
 # as they are in an old one.
 choose_parts() {
   local part
-  for part in APP PROGRAM PYTHON TESTS EXAMPLES BENCH MPI; do
+  for part in APP PROGRAM PYTHON TESTS ALL_TESTS EXAMPLES BENCH MPI; do
     case " ${parts[*]} " in
       *" $part "*) options+=("-DCAYSPIN_BUILD_$part=ON") ;;
       *) [ -f "$build_dir/CMakeCache.txt" ] || options+=("-DCAYSPIN_BUILD_$part=OFF") ;;
@@ -155,6 +157,7 @@ case $verb in
   kokkos-source) provide_kokkos_source; exit 0 ;; # for CMake, under pip
   build) packages=("${core[@]}" "${io[@]}" "${program[@]}") parts=(APP PROGRAM) ;;
   test) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES MPI) ;;
+  test-all) packages=("${everything[@]}") parts=(APP PROGRAM TESTS ALL_TESTS EXAMPLES MPI) ;;
   compile) packages=("${everything[@]}") parts=(APP PROGRAM TESTS EXAMPLES BENCH MPI) ;;
   bench) packages=("${core[@]}" "${bench[@]}") parts=(BENCH) ;;
   gpu)
@@ -173,7 +176,9 @@ fi
 install_packages install "${packages[@]}"
 [ "$verb" = build ] || start_installing_drawing
 provide_kokkos
-case "$verb $preset" in "test release" | "test host-device") provide_nanobind ;; esac
+case "$verb $preset" in
+  "test release" | "test-all release" | "test host-device") provide_nanobind ;;
+esac
 case $verb in
   deps)
     provide_style_tools
@@ -188,9 +193,9 @@ case $verb in
     build all
     say "compiled for the preset $preset: $build_dir"
     ;;
-  test)
+  test | test-all)
     provide_style_tools
-    provide_nvdisasm
+    [ "$verb" = test ] || provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
     build all
