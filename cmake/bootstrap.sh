@@ -5,7 +5,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh VERB [--preset NAME]
+Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|demo|bench|gpu [--preset NAME]
   deps     install everything that any of the others needs, and print the option for CMake
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere

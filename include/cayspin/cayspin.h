@@ -62,8 +62,9 @@ char const* cayspin_last_error(void);
 /* Such as "0.1.0". */
 char const* cayspin_version(void);
 
-/* Opens a scene file; one without [integrator] is for cayspin_relax alone. `space`: serial, openmp,
-   threads, cuda, ..., or NULL for Kokkos' default. Starts Kokkos unless the program has. */
+/* Opens a scene file; one without [integrator] is for cayspin_relax alone. `space`: openmp, threads,
+   cuda, ..., "serial" for the host's with one thread, or NULL for Kokkos' default. Starts Kokkos
+   unless the program has. */
 cayspin_status cayspin_open_file(char const* path, cayspin_precision precision, char const* space,
                                  cayspin_simulation** simulation);
 
