@@ -26,12 +26,17 @@ struct BothPrecisions {
   using type = ::testing::Types<Backend<float, Spaces>..., Backend<double, Spaces>...>;
 };
 
-/// Both precisions on every space that is compiled in; on the device that host threads play, where
-/// that is the default, and not on hosts again.
+/// Both precisions on the default space of the host and on that of a device; with
+/// CAYSPIN_BUILD_ALL_TESTS on every space that is compiled in. Where host threads play a device, on
+/// that alone.
 #if defined(CAYSPIN_HOST_DEVICE)
 using Backends = typename BothPrecisions<void, HostDevice>::type;
 #else
 using Backends = typename BothPrecisions<void
+#if !defined(CAYSPIN_TEST_ALL_SPACES)
+                                         ,
+                                         Kokkos::DefaultHostExecutionSpace
+#else
 #if defined(KOKKOS_ENABLE_SERIAL)
                                          ,
                                          Kokkos::Serial
@@ -43,6 +48,7 @@ using Backends = typename BothPrecisions<void
 #if defined(KOKKOS_ENABLE_THREADS)
                                          ,
                                          Kokkos::Threads
+#endif
 #endif
 #if defined(KOKKOS_ENABLE_CUDA)
                                          ,
