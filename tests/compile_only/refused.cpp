@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// One mistake for each CAYSPIN_TEST_MISTAKE; the compiler must answer with the library's sentence.
+// One mistake for each CAYSPIN_TEST_MISTAKE, or all for -1; the compiler must answer with the
+// library's sentences.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/dear.hpp>
 #include <cayspin/stepper/multirate.hpp>
+
+#define MISTAKE(number) (CAYSPIN_TEST_MISTAKE == (number) || CAYSPIN_TEST_MISTAKE == -1)
 
 using namespace cayspin;
 
@@ -72,84 +75,129 @@ inline void refused() {
   [[maybe_unused]] TimeDependentZeeman const rotating([](double t) {
     return Vec3<double>{t, 0, 1};
   });
-#if CAYSPIN_TEST_MISTAKE == 0  // none
+#if MISTAKE(0)  // none
   with(Term());
-#elif CAYSPIN_TEST_MISTAKE == 1
+#endif
+#if MISTAKE(1)
   with(NoField());
-#elif CAYSPIN_TEST_MISTAKE == 2
+#endif
+#if MISTAKE(2)
   with(NoEnergy());
-#elif CAYSPIN_TEST_MISTAKE == 3
+#endif
+#if MISTAKE(3)
   with(FieldIsANumber());
-#elif CAYSPIN_TEST_MISTAKE == 4
+#endif
+#if MISTAKE(4)
   stepper.step(exec, NotAGenerator(), spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 5
+#endif
+#if MISTAKE(5)
   integrate(exec, stepper, body, spins, times, [](Step const&) {});
-#elif CAYSPIN_TEST_MISTAKE == 6
+#endif
+#if MISTAKE(6)
   integrate(exec, stepper, body, spins, times,
             [](auto const&, Step const& step, auto const&) { return step.number > 3; });
-#elif CAYSPIN_TEST_MISTAKE == 7
+#endif
+#if MISTAKE(7)
   norm_defect(Kokkos::HostSpace(), spins);
-#elif CAYSPIN_TEST_MISTAKE == 8
-  SpinField<float, Kokkos::HostSpace> other("other", Lattice::chain(3));
-  integrate(exec, stepper, body, other, times);
-#elif CAYSPIN_TEST_MISTAKE == 9
-  HostField<Spins, NoDegree> const field(Lattice::chain(3), NoDegree());
-#elif CAYSPIN_TEST_MISTAKE == 10
-  HostField<Spins, Term> const field(Lattice::chain(3), Term());
-#elif CAYSPIN_TEST_MISTAKE == 11
-  TimeDependentZeeman const field([](double t) { return t; });
-#elif CAYSPIN_TEST_MISTAKE == 12
-  SpinField<long double, Kokkos::HostSpace> const wide("wide", Lattice::chain(3));
-#elif CAYSPIN_TEST_MISTAKE == 13
+#endif
+#if MISTAKE(8)
+  {
+    SpinField<float, Kokkos::HostSpace> other("other", Lattice::chain(3));
+    integrate(exec, stepper, body, other, times);
+  }
+#endif
+#if MISTAKE(9)
+  { HostField<Spins, NoDegree> const field(Lattice::chain(3), NoDegree()); }
+#endif
+#if MISTAKE(10)
+  { HostField<Spins, Term> const field(Lattice::chain(3), Term()); }
+#endif
+#if MISTAKE(11)
+  {
+    TimeDependentZeeman const field([](double t) { return t; });
+  }
+#endif
+#if MISTAKE(12)
+  { SpinField<long double, Kokkos::HostSpace> const wide("wide", Lattice::chain(3)); }
+#endif
+#if MISTAKE(13)
   copy(exec, Kokkos::View<double*, Kokkos::HostSpace>("flat", 9), spins);
-#elif CAYSPIN_TEST_MISTAKE == 14
+#endif
+#if MISTAKE(14)
   with(SiteDependentExchange(ScalarField<float, Kokkos::HostSpace>("float", Lattice::chain(3))));
-#elif CAYSPIN_TEST_MISTAKE == 15
-  ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
-  LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
-  FieldWithVacancies const field(EffectiveField{layers}, occupation);
-#elif CAYSPIN_TEST_MISTAKE == 16
+#endif
+#if MISTAKE(15)
+  {
+    ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
+    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
+    FieldWithVacancies const field(EffectiveField{layers}, occupation);
+  }
+#endif
+#if MISTAKE(16)
   LieHeun(spins, isotropy::Analytic()).step(exec, body, spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 17
+#endif
+#if MISTAKE(17)
   LieHeun(spins, isotropy::Energy()).step(exec, spin_chain, spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 18
+#endif
+#if MISTAKE(18)
   Series4(spins).step(exec, LandauLifshitz(EffectiveField(rotating), 0.1), spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 19
+#endif
+#if MISTAKE(19)
   LieEuler(spins, isotropy::Analytic())
       .step(exec, LandauLifshitz(EffectiveField(Term()), 0.1), spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 20
+#endif
+#if MISTAKE(20)
   FieldExtrapolation3(spins).step(exec, WholeGenerator(), spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 21
+#endif
+#if MISTAKE(21)
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 22
-  EnergyControl const control{LandauLifshitz{EffectiveField{rotating}, 0}, spins};
-#elif CAYSPIN_TEST_MISTAKE == 23
-  SpinField<float, Kokkos::HostSpace> const other("other", Lattice::chain(3));
-  with(HostField(other, SlabDemagOnHost({1, 0, 0})));
-#elif CAYSPIN_TEST_MISTAKE == 24
+#endif
+#if MISTAKE(22)
+  { EnergyControl const control{LandauLifshitz{EffectiveField{rotating}, 0}, spins}; }
+#endif
+#if MISTAKE(23)
+  {
+    SpinField<float, Kokkos::HostSpace> const other("other", Lattice::chain(3));
+    with(HostField(other, SlabDemagOnHost({1, 0, 0})));
+  }
+#endif
+#if MISTAKE(24)
   AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
   integrate(exec, adaptive, body, spins, times, Every(10, Normalize{}));
-#elif CAYSPIN_TEST_MISTAKE == 25
+#endif
+#if MISTAKE(25)
   AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
   integrate(exec, adaptive, body, spins, times, EnergyControl(body, spins));
-#elif CAYSPIN_TEST_MISTAKE == 26
-  WithoutEvaluations uncounted;
-  integrate(exec, uncounted, body, spins, times);
-#elif CAYSPIN_TEST_MISTAKE == 27
+#endif
+#if MISTAKE(26)
+  {
+    WithoutEvaluations uncounted;
+    integrate(exec, uncounted, body, spins, times);
+  }
+#endif
+#if MISTAKE(27)
   energy(exec, orthogonal(WholeGenerator()), spins);
-#elif CAYSPIN_TEST_MISTAKE == 28
-  EnergyControl const control{orthogonal(WholeGenerator()), spins};
-#elif CAYSPIN_TEST_MISTAKE == 29
+#endif
+#if MISTAKE(28)
+  { EnergyControl const control{orthogonal(WholeGenerator()), spins}; }
+#endif
+#if MISTAKE(29)
   evaluate_field(exec, body, spins, 0, Spins("output", Lattice::chain(3)));
-#elif CAYSPIN_TEST_MISTAKE == 30
+#endif
+#if MISTAKE(30)
   largest_rate(exec, Zeeman{{0, 0, 1}}, spins);
-#elif CAYSPIN_TEST_MISTAKE == 31
+#endif
+#if MISTAKE(31)
   RungeKutta<Spins, tableau::Heun, update::Stereographic, isotropy::Analytic>("chart", spins)
       .step(exec, body, spins, 0, 0.1);
-#elif CAYSPIN_TEST_MISTAKE == 32
-  Dear const dear(spins, SlabDemag({1, 0, 0}));
-  Multirate multirate(spins, LieAdamsBashforth2<Spins>(spins), dear);
-#elif CAYSPIN_TEST_MISTAKE == 33
+#endif
+#if MISTAKE(32)
+  {
+    Dear const dear(spins, SlabDemag({1, 0, 0}));
+    Multirate multirate(spins, LieAdamsBashforth2<Spins>(spins), dear);
+  }
+#endif
+#if MISTAKE(33)
   with(Dear(spins, Term()));
 #endif
 }
