@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """cayspin for Spack 1.0 and newer. In a clone, with this file in a repository of yours as
-packages/cayspin/package.py:  spack dev-build --source-path CLONE cayspin@main"""
+packages/cayspin/package.py:  spack dev-build --source-path CLONE cayspin@main
+Does the installed package work?  spack test run cayspin"""
+
+import os
+import pathlib
 
 from spack_repo.builtin.build_systems.cmake import CMakePackage
+
 from spack.package import *
 
 
@@ -11,7 +16,10 @@ class Cayspin(CMakePackage):
 
     license("Apache-2.0 WITH LLVM-exception")
 
-    # No public address yet: dev-build takes the clone.
+    # No public address yet: dev-build takes the clone, install an archive in the current folder.
+    url = f"file://{os.getcwd()}/cayspin-0.1.0.tar.gz"
+    manual_download = True
+
     version("main")
     version("0.1.0")
 
@@ -23,12 +31,12 @@ class Cayspin(CMakePackage):
     depends_on("cxx", type="build")
     depends_on("fortran", type="build", when="+program+examples")
     depends_on("cmake@3.25:", type="build")
-    # Backends and architecture are those of Kokkos: cayspin ^kokkos+openmp, ^kokkos+cuda cuda_arch=90
+    # Backends and architecture are those of Kokkos: cayspin ^kokkos+cuda cuda_arch=90
     depends_on("kokkos@4.5:5")
     depends_on("kokkos+pic", when="+shared")
     depends_on("fftw-api@3", when="+examples")
     with when("+program"):
-        depends_on("hdf5~mpi")
+        depends_on("hdf5@1.10:~mpi")
         depends_on("fmt@9:")
         depends_on("muparser")
         depends_on("tomlplusplus")
@@ -48,9 +56,46 @@ class Cayspin(CMakePackage):
             self.define("CAYSPIN_BUILD_BENCH", False),
             self.define("CAYSPIN_INSTALL", True),
         ]
+        return arguments + self.compiler_of_kokkos()
+
+    def compiler_of_kokkos(self):
         if self.spec.satisfies("^kokkos+wrapper"):
-            wrapper = self["kokkos-nvcc-wrapper"].kokkos_cxx
-            arguments.append(self.define("CMAKE_CXX_COMPILER", wrapper))
+            compiler = self["kokkos-nvcc-wrapper"].kokkos_cxx
         elif self.spec.satisfies("^kokkos+rocm"):
-            arguments.append(self.define("CMAKE_CXX_COMPILER", self.spec["hip"].hipcc))
-        return arguments
+            compiler = self.spec["hip"].hipcc
+        else:
+            return []
+        return [self.define("CMAKE_CXX_COMPILER", compiler)]
+
+    # Users read the compiler from these files, and Spack's own works in its builds alone.
+    filter_compiler_wrappers("*.pc", relative_root=os.path.join("lib", "pkgconfig"))
+
+    test_requires_compiler = True
+
+    @run_after("install")
+    def keep_sources_of_tests(self):
+        cache_extra_test_sources(self, ["examples", "scenes"])
+
+    def test_examples(self):
+        """The examples compile against the installed package and pass their ctest"""
+        sources = pathlib.Path(self.test_suite.current_test_cache_dir.examples)
+        arguments = [
+            self.define("CMAKE_BUILD_TYPE", "Release"),
+            self.define("CMAKE_CXX_COMPILER", self["cxx"].cxx),
+            self.define("cayspin_ROOT", self.prefix),
+        ]
+        targets = [f"example_{source.stem}" for source in sources.glob("*.cpp")]
+        cmake = Executable(self.spec["cmake"].prefix.bin.cmake)
+        ctest = Executable(self.spec["cmake"].prefix.bin.ctest)
+        cmake("-S", str(sources), "-B", "examples", *arguments, *self.compiler_of_kokkos())
+        cmake("--build", "examples", "--target", *targets)
+        ctest("--test-dir", "examples", "--output-on-failure", "-R", "^example_[0-9]")
+
+    def test_program(self):
+        """The installed program runs a scene and describes its file"""
+        if self.spec.satisfies("~program"):
+            raise SkipTest("the package was installed without its program")
+        scenes = pathlib.Path(self.test_suite.current_test_cache_dir.scenes)
+        cayspin = Executable(self.prefix.bin.cayspin)
+        cayspin("run", str(scenes / "macrospin.toml"))
+        check_outputs("rkmk4", cayspin("info", "macrospin.h5", output=str))

@@ -2,7 +2,7 @@
 """Compares packaging/spack and packaging/conda with the CMake files: check_recipes.py ROOT.
 
 The recipe for Spack is loaded with stubs of Spack's directives, that of conda is rendered with
-jinja2. Neither is built: only names, versions and options are compared.
+jinja2. Neither is built: names, versions, options and the files of their tests are compared.
 """
 
 import contextlib
@@ -47,7 +47,7 @@ class SpackRecipe:
     """What the directives of a package.py declare."""
 
     def __init__(self, text):
-        self.versions, self.variants, self.dependencies = [], {}, {}
+        self.versions, self.variants, self.dependencies, self.files_of_tests = [], {}, {}, []
         conditions = []
 
         def variant(name, default, description, when=None):
@@ -65,7 +65,11 @@ class SpackRecipe:
 
         directives = {"license": lambda name: None, "version": self.versions.append,
                       "variant": variant, "depends_on": depends_on, "when": when,
-                      "conflicts": lambda spec, msg: None}
+                      "conflicts": lambda spec, msg: None,
+                      "filter_compiler_wrappers": lambda files, relative_root: None,
+                      "run_after": lambda phase: lambda method: method,
+                      "cache_extra_test_sources":
+                          lambda package, names: self.files_of_tests.extend(names)}
         spack, build_system = types.ModuleType("spack.package"), types.ModuleType("cmake")
         vars(spack).update(directives)
         build_system.CMakePackage = type("CMakePackage", (), {})
@@ -78,6 +82,8 @@ class SpackRecipe:
         namespace = {}
         exec(compile(text, "package.py", "exec"), namespace)
         self.package = namespace["Cayspin"]
+        self.package().keep_sources_of_tests()
+        self.files_of_tests += [f"scenes/{name}" for name in re.findall(r"[\w-]+\.toml", text)]
 
     def cmake_options(self, spec_of_kokkos):
         """Names of the options that cmake_args defines; `spec_of_kokkos` such as +wrapper."""
@@ -117,7 +123,14 @@ class CondaRecipe:
             compiler=lambda language: f"{language}_compiler", stdlib=lambda of: f"{of}_stdlib")
         self.fields = yaml.safe_load(rendered)
         self.script = " ".join(self.fields["build"]["script"])
+        self.files_of_tests = [*self.fields["test"]["source_files"],
+                               *re.findall(r"scenes/[\w-]+\.toml", text)]
         self.host = {line.split()[0]: line for line in self.fields["requirements"]["host"]}
+
+
+def missing_files(names, root):
+    return [f"its tests need {name}, which does not exist" for name in names
+            if not (root / name).exists()]
 
 
 def wrong_options(names, build_files):
@@ -125,9 +138,9 @@ def wrong_options(names, build_files):
             for name in sorted(names - build_files.options - OF_CMAKE_ITSELF)]
 
 
-def problems_of_spack(text, build_files):
+def problems_of_spack(text, root, build_files):
     recipe = SpackRecipe(text)
-    problems = []
+    problems = missing_files(recipe.files_of_tests, root)
     if build_files.version not in recipe.versions:
         problems.append(f"no version {build_files.version}")
     for name, (spack, _) in PACKAGES.items():
@@ -147,9 +160,11 @@ def problems_of_spack(text, build_files):
     return problems
 
 
-def problems_of_conda(text, build_files):
+def problems_of_conda(text, variants, root, build_files):
     recipe = CondaRecipe(text)
-    problems = []
+    problems = missing_files(recipe.files_of_tests, root)
+    if "stdlib(" in text and "c_stdlib" not in (yaml.safe_load(variants) or {}):
+        problems.append("conda_build_config.yaml does not say what stdlib is")
     if str(recipe.fields["package"]["version"]) != build_files.version:
         problems.append(f"the version is not {build_files.version}")
     for section in ("source", "build", "requirements", "test", "about"):
@@ -166,17 +181,17 @@ def problems_of_conda(text, build_files):
     return problems + wrong_options(set(re.findall(r"-D(\w+)=", recipe.script)), build_files)
 
 
-def problems_of(root, spack, conda):
+def problems_of(root, spack, conda, variants):
     build_files = BuildFiles(root)
     unknown = build_files.packages - PACKAGES.keys()
     return ([f"CMake requires {name}: tell check_recipes.py its names" for name in unknown] +
-            [f"spack: {line}" for line in problems_of_spack(spack, build_files)] +
-            [f"conda: {line}" for line in problems_of_conda(conda, build_files)])
+            [f"spack: {line}" for line in problems_of_spack(spack, root, build_files)] +
+            [f"conda: {line}" for line in problems_of_conda(conda, variants, root, build_files)])
 
 
 def recipes_of(root):
-    return ((root / "packaging/spack/package.py").read_text(encoding="utf-8"),
-            (root / "packaging/conda/meta.yaml").read_text(encoding="utf-8"))
+    names = ("spack/package.py", "conda/meta.yaml", "conda/conda_build_config.yaml")
+    return tuple((root / "packaging" / name).read_text(encoding="utf-8") for name in names)
 
 
 def main():
