@@ -56,6 +56,21 @@ struct LatticeTerms {
   TermsIfThere<Others...> others;
   double magnitude;  // of the energy of a site: what round-off is proportional to
 
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_field(Stencil const& stencil, Vector const& h) const {
+    auto const sum = cayspin::detail::add_field(first, stencil, h);
+    if (others.any()) [[unlikely]]
+      return others.add_field(stencil, sum);
+    return sum;
+  }
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_turning_field(Stencil const& stencil,
+                                                       Vector const& h) const {
+    auto const sum = cayspin::detail::add_turning_field(first, stencil, h);
+    if (others.any()) [[unlikely]]
+      return others.add_field(stencil, sum);
+    return sum;
+  }
   // Where there are no others the first is returned as it is: g++ copies what has a name through
   // memory.
   template <class Stencil>

@@ -75,15 +75,6 @@ class QuadraticTerms {
   Form form_ = Form::none;
 };
 
-// On a device calls cost more than they save.
-#if defined(KOKKOS_ENABLE_CUDA) || defined(KOKKOS_ENABLE_HIP) || defined(KOKKOS_ENABLE_SYCL)
-#define CAYSPIN_OUT_OF_LINE KOKKOS_FORCEINLINE_FUNCTION
-#elif defined(__GNUC__)
-#define CAYSPIN_OUT_OF_LINE [[gnu::noinline, gnu::pure]]
-#else
-#define CAYSPIN_OUT_OF_LINE
-#endif
-
 /// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
 /// once per pack of spins, so that a kernel is compiled once for all scenes.
 template <class Real>
@@ -98,14 +89,13 @@ struct SceneFieldNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
-    return add_rare_terms(
-        stencil, cayspin::detail::add_field(lattice_terms.first, stencil, local_field(stencil)));
+    return add_demagnetization(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
       Stencil const& stencil) const {
-    return add_rare_terms(stencil, cayspin::detail::add_turning_field(lattice_terms.first, stencil,
-                                                                      local_field(stencil)));
+    return add_demagnetization(stencil,
+                               lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }
 
   /// Does the part of the spin itself depend on the spin?
@@ -116,9 +106,8 @@ struct SceneFieldNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
       Stencil const& stencil) const {
     auto const none = zero<typename Stencil::value_type>();
-    return add_rare_terms(stencil,
-                          cayspin::detail::add_field(lattice_terms.first, stencil,
-                                                     quadratic.add_field(stencil.center(), none)));
+    return add_demagnetization(
+        stencil, lattice_terms.add_field(stencil, quadratic.add_field(stencil.center(), none)));
   }
   /// The part that comes from other spins, and the rest.
   template <class Stencil>
@@ -161,20 +150,6 @@ struct SceneFieldNow {
   }
 
  private:
-  /// What few scenes have. A function of its own: in every stage of every method it would take half
-  /// the time to compile.
-  template <class Stencil, class Vector>
-  KOKKOS_FORCEINLINE_FUNCTION Vector add_rare_terms(Stencil const& stencil, Vector const& h) const {
-    if (!(lattice_terms.others.any() || has_layers || has_stored)) [[likely]]
-      return h;
-    Stencil const copy(stencil);  // that this one may stay in registers
-    return rare_terms(copy, h);
-  }
-  template <class Stencil, class Vector>
-  CAYSPIN_OUT_OF_LINE Vector rare_terms(Stencil const& stencil, Vector const& h) const {
-    return add_demagnetization(stencil, lattice_terms.others.add_field(stencil, h));
-  }
-
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_demagnetization(Stencil const& stencil, Vector h) const {
     if (has_layers || has_stored) [[unlikely]] {
