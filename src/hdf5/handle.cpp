@@ -2,6 +2,7 @@
 #include "handle.hpp"
 
 #include "error.hpp"
+#include "files/journal.hpp"
 
 namespace cayspin::inline v0_1::io {
 
@@ -12,6 +13,7 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   auto const status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     throw_failure(path, action, "it is not a regular file");
+  complete_from_journal(path);
   PropertyHandle const access(H5Pcreate(H5P_FILE_ACCESS));
 #if H5_VERSION_GE(1, 10, 7)
   if (locking == Locking::off) H5Pset_file_locking(access.get(), false, true);

@@ -47,7 +47,7 @@ using PropertyHandle = Handle<H5Pclose>;
 /// may be read half written.
 enum class Locking { on, off };
 
-/// Opens an existing file for reading.
+/// Opens an existing file for reading, completed from its journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
 
 }  // namespace cayspin::inline v0_1::io

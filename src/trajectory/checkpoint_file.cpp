@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "files/durable.hpp"
 #include "fletcher32.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
@@ -124,6 +125,7 @@ class CheckpointWriter::Implementation {
     if (::fsync(*static_cast<int*>(descriptor)) != 0 && errno != EINVAL)
       throw_failure(path_, action, std::strerror(errno));
     check(file_.commit().close(), path_, action);
+    if (int const error = sync_folder_of(path_)) throw_failure(path_, action, std::strerror(error));
   }
 
  private:

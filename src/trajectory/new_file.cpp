@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "new_file.hpp"
 
+#include "files/durable.hpp"
+#include "files/journal.hpp"
 #include "format.hpp"
 #include "hdf5/error.hpp"
 #include "open_file_space.hpp"
@@ -63,13 +65,14 @@ void create_with_room(fs::path const& written, fs::path const& path) {
 // the system: so blocks of less than a page lie within one. Version 3 of a file's head would have a
 // mark for files that are being written, which a kill leaves behind and others then refuse: so
 // version 2.
-FileHandle create_file(fs::path const& written, fs::path const& path) {
+FileHandle create_file(fs::path const& written, fs::path const& path, SyncedFile* synced) {
   PropertyHandle const creation(H5Pcreate(H5P_FILE_CREATE)), access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_attr_phase_change(creation.get(), 64, 0);
   H5Pset_link_phase_change(creation.get(), 64, 0);
   H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE, false, 1);
   H5Pset_file_space_page_size(creation.get(), file_page_bytes);
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
+  if (synced) synced->use_in(access.get());
   FileHandle file(H5Fcreate(written.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()));
   if (file.get() < 0) {
     auto const reason = failure_reason();  // HDF5 forgets it when the properties are closed
@@ -91,8 +94,8 @@ int put_in_place(fs::path const& from, fs::path const& to, bool replaces) {
 
 }  // namespace
 
-NewFile::NewFile(fs::path path, bool overwrite, bool shared)
-    : path_(std::move(path)), target_(path_) {
+NewFile::NewFile(fs::path path, bool overwrite, bool shared, SyncedFile* synced)
+    : path_(std::move(path)), target_(path_), synced_(synced) {
   require_folder(path_);
   std::error_code error;
   auto const status = fs::status(path_, error);
@@ -104,10 +107,11 @@ NewFile::NewFile(fs::path path, bool overwrite, bool shared)
   if (replaces_) {
     if (!shared) require_replaceable(path_);
     target_ = fs::canonical(path_);
+    complete_from_journal(target_);
   }
   written_ = target_.string() + ".partial";
   create_with_room(written_, path_);
-  file_ = create_file(written_, path_);
+  file_ = create_file(written_, path_, synced_);
 }
 
 NewFile::~NewFile() {
@@ -118,8 +122,10 @@ NewFile::~NewFile() {
 }
 
 FileHandle NewFile::commit() {
-  if (int const error = put_in_place(written_, target_, replaces_))
-    throw_failure(path_, action, std::strerror(error));
+  if (synced_) synced_->begin(target_);
+  int error = put_in_place(written_, target_, replaces_);
+  if (error == 0 && synced_) error = sync_folder_of(target_);
+  if (error != 0) throw_failure(path_, action, std::strerror(error));
   return std::move(file_);
 }
 

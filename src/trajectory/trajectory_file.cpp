@@ -4,6 +4,7 @@
 #include "frame_writer.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
+#include "hdf5/synced_file.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "require.hpp"
@@ -13,6 +14,8 @@
 
 #include <bit>
 #include <chrono>
+#include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -72,10 +75,14 @@ class TrajectoryFile::Implementation {
                  TrajectoryStorage const& storage)
       : path_(std::move(path)), single_(header.precision == single_precision) {
     require_valid(header, storage);
-    NewFile file(path_, overwrite);
+    if (storage.sync) synced_ = std::make_unique<SyncedFile>();
+    NewFile file(path_, overwrite, false, synced_.get());
     space_ = OpenFileSpace(file.get(), path_);
     space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
     write_attributes(file.get(), header, path_);
+    if (synced_)
+      RootAttributes(file.get(), path_)
+          .create("journal", std::bit_cast<std::int64_t>(synced_->mark()));
     create_datasets(file.get(), header, storage);
     check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");
     file_ = file.commit();
@@ -101,12 +108,13 @@ class TrajectoryFile::Implementation {
     spins_.add_in_room(planes, spins);
   }
 
-  // Readers count a frame once its scalars are there, so those reach the disk after its spins.
+  // Readers count a frame once its scalars are there, so those reach the disk after its spins, or
+  // both are committed at once.
   void end_frame(Sample const& sample) {
     require_open();
     if (!spins_.is_whole())
       throw std::logic_error(path_.string() + ": a frame ends before its last plane");
-    flush();
+    if (!synced_) flush();
     frame_series_.append({sample}, path_, spins_checksum(sample, spins_.checksum().value()));
     flush();
     spins_.begin(++frames_);
@@ -177,6 +185,8 @@ class TrajectoryFile::Implementation {
 
   void flush() {
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, "cannot write the file");
+    if (int const error = synced_ ? synced_->commit() : 0)
+      throw_failure(path_, "cannot write the file", std::strerror(error));
     flushed_ = Clock::now();
   }
 
@@ -191,6 +201,7 @@ class TrajectoryFile::Implementation {
 
   std::filesystem::path path_;
   bool single_;
+  std::unique_ptr<SyncedFile> synced_;  // HDF5 writes through it
   FileHandle file_;
   FrameWriter spins_;
   std::int64_t planes_ = 0;  // of a frame

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Opens trajectory files with h5py and reads every dataset of those that have frames."""
+"""Opens trajectory files with h5py and reads every dataset of those that have frames.
+
+A kill may leave the last frame half written, which the library sees."""
 
 import sys
 
@@ -8,6 +10,7 @@ import h5py
 for name in sys.argv[1:]:
     with h5py.File(name) as file:
         frames = min(len(file[key]) for key in ("time", "step", "energy", "norm_defect"))
+        frames -= frames > 0 and not file.attrs["complete"]
         for frame in {0, frames - 1} if frames else ():
             assert abs(file["spins"][frame]).max() <= 1, (name, frame)
         for group in (file, file["scalars"]):

@@ -3,8 +3,8 @@
 // many, and which.
 #include "damaged_bytes.hpp"
 #include "hdf5/survives.hpp"
-#include "trajectory/stored_spins.hpp"
-#include "trajectory/trajectory_test.hpp"
+#include "known_run.hpp"
+#include "memory_folder.hpp"
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -28,114 +28,34 @@ namespace fs = std::filesystem;
 struct Reported {
   std::atomic<bool> begun, created, finished;
   std::atomic<std::int64_t> frames, samples;
+
+  Told told() const { return {created, finished, frames, samples}; }
 };
 
-// A run: what it writes, and what it goes on from.
-struct Course {
-  TrajectoryHeader header;
-  TrajectoryStorage storage;
-  std::int64_t first_step = 0;
+struct Course : KnownRun {
   std::int64_t quick_frames = 0;  // before a kill becomes possible
-  std::int64_t frames = 0;
-  int samples = 0;  // for each frame
-  bool replaces = false;
 };
-
-template <class Real>
-std::vector<Real> spins_at(TrajectoryHeader const& header, std::int64_t step) {
-  std::vector<Real> spins(3 * header.shape[0] * header.shape[1] * header.shape[2]);
-  for (std::size_t i = 0; i < spins.size(); ++i)
-    spins[i] = Real(1) / Real(3 + i + static_cast<std::size_t>(step));
-  return spins;
-}
-
-double time_at(std::int64_t step) { return 0.1 * static_cast<double>(step); }
-Scalars scalars_at(std::int64_t step) { return numbered_scalars(static_cast<int>(step)); }
-
-template <class Real>
-void write(TrajectoryFile& file, Course const& course, Reported& reported) {
-  for (std::int64_t frame = 0; frame < course.frames; ++frame) {
-    if (frame == course.quick_frames) reported.begun = true;
-    auto const step = course.first_step + frame;
-    for (int sample = 0; sample < course.samples; ++sample)
-      file.write_scalars(step, time_at(step), scalars_at(step));
-    file.write_frame(step, time_at(step), scalars_at(step),
-                     spins_at<Real>(course.header, step).data());
-    reported.samples = (frame + 1) * course.samples;
-    reported.frames = frame + 1;
-  }
-}
 
 [[noreturn]] void perform(fs::path const& path, Course const& course, Reported& reported) {
   if (course.quick_frames == 0) reported.begun = true;
-  TrajectoryFile file(path, course.header, course.replaces, course.storage);
-  reported.created = true;
-  course.header.precision == "single" ? write<float>(file, course, reported)
-                                      : write<double>(file, course, reported);
-  file.finish({7, 2, 1});
-  reported.finished = true;
+  write_known_run(path, course, [&](Told const& told) {
+    reported.created = true;
+    reported.samples = told.samples;
+    reported.frames = told.frames;
+    reported.finished = told.finished;
+    if (told.frames >= course.quick_frames) reported.begun = true;
+  });
   while (true) ::pause();
-}
-
-void require(bool is_so, char const* kind, std::string const& what) {
-  if (!is_so) throw std::runtime_error(std::string(kind) + ": " + what);
-}
-
-bool equal(Scalars const& a, Scalars const& b) {
-  return a.energy == b.energy && a.norm_defect == b.norm_defect &&
-         a.magnetization == b.magnetization;
-}
-
-// Throws unless everything that was reported is in the file as it was given.
-void require_whole(fs::path const& path, Course const& course, Reported const& reported) {
-  auto const info = read_info(path);
-  auto const& text = info.header.scene_text;
-  if (text != course.header.scene_text) {
-    require(course.replaces && !reported.created, "lost", "the older file is there");
-    require(info.complete && info.frames == 1, "wrong", "the older file is another");
-    return;
-  }
-  require(info.frames >= reported.frames, "lost", "frames");
-  require(info.samples >= reported.samples, "lost", "samples");
-  require(info.complete || !reported.finished, "lost", "the end");
-  require(info.frames <= course.frames, "wrong", "frames that were not written");
-  if (info.frames == 0) return;
-  StoredSpins const stored(path, info.header.shape);
-  bool const single = course.header.precision == "single";
-  for (std::int64_t frame = 0; frame < info.frames; ++frame) {
-    auto const at = static_cast<std::size_t>(frame);
-    auto const step = course.first_step + frame;
-    require(info.frame_steps[at] == step && info.frame_times[at] == time_at(step) &&
-                equal(info.frame_scalars[at], scalars_at(step)),
-            "wrong", "scalars of frame " + std::to_string(frame));
-    auto expected = spins_at<double>(course.header, step);
-    if (single) {
-      auto const given = spins_at<float>(course.header, step);
-      expected.assign(given.begin(), given.end());
-    }
-    require(stored.frame(frame) == expected, "wrong", "spins of frame " + std::to_string(frame));
-  }
-}
-
-// In memory where the system has such a folder: a kill takes milliseconds there.
-fs::path folder_in_memory() {
-  fs::path const shared = "/dev/shm";
-  auto const parent = ::access(shared.c_str(), W_OK) == 0 ? shared : fs::path(testing::TempDir());
-  return parent / ("cayspin_random_kills_" + std::to_string(::getpid()));
 }
 
 class RandomKills : public testing::Test {
  protected:
   RandomKills() {
-    fs::create_directories(folder_);
     auto* const shared = ::mmap(nullptr, sizeof(Reported), PROT_READ | PROT_WRITE,
                                 MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     reported_ = new (shared) Reported{};
   }
-  ~RandomKills() override {
-    ::munmap(reported_, sizeof(Reported));
-    fs::remove_all(folder_);
-  }
+  ~RandomKills() override { ::munmap(reported_, sizeof(Reported)); }
 
   template <class Value>
   Value one_of(std::initializer_list<Value> values) {
@@ -150,7 +70,8 @@ class RandomKills : public testing::Test {
         {{1, 1, 1}, {10, 3, 1}, {4, 3, 2}, {57, 1, 1}, {16, 16, 2}, {31, 17, 5}, {64, 32, 3}});
     course.storage = {.compression = one_of({0, 0, 1}),
                       .chunk = one_of<std::int64_t>({0, 0, 1}),
-                      .frames = one_of<std::int64_t>({0, 100, 50'000})};
+                      .frames = one_of<std::int64_t>({0, 100, 50'000}),
+                      .sync = chance_.below(3) == 0};
     bool const small = course.header.shape[2] < 3;
     course.quick_frames = small && chance_.below(20) == 0 ? one_of({250, 505}) : 0;
     course.frames = course.quick_frames + static_cast<std::int64_t>(1 + chance_.below(400));
@@ -193,7 +114,7 @@ class RandomKills : public testing::Test {
     frames_ += reported_->frames;
     ++counts_[reported_->finished ? "ended" : "cut short"];
     try {
-      try_in_child(path, [&] { require_whole(path, course, *reported_); });
+      try_in_child(path, [&] { require_known(path, course, reported_->told()); });
       last_ = path;
     } catch (std::runtime_error const& error) {
       std::string const message = error.what();
@@ -215,7 +136,8 @@ class RandomKills : public testing::Test {
     last_.reset();
   }
 
-  fs::path folder_ = folder_in_memory();
+  cayspin::test::MemoryFolder memory_{"random_kills"};
+  fs::path folder_ = memory_.path();
   Reported* reported_ = nullptr;
   Chance chance_{static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1))};
   std::optional<fs::path> last_;
@@ -230,12 +152,7 @@ TEST_F(RandomKills, LoseNoFrame) {
     auto course = random_course(kill);
     restart_from_last(course);
     auto const path = folder_ / (std::to_string(kill) + ".h5");
-    if (course.replaces) {
-      auto older = small_header();
-      TrajectoryFile file(path, older, false);
-      file.write_frame(0, 0, {}, spins_at<double>(older, 0).data());
-      file.finish({});
-    }
+    if (course.replaces) write_older_file(path, chance_.below(2) == 0);
     kill_at_random(path, course);
     expect_whole(path, course);
     if (kill % at_once == at_once - 1) expect_h5py_opens_all();

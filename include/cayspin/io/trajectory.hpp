@@ -40,6 +40,7 @@ struct TrajectoryStorage {
   int compression = 0;      ///< level of deflate with shuffle, 0 (none) to 9
   std::int64_t chunk = 0;   ///< planes along z in a chunk; 0: the frame, or as many as 256 MiB hold
   std::int64_t frames = 0;  ///< that are planned; a kill loses none of them, or of 8180 chunks
+  bool sync = false;        ///< a power cut loses at most the frame that is being written
 };
 
 /// How a frame goes into a file: by pieces of so many planes along z; the last may have fewer.
