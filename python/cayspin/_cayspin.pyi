@@ -9,6 +9,7 @@ import numpy as np
 
 version: str
 git_commit: str
+complete_file: Callable[[str | os.PathLike], None]
 
 class CayspinError(Exception):
     """One line: what is wrong, and what is accepted."""

@@ -8,7 +8,7 @@ import os
 from typing import Any
 
 from cayspin import arguments
-from cayspin._cayspin import CayspinError
+from cayspin._cayspin import CayspinError, complete_file
 
 
 class Trajectory:
@@ -24,6 +24,7 @@ class Trajectory:
         import h5py
 
         self.path = arguments.file_name(path, "open")
+        complete_file(self.path)
         try:
             self.file = h5py.File(self.path, "r")
         except (OSError, ValueError) as error:

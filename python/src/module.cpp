@@ -266,4 +266,7 @@ NB_MODULE(_cayspin, module) {
   python::define_minimum(module);
   python::define_run(module);
   python::define_recorder(module);
+  module.def("complete_file", [](std::filesystem::path const& path) {
+    python::as_error([&] { io::complete_file(path); });
+  });
 }

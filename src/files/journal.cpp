@@ -76,12 +76,6 @@ bool has_name(int file, fs::path const& path) {
          open.st_ino == named.st_ino && open.st_dev == named.st_dev;
 }
 
-// Some file systems lock only what is open for writing.
-int open_journal(fs::path const& path) {
-  int const file = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
-  return file >= 0 ? file : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-}
-
 struct Record {
   FileMark mark;
   std::vector<Sector> sectors;
@@ -118,7 +112,6 @@ bool has_all(int file, std::span<Sector const> sectors) {
 int complete(fs::path const& path, std::span<Sector const> sectors) {
   Descriptor const file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
   if (file.get() < 0) return errno;
-  ::flock(file.get(), LOCK_EX | LOCK_NB);  // keeps HDF5 from reading it meanwhile
   for (auto const& sector : sectors)
     if (int const error = write_all(file.get(), sector.bytes.data(), sector_bytes, sector.offset))
       return error;
@@ -155,11 +148,12 @@ int Journal::write(std::span<Sector const> sectors) const {
 
 void Journal::remove() const { ::unlink(path_.c_str()); }
 
+// Several readers may do so at once, who write the same.
 void complete_from_journal(fs::path const& path) {
   auto const beside = journal_of(path);
-  Descriptor const journal(open_journal(beside));
+  Descriptor const journal(::open(beside.c_str(), O_RDONLY | O_CLOEXEC));
   if (journal.get() < 0) return;
-  int const unlocked = ::flock(journal.get(), LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+  int const unlocked = ::flock(journal.get(), LOCK_SH | LOCK_NB) == 0 ? 0 : errno;
   if (unlocked == EWOULDBLOCK || !has_name(journal.get(), beside)) return;
   Descriptor const file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) return;
@@ -172,7 +166,8 @@ void complete_from_journal(fs::path const& path) {
       throw std::runtime_error(fmt::format("{}: cannot complete the file from {}: {}",
                                            path.string(), beside.string(), std::strerror(error)));
   }
-  if (unlocked == 0) ::unlink(beside.c_str());
+  if (::flock(journal.get(), LOCK_EX | LOCK_NB) == 0 && has_name(journal.get(), beside))
+    ::unlink(beside.c_str());
 }
 
 }  // namespace cayspin::inline v0_1::io

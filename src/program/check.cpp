@@ -134,6 +134,7 @@ std::string output_text(io::Scene const& scene, Plan const& plan) {
   if (output.compression > 0) text += fmt::format(", compressed at level {}", output.compression);
   if (output.xdmf) text += ", described by an XDMF file";
   if (output.table) text += ", samples also in a text table";
+  if (output.sync) text += ", each frame safe from power cuts";
   return text;
 }
 

@@ -49,7 +49,7 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
 io::TrajectoryStorage storage_of(io::Scene const& scene) {
   auto const& output = scene.output;
   auto const frames = (scene.integrator.steps + output.every - 1) / output.every + 1;
-  return {output.compression, output.chunk, frames};
+  return {output.compression, output.chunk, frames, output.sync};
 }
 
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite) {

@@ -2,6 +2,7 @@
 #include "trajectory_reader.hpp"
 
 #include "checksum.hpp"
+#include "files/journal.hpp"
 #include "format.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
@@ -94,6 +95,8 @@ TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
 }
 
 }  // namespace
+
+void complete_file(std::filesystem::path const& path) { complete_from_journal(path); }
 
 TrajectoryInfo read_info(std::filesystem::path const& path) {
   QuietErrors const quiet;

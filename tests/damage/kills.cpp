@@ -133,11 +133,11 @@ class Kills : public ProgramTest {
                                                                  begun);
   }
 
-  void kill_with(int signal, long kills) {
+  void kill_with(int signal, long kills, Arguments const& more = {}) {
     auto const longest = static_cast<std::uint64_t>(3 * time_to_first_frame().count());
     for (long kill = 0; kill < kills; ++kill) {
       auto const name = fresh_name();
-      auto const process = begin(run_to(name));
+      auto const process = begin(run_to(name, more));
       std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(longest)));
       auto const seen = visible(in_folder(name));
       std::this_thread::sleep_for(std::chrono::microseconds(chance_.below(2'000)));
@@ -164,6 +164,15 @@ TEST_F(Kills, SigkillLosesNoFrameThatWasSeen) {
   kill_with(SIGKILL, 2 * kills_);
   expect_h5py_opens_all();
   print_summary("SIGKILL");
+}
+
+// The file that `cayspin info` leaves is whole without its journal.
+TEST_F(Kills, SigkillWithSyncLosesNoFrameThatWasSeen) {
+  kill_with(SIGKILL, kills_, {"--set", "output.sync=true"});
+  for (auto const& entry : fs::directory_iterator(folder_))
+    EXPECT_NE(entry.path().extension(), ".journal");
+  expect_h5py_opens_all();
+  print_summary("SIGKILL with sync");
 }
 
 TEST_F(Kills, SigtermLosesNoFrameThatWasSeen) {

@@ -105,12 +105,25 @@ class PowerCuts : public testing::Test {
       auto const there = [&](std::size_t end) {
         return end == 2 ? std::size_t{chance_.below(100) < share} : chance_.below(end);
       };
-      put_on_disk(after_power_cut(recording.events, cut, there, any));
+      auto state = after_power_cut(recording.events, cut, there, any);
+      put_on_disk(state);
+      if (history % 4 == 2) cut_while_completing(state, there, any);
       expect_nothing_lost(recording, cut);
       if (HasFailure() || !fs::exists(path())) continue;
       if (history % 8 == 0) keep_for_h5py();
       if (history % 8 == 1) expect_to_go_on(recording.run);
     }
+  }
+
+  // The power goes again, while a reader completes the file.
+  void cut_while_completing(DiskState const& state, Choose const& there, Choose const& any) {
+    record_disk(folder_ / "cut", state);
+    auto const first = note_told(0);
+    complete_file(path());
+    auto const events = stop_recording();
+    cut_twice_ += events.size() > first;
+    auto const cut = first + chance_.below(events.size() + 1 - first);
+    put_on_disk(after_power_cut(events, cut, there, any));
   }
 
   void keep_for_h5py() { fs::copy_file(path(), folder_ / (std::to_string(kept_++) + ".h5")); }
@@ -124,7 +137,7 @@ class PowerCuts : public testing::Test {
   MemoryFolder memory_{"power_cuts"};
   fs::path folder_ = memory_.path();
   Chance chance_{static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1))};
-  std::int64_t lost_ = 0, wrong_ = 0, completed_ = 0, frames_ = 0, kept_ = 0;
+  std::int64_t lost_ = 0, wrong_ = 0, completed_ = 0, cut_twice_ = 0, frames_ = 0, kept_ = 0;
 };
 
 TrajectoryHeader header_of(std::array<std::int64_t, 3> const& shape, char const* precision) {
@@ -154,7 +167,8 @@ TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
   EXPECT_GT(completed_, histories / 10);
   std::cout << "power cut replay, " << histories << " histories: " << lost_
             << " lost before the last sync, " << wrong_ << " wrong; " << frames_ << " frames, "
-            << completed_ << " files beside a journal\n";
+            << completed_ << " files beside a journal, " << cut_twice_
+            << " cut again while completed\n";
 }
 
 // All choices one after the other.

@@ -64,11 +64,20 @@ void add_rename(char const* from, char const* to) {
 
 }  // namespace
 
-void record_disk(fs::path const& folder) {
+void record_disk(fs::path const& folder, DiskState const& state) {
   recorded_folder = fs::canonical(folder);
   recorded.clear();
   numbers.clear();
   next_number = 0;
+  for (auto const& [name, bytes] : state) {
+    struct stat status {};
+    ::stat((recorded_folder / name).c_str(), &status);
+    numbers[status.st_ino] = next_number;
+    recorded.push_back({.kind = DiskEvent::create, .file = next_number, .name = name});
+    recorded.push_back({.kind = DiskEvent::write, .file = next_number, .bytes = bytes});
+    recorded.push_back({.kind = DiskEvent::sync, .file = next_number++, .offset = bytes.size()});
+  }
+  recorded.push_back({.kind = DiskEvent::sync_folder});
   recording = true;
 }
 

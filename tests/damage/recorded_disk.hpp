@@ -20,15 +20,15 @@ struct DiskEvent {
   std::string name = {}, new_name = {};
 };
 
-/// Records the calls of this process from here on, for files in `folder`.
-void record_disk(std::filesystem::path const& folder);
+/// Names of files, and what they hold.
+using DiskState = std::map<std::string, std::string>;
+
+/// Records the calls of this process from here on, for files in `folder`, which holds `state`.
+void record_disk(std::filesystem::path const& folder, DiskState const& state = {});
 /// Notes a number that the caller knows the meaning of. Returns how many events are before a cut
 /// after it.
 std::size_t note_told(std::uint64_t number);
 std::vector<DiskEvent> stop_recording();
-
-/// Names of files, and what they hold.
-using DiskState = std::map<std::string, std::string>;
 
 /// A number from 0 to `end` - 1.
 using Choose = std::function<std::size_t(std::size_t end)>;

@@ -68,12 +68,30 @@ TEST_F(OutputFiles, CompressionChangesNoBit) {
 
 TEST_F(OutputFiles, AreNamedByCheck) {
   write("chain.toml", chain_scene());
-  auto const outcome = start({"check", "chain.toml", "--set", "output.xdmf=true", "--set",
-                              "output.table=true", "--set", "output.compression=3"});
+  auto const outcome =
+      start({"check", "chain.toml", "--set", "output.xdmf=true", "--set", "output.table=true",
+             "--set", "output.compression=3", "--set", "output.sync=true"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(contains(outcome.output,
                        "to chain.h5, compressed at level 3, described by an XDMF "
-                       "file, samples also in a text table"));
+                       "file, samples also in a text table, each frame safe from power cuts"));
+}
+
+TEST_F(OutputFiles, SyncChangesNoBitAndLeavesNoJournal) {
+  run(chain_scene());
+  auto const plain = last_spins("out.h5");
+  run(chain_scene(), {"--set", "output.sync=true"});
+  EXPECT_EQ(last_spins("out.h5"), plain);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5.journal")));
+}
+
+TEST_F(OutputFiles, SyncIsRefusedInASweep) {
+  write("chain.toml", chain_scene());
+  auto const outcome = start({"sweep", "chain.toml", "--over", "system.damping=0.1,0.2", "--set",
+                              "output.sync=true", "--output", "swept.h5"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_TRUE(is_one_line(outcome.errors));
+  EXPECT_TRUE(contains(outcome.errors, "output.sync: true: a sweep is not kept from power cuts"));
 }
 
 }  // namespace

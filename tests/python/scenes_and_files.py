@@ -230,6 +230,11 @@ class Files(PackageTest):
                 np.testing.assert_array_equal(data.spins.isel(frame=-1), sim.spins)
         self.assert_refused(cayspin.CayspinError, "cannot be opened", cayspin.open,
                             self.folder / "missing.h5")
+        cayspin.Simulation(scene(output={"every": 10, "sync": True})).run(output=output,
+                                                                          overwrite=True)
+        with cayspin.open(output) as run:
+            self.assertEqual((len(run), run.complete), (5, True))
+        self.assertFalse(output.with_name("run.h5.journal").exists())
         with h5py.File(self.folder / "other.h5", "w"):
             pass
         self.assert_refused(cayspin.CayspinError, "it has no spins", cayspin.open,

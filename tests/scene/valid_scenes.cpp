@@ -99,6 +99,7 @@ TEST(Scene, DefaultsAreTheDocumentedOnes) {
   EXPECT_EQ(scene.output.chunk, 0);
   EXPECT_FALSE(scene.output.xdmf);
   EXPECT_FALSE(scene.output.table);
+  EXPECT_FALSE(scene.output.sync);
 }
 
 TEST(Scene, DemagnetizationStrengthDefaultsToOne) {

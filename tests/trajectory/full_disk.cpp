@@ -29,10 +29,10 @@ void limit_file_size(rlim_t bytes) {
   std::exit(3);
 }
 
-[[noreturn]] void write_until_it_fails(fs::path const& path, rlim_t room) {
+[[noreturn]] void write_until_it_fails(fs::path const& path, rlim_t room, bool sync = false) {
   limit_file_size(room);
   try {
-    auto const file = write_frames(path, 1000000);
+    auto const file = write_frames(path, 1000000, {.sync = sync});
     std::exit(0);
   } catch (std::runtime_error const& error) {
     exit_with_message(error);
@@ -40,14 +40,16 @@ void limit_file_size(rlim_t bytes) {
 }
 
 TEST_F(TrajectoryTest, FullDiskLeavesTheFramesThatFitted) {
-  auto const path = folder_ / "a.h5";
-  EXPECT_EXIT(write_until_it_fails(path, 1000000), testing::ExitedWithCode(3),
-              "a.h5: cannot write the file: File too large$");
-  auto const info = read_info(path);
-  EXPECT_FALSE(info.complete);
-  ASSERT_GT(info.frames, 10);
-  EXPECT_EQ(read_spins(path, small_header().shape),
-            numbered_spins<double>(small_header(), static_cast<int>(info.frames) - 1));
+  for (bool const sync : {false, true}) {
+    auto const path = folder_ / (sync ? "synced_a.h5" : "a.h5");
+    EXPECT_EXIT(write_until_it_fails(path, 1000000, sync), testing::ExitedWithCode(3),
+                "a.h5: cannot write the file: File too large$");
+    auto const info = read_info(path);
+    EXPECT_FALSE(info.complete);
+    ASSERT_GT(info.frames, 10);
+    EXPECT_EQ(read_spins(path, small_header().shape),
+              numbered_spins<double>(small_header(), static_cast<int>(info.frames) - 1));
+  }
 }
 
 TEST_F(TrajectoryTest, FullDiskAtCreationLeavesNothing) {
@@ -120,11 +122,11 @@ void make_read_only(fs::path const& path) {
 }
 
 [[noreturn]] void write_to_broken_disk(
-    fs::path const& path, void (*first_use_of_hdf5)() = [] {}) {
+    fs::path const& path, bool sync = false, void (*first_use_of_hdf5)() = [] {}) {
   first_use_of_hdf5();
   auto const spins = numbered_spins<double>(small_header(), 0);
   try {
-    auto file = write_frames(path, 5);
+    auto file = write_frames(path, 5, {.sync = sync});
     make_read_only(fs::canonical(path));
     file.write_frame(5, 5, {}, spins.data());
     std::exit(0);
@@ -143,6 +145,19 @@ TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {
   EXPECT_EQ(info.frames, 5);
 }
 
+// The journal has the frame that could not be put into the file.
+TEST_F(TrajectoryTest, FailedWriteOfASyncedFileIsReportedAndLosesNothing) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  auto const path = folder_ / "a.h5";
+  EXPECT_EXIT(write_to_broken_disk(path, true), testing::ExitedWithCode(3),
+              "a.h5: cannot write .*: Bad file descriptor$");
+  auto const info = read_info(path);
+  EXPECT_FALSE(info.complete);
+  EXPECT_EQ(info.frames, 6);
+  EXPECT_EQ(read_spins(path, small_header().shape, 4), numbered_spins<double>(small_header(), 4));
+  EXPECT_EQ(read_spins(path, small_header().shape), numbered_spins<double>(small_header(), 0));
+}
+
 void look_for_a_start() {
   Scene scene;
   scene.initial = FileStart{"missing.h5"};
@@ -152,7 +167,7 @@ void look_for_a_start() {
 TEST_F(TrajectoryTest, FailedWriteOfARunFromAFileIsReported) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   auto const path = folder_ / "a.h5";
-  EXPECT_EXIT(write_to_broken_disk(path, look_for_a_start), testing::ExitedWithCode(3),
+  EXPECT_EXIT(write_to_broken_disk(path, false, look_for_a_start), testing::ExitedWithCode(3),
               "a.h5: cannot write .*: Bad file descriptor$");
 }
 

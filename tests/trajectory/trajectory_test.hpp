@@ -63,9 +63,10 @@ inline Scalars numbered_scalars(int frame) {
   return {-1.5 - frame, 1e-15 * frame, {0.1 * frame, 0.2, 0.3}};
 }
 
-inline TrajectoryFile write_frames(std::filesystem::path const& path, int frames) {
+inline TrajectoryFile write_frames(std::filesystem::path const& path, int frames,
+                                   TrajectoryStorage const& storage = {}) {
   auto const header = small_header();
-  TrajectoryFile file(path, header, false);
+  TrajectoryFile file(path, header, false, storage);
   for (int frame = 0; frame < frames; ++frame) {
     file.write_scalars(10 * frame, 0.1 * frame, numbered_scalars(frame));
     file.write_frame(10 * frame, 0.1 * frame, numbered_scalars(frame),

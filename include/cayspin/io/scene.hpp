@@ -133,10 +133,12 @@ struct Output {
   std::int64_t chunk = 0;          ///< planes along z in a chunk of /spins; 0: all
   bool xdmf = false;               ///< FILE.xdmf for viewers
   bool table = false;              ///< FILE.txt with the scalar samples
+  bool sync = false;               ///< a power cut loses at most the frame being written
   CheckpointPeriod checkpoint_every;
 
   static constexpr auto flags() {
-    return std::to_array<Flag<Output>>({{"xdmf", &Output::xdmf}, {"table", &Output::table}});
+    return std::to_array<Flag<Output>>(
+        {{"xdmf", &Output::xdmf}, {"table", &Output::table}, {"sync", &Output::sync}});
   }
 };
 

@@ -77,7 +77,8 @@ struct RunCost {
 };
 
 /// Writes one run. The file is readable after every write_frame, also by a reader that finds the
-/// writer killed: it then holds whole frames and `complete` = 0.
+/// writer killed: it then holds whole frames and `complete` = 0. Where TrajectoryStorage::sync says
+/// so, this holds after a power cut, too.
 class TrajectoryFile {
  public:
   /// Creates the file with everything but frames. An existing file is an error unless `overwrite`;
@@ -134,6 +135,10 @@ struct TrajectoryInfo {
   std::vector<Scalars> frame_scalars;
   std::int64_t samples = 0;  ///< length of /scalars
 };
+
+/// Completes a file of TrajectoryStorage::sync after a kill or a power cut, for other readers than
+/// those below, which do so themselves. Leaves any other file as it is.
+void complete_file(std::filesystem::path const& path);
 
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);

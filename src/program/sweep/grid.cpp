@@ -64,6 +64,9 @@ Grid make_grid(SweepOptions const& options) {
     try {
       auto const scene = io::read_scene(options.scene, overrides);
       io::check_files(scene);
+      if (scene.output.sync)
+        throw io::scene_error(scene, "output.sync",
+                              "true: a sweep is not kept from power cuts; accepted: false");
       if (!scene.integrator.method->automatic) {
         auto const plan = make_plan(scene, options.precision);
         require_memory(scene, plan);
