@@ -230,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongScene{"xdmf_type", "every = 100", "xdmf = 1", ":31: output.xdmf: 1",
                                "true, false"},
                     WrongScene{"sync_type", "every = 100", "sync = \"yes\"",
-                               ":31: output.sync: \"yes\"", "true, false"},
+                               ":31: output.sync: 'yes' is a string", "true, false"},
                     WrongScene{"every_is_a_date", "every = 100", "every = 2001-02-03",
                                ":31: output.every: 2001-02-03 is a date or time", ""}),
     name_of);
