@@ -37,8 +37,8 @@ combination() {
     -DCMAKE_CXX_COMPILER="$1" -DCMAKE_DISABLE_FIND_PACKAGE_Kokkos=ON \
     -DCAYSPIN_KOKKOS_SOURCE="$kokkos" -DCAYSPIN_KOKKOS_AS_UNITY=ON -DKokkos_ENABLE_SERIAL=ON \
     -DKokkos_ENABLE_OPENMP=ON "-DKokkos_ARCH_$3=ON" -DCAYSPIN_TEST_CONTRACTION="$5" \
-    -DCAYSPIN_BUILD_APP=OFF -DCAYSPIN_BUILD_BENCH=OFF -DCAYSPIN_BUILD_EXAMPLES=OFF \
-    -DCAYSPIN_INSTALL=OFF >"$folder.log" 2>&1 &&
+    -DCAYSPIN_BUILD_ALL_TESTS=ON -DCAYSPIN_BUILD_APP=OFF -DCAYSPIN_BUILD_BENCH=OFF \
+    -DCAYSPIN_BUILD_EXAMPLES=OFF -DCAYSPIN_INSTALL=OFF >"$folder.log" 2>&1 &&
     ninja -C "$folder" -j "$threads" test_contracted >>"$folder.log" 2>&1 &&
     OMP_NUM_THREADS=2 OMP_PROC_BIND=false OMP_WAIT_POLICY=passive \
       "$folder/bin/test_contracted" >>"$folder.log" 2>&1; then
