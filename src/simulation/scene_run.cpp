@@ -41,10 +41,10 @@ class Turn {
   std::lock_guard<std::recursive_mutex> lock_;
 };
 
-void start_kokkos(std::optional<int> threads) {
+void start_kokkos(std::string const& space, std::optional<int> threads) {
   if (Kokkos::is_initialized()) return;
   static KokkosSession* session = nullptr;
-  session = new KokkosSession("", threads, {});
+  session = new KokkosSession(space, threads, {});
   std::atexit([] { delete session; });
 }
 
@@ -152,7 +152,7 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
   auto const space = space_of(settings.space);
   if (settings.threads && *settings.threads < 1)
     throw UsageError(fmt::format("{} threads; accepted: a whole number >= 1", *settings.threads));
-  start_kokkos(settings.threads);
+  start_kokkos(space, settings.threads);
   auto const own = with_reduced_own_field(scene);
   auto const plan = plan_of(own, settings.precision);
   std::optional<Restart> restart;

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The word "serial" is the host's space with one thread.
+#include "random_run.hpp"
+#include "simulation/failure.hpp"
+#include "simulation/kokkos_settings.hpp"
+#include "simulation/scene_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace cayspin::simulation::test {
+namespace {
+
+#if !defined(CAYSPIN_HOST_DEVICE)
+io::Scene chain() {
+  return io::parse_scene(R"(
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [4]
+[initial]
+uniform = [1, 0, 0]
+[integrator]
+method = "rkmk4"
+dt = 0.1
+steps = 1
+)",
+                         "scene.toml");
+}
+
+[[noreturn]] void exit_with_threads_of_serial() {
+  int threads = 0;
+  {
+    auto const run = SceneRun::open(chain(), {.space = "serial"});
+    if (run->space() == "serial") threads = run->threads();
+  }
+  std::exit(threads);
+}
+
+TEST(SerialSpace, StartsKokkosWithOneThread) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process without Kokkos
+  EXPECT_EXIT(exit_with_threads_of_serial(), testing::ExitedWithCode(1), "");
+}
+
+TEST(SerialSpace, IsRefusedWhereThereAreMoreThreads) {
+  auto const run = SceneRun::open(chain(), {});
+  if (run->threads() == 1) {
+    EXPECT_EQ(SceneRun::open(chain(), {.space = "serial"})->threads(), 1);
+    return;
+  }
+  try {
+    SceneRun::open(chain(), {.space = "serial"});
+    ADD_FAILURE() << "one thread of " << run->threads();
+  } catch (UsageError const& error) {
+    EXPECT_EQ(error.what(), fmt::format("space serial: Kokkos runs with {} threads; accepted: one "
+                                        "thread",
+                                        run->threads()));
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace cayspin::simulation::test
