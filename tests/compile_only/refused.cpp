@@ -162,12 +162,16 @@ inline void refused() {
   }
 #endif
 #if MISTAKE(24)
-  AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
-  integrate(exec, adaptive, body, spins, times, Every(10, Normalize{}));
+  {
+    AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
+    integrate(exec, adaptive, body, spins, times, Every(10, Normalize{}));
+  }
 #endif
 #if MISTAKE(25)
-  AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
-  integrate(exec, adaptive, body, spins, times, EnergyControl(body, spins));
+  {
+    AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
+    integrate(exec, adaptive, body, spins, times, EnergyControl(body, spins));
+  }
 #endif
 #if MISTAKE(26)
   {
