@@ -126,9 +126,10 @@ int SyncedFile::put_over_committed() {
 std::optional<std::uint64_t> SyncedFile::place_of_mark() const {
   std::vector<std::byte> bytes(end);
   if (read_all(file_, bytes.data(), bytes.size(), 0) != 0) return {};
-  auto const found = std::ranges::search(bytes, std::as_bytes(std::span(&mark_, 1)));
-  if (found.empty()) return {};
-  return static_cast<std::uint64_t>(found.begin() - bytes.begin());
+  auto const mark = std::as_bytes(std::span(&mark_, 1));
+  auto const found = std::search(bytes.begin(), bytes.end(), mark.begin(), mark.end());
+  if (found == bytes.end()) return {};
+  return static_cast<std::uint64_t>(found - bytes.begin());
 }
 
 void SyncedFile::begin(std::filesystem::path const& path) {
