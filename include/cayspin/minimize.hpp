@@ -90,6 +90,7 @@ class Minimizer {
   void begin(Exec const& exec, Field const& field, Spins const& spins,
              MinimizeOptions const& options) {
     so_far_ = {};
+    first_step_ = 1;
     lbfgs_.pairs().forget();
     auto const found = detail::probe(exec, field, options.time, search_.trial, moves_);
     so_far_.evaluations += found.evaluations;
@@ -156,7 +157,7 @@ class Minimizer {
       }
       auto const [slope, longest] = lbfgs_.find(exec, spins, moves_, search_);
       if (!(slope < 0) || !std::isfinite(longest)) continue;
-      if (search(exec, field, spins, slope, std::min(1.0, largest_turn / longest), options))
+      if (search(exec, field, spins, slope, std::min(first_step_, largest_turn / longest), options))
         return true;
     }
     return false;
@@ -180,6 +181,8 @@ class Minimizer {
       swap(search_.gradient, search_.new_gradient);
       take(there);
       lbfgs_.remember(there);
+      // Where the energy is no bowl along the way down, steps of a bowl's size get nowhere.
+      first_step_ = there.curvature > 0 ? 1 : 4 * step;
       return true;
     }
     return false;
@@ -197,7 +200,7 @@ class Minimizer {
     // Along what is flatter, a turn by a radian does not bring the torque above its bound.
     double const flat = std::max(options.torque, 64 * epsilon * strongest_field_);
     auto const found = detail::find_lowest_curvature(
-        exec, field, options.time, spins, moves_, strongest_field_, flat, arrays,
+        exec, field, options.time, spins, moves_, strongest_field_, flat, so_far_.saddles, arrays,
         [&](Spins const& from, Spins const& to) { lbfgs_.preconditioner().apply(exec, from, to); });
     so_far_.evaluations += found.evaluations;
     so_far_.curvature = found.value;
@@ -224,7 +227,7 @@ class Minimizer {
   detail::SearchArrays<Spins> search_;
   ScalarField<Real, Memory> moves_;
   detail::Lbfgs<Spins> lbfgs_;
-  double strongest_field_ = 0;
+  double strongest_field_ = 0, first_step_ = 1;
   Minimum so_far_;
 };
 

@@ -164,7 +164,7 @@ TYPED_TEST(Saddles, NearInstabilities) {
   auto const below = [&](unsigned count) { return engine() % count; };
   constexpr bool is_double = std::is_same_v<typename TypeParam::Real, double>;
   int ended[4] = {};
-  for (int scene = 0; scene < 200; ++scene) {
+  for (int scene = 0; scene < 1000; ++scene) {
     bool const is_film = below(2) == 0;
     std::int64_t const nx = 2 * (1 + below(is_film ? 3 : 8)), ny = is_film ? 2 * (1 + below(3)) : 1;
     auto const boundary = below(2) == 0 ? Boundary::periodic : Boundary::open;
@@ -184,12 +184,11 @@ TYPED_TEST(Saddles, NearInstabilities) {
     double const torque = is_double ? std::pow(10, -uniform(5, 11)) : 1e-4 * (all + applied);
     auto const found = minimize(this->exec, field, spins, {.torque = torque});
     ++ended[static_cast<int>(found.end)];
-    if (found.end == MinimizeEnd::evaluation_limit) continue;
     double const allowed = 2 * torque + (is_double ? 1e-6 : 1e-3) * (all + applied);
     EXPECT_GT(least_curvature(field, lattice, numbers_of(spins)), -allowed)
         << "scene " << scene << ", " << to_string(found.end);
   }
-  EXPECT_GT(ended[static_cast<int>(MinimizeEnd::converged)], 190);
+  EXPECT_GT(ended[static_cast<int>(MinimizeEnd::converged)], 985);
 }
 
 }  // namespace

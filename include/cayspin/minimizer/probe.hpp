@@ -35,10 +35,10 @@ struct AlternateSpins {
 };
 
 /// Components of random sign, and of sizes that differ by up to `scatter`: a direction in no
-/// symmetry.
+/// symmetry, another for each `stream`.
 template <class Real>
 struct RandomSigns {
-  std::int64_t nx, ny;
+  std::int64_t nx, ny, stream;
   Real scatter;
   OutputArray<Real, 3> output;
 
@@ -48,7 +48,8 @@ struct RandomSigns {
     constexpr int lanes = lanes_of<Value>;
     Real signs[3][std::size_t{lanes}];
     auto const first =
-        static_cast<std::uint64_t>((std::int64_t(site.z()) * ny + site.y()) * nx + site.x());
+        static_cast<std::uint64_t>((std::int64_t(site.z()) * ny + site.y()) * nx + site.x()) +
+        (static_cast<std::uint64_t>(stream) << 40U);
     for (int lane = 0; lane < lanes; ++lane) {
       std::uint64_t const bits = mixed(first + static_cast<std::uint64_t>(lane));
       for (int c = 0; c < 3; ++c)
@@ -152,7 +153,7 @@ FieldStrengths probe(
   if (is_frustrated)
     for (double& coupling : found.couplings) coupling = std::max(0.0, coupling);
   if (rests > 0)
-    look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], 0, spins.output(false)});
+    look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], 0, 0, spins.output(false)});
   return found;
 }
 
