@@ -6,6 +6,9 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/evaluate.hpp>
 #include <cayspin/exchange_memory.hpp>
+#include <cayspin/field/biquadratic.hpp>
+#include <cayspin/field/bulk_dmi.hpp>
+#include <cayspin/field/cubic_anisotropy.hpp>
 #include <cayspin/field/dear.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
@@ -17,8 +20,10 @@
 #include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slab_demag.hpp>
 #include <cayspin/field/slab_demag_on_host.hpp>
+#include <cayspin/field/slonczewski.hpp>
 #include <cayspin/field/uniaxial_anisotropy.hpp>
 #include <cayspin/field/zeeman.hpp>
+#include <cayspin/field/zhang_li.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/generator/rigid_body.hpp>
@@ -31,6 +36,7 @@
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/observer/record.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
+#include <cayspin/observer/topological_charge.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/scalars.hpp>

@@ -90,6 +90,7 @@ concept counts_evaluations = requires(Stepper const& stepper) {
 /// | `static bool depends_on_time` | H changes with t, not by what is prepared | false |
 /// | `bool is_stationary(exec, spins)` | prepared once for all t and spins | true without prepare |
 /// | `bool needs_time_alone(exec, spins)` | t is enough to prepare | one of the two above |
+/// | `static bool is_conservative` | false: H is the derivative of no energy, as a torque | true |
 ///
 /// A term with a prepare has the device members in what that returns. One that is made of others
 /// gets the host members from Forwarding (field/forwarding.hpp).

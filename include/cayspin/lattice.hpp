@@ -31,6 +31,8 @@ struct Lattice {
   /// Of a part of a larger lattice (mpi::Domain): its ghosts along y and z, which `shape` includes.
   std::array<Ghosts, 3> ghosts{};
   Part const* part = nullptr;
+  /// Of a crystal (crystal.hpp): its planes along z are the sites of a cell in turn.
+  std::int64_t cell_sites = 1;
 
   static Lattice chain(std::int64_t nx, double spacing = 1, Boundary boundary = Boundary::open) {
     return {{nx, 1, 1}, {spacing, spacing, spacing}, {boundary, boundary, boundary}};

@@ -55,6 +55,7 @@ class Minimizer {
   Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
                    MinimizeOptions const& options = {}) {
     detail::check_access<Exec, Memory>();
+    detail::check_conservative<Field>();
     Kokkos::Profiling::ScopedRegion const region("cayspin::minimize");
     require_lattice("cayspin::minimize", moves_.lattice(), spins.lattice());
     if (!(options.torque >= least_bound))

@@ -52,6 +52,21 @@ constexpr void check_energy_density() {
                 "that returns typename Stencil::value_type, with field = -d energy / d spin.");
 }
 
+/// Is H of a term, or of a generator's field, the derivative of an energy?
+template <class Source>
+inline constexpr bool is_conservative = [] {
+  if constexpr (requires { requires !Source::is_conservative; }) return false;
+  return true;
+}();
+
+/// For what follows an energy.
+template <class Source>
+constexpr void check_conservative() {
+  static_assert(is_conservative<Source>,
+                "This needs a field that is the derivative of an energy, without terms that say "
+                "is_conservative = false, such as ZhangLi and Slonczewski.");
+}
+
 /// `h` and a term's field at a stencil's centre: most terms add it in fewer operations.
 template <class Term, class Stencil>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(

@@ -114,7 +114,7 @@ class Micromagnetic : public ReducedUnits {
   double exchange(double A) const { return 2 * A / (pressure_ * length_unit() * length_unit()); }
   /// The constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2.
   double anisotropy(double Ku) const { return 2 * Ku / pressure_; }
-  /// The constant of InterfacialDmi, from D in J/m^2.
+  /// The constant of InterfacialDmi and BulkDmi, from D in J/m^2.
   double dmi(double D) const { return D / (pressure_ * length_unit()); }
   /// The strength of SlabDemag, from a demagnetising factor.
   double demagnetization(double factor) const { return factor; }

@@ -99,6 +99,9 @@ inline double finite(double number, char const* what) {
   if (!std::isfinite(number)) throw std::invalid_argument(std::string(what) + " must be finite");
   return number;
 }
+inline Vec3<double> finite(Vec3<double> const& v, char const* what) {
+  return {finite(v.x, what), finite(v.y, what), finite(v.z, what)};
+}
 
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask const& condition,

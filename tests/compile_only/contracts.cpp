@@ -30,6 +30,7 @@ inline constexpr bool are_terms = (FieldTerm<Terms, Spins<Real>> && ...);
 template <class Real>
 inline constexpr bool terms_of_cayspin =
     are_terms<Real, Exchange, UniaxialAnisotropy, Zeeman, TimeDependentZeeman<Rotating>, SlabDemag,
+              CubicAnisotropy, InterfacialDmi, BulkDmi, Biquadratic, ZhangLi, Slonczewski,
               LayerAveragedSlabDemag<Kokkos::HostSpace>, HostField<Spins<Real>, SlabDemagOnHost>,
               SiteDependentExchange<Real, Kokkos::HostSpace>,
               SiteDependentUniaxialAnisotropy<Scalars<Real>, Vec3<double>>, EffectiveField<>,
@@ -56,6 +57,17 @@ static_assert(!detail::is_local<EffectiveField<Zeeman, Exchange>>);
 static_assert(!detail::is_local<LandauLifshitz<EffectiveField<Zeeman>>>);
 static_assert(detail::is_local<Orthogonal<RigidBody>>);
 static_assert(detail::energy_terms<Orthogonal<Llg<double>>> == 2);
+
+using WithTorque = EffectiveField<Exchange, Slonczewski>;
+template <class Field>
+using WithVacancies = FieldWithVacancies<Field, double, Kokkos::HostSpace>;
+static_assert(detail::is_conservative<WithVacancies<EffectiveField<Exchange, Zeeman>>> &&
+              detail::is_conservative<EffectiveField<>> && detail::is_conservative<RigidBody> &&
+              detail::is_conservative<Orthogonal<Orthogonal<Llg<double>>>>);
+static_assert(!detail::is_conservative<ZhangLi> &&
+              !detail::is_conservative<WithVacancies<WithTorque>> &&
+              !detail::is_conservative<EffectiveField<Zeeman, WithVacancies<WithTorque>>> &&
+              !detail::is_conservative<Orthogonal<LandauLifshitz<WithTorque>>>);
 
 using F64 = Spins<double>;
 using Adaptive = AdaptiveRkmk<F64, tableau::DormandPrince5>;

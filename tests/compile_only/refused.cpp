@@ -72,6 +72,8 @@ inline void refused() {
     stepper.step(exec, LandauLifshitz(EffectiveField(term), 0.1), spins, 0, 0.1);
   };
   [[maybe_unused]] LandauLifshitz const spin_chain(EffectiveField(Zeeman{{0, 0, 1}}), 0.1);
+  [[maybe_unused]] LandauLifshitz const torque(
+      EffectiveField(ZhangLi(Lattice::chain(3), {1, 0, 0})), 0);
   [[maybe_unused]] TimeDependentZeeman const rotating([](double t) {
     return Vec3<double>{t, 0, 1};
   });
@@ -203,5 +205,14 @@ inline void refused() {
 #endif
 #if MISTAKE(33)
   with(Dear(spins, Term()));
+#endif
+#if MISTAKE(34)
+  minimize(exec, EffectiveField(Zeeman{{0, 0, 1}}, Slonczewski(1, 0, {0, 0, 1})), spins);
+#endif
+#if MISTAKE(35)
+  { EnergyControl const control{orthogonal(torque), spins}; }
+#endif
+#if MISTAKE(36)
+  EnergyProjection(spins, LieEuler(spins)).step(exec, torque, spins, 0, 0.1);
 #endif
 }

@@ -104,7 +104,8 @@ TYPED_TEST(Fields, WhatTurnsSpinsDiffersByAMultipleOfThem) {
                               Lattice::chain(19, 1, Boundary::periodic)}) {
     EffectiveField const field(Exchange(lattice, 1.3), UniaxialAnisotropy(0.5, {1, 0, 0}),
                                UniaxialAnisotropy(0.4, {0, 1, 0}), SlabDemag({0, 0, 1}, 0.6),
-                               UniaxialAnisotropy(0.3, {1, 2, 3}), Zeeman{{0.1, 0.2, 0.3}});
+                               UniaxialAnisotropy(0.3, {1, 2, 3}), Zeeman{{0.1, 0.2, 0.3}},
+                               CubicAnisotropy(0.7, {1, 2, 2}, {2, 1, -2}));
     auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 7));
     auto const prepared = detail::prepare_term(field, this->exec, spins, 0);
     auto const h = evaluated(this->exec, field, spins);
@@ -162,6 +163,11 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   auto const lattice = Lattice::chain(4);
   EXPECT_THROW(UniaxialAnisotropy(1, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(UniaxialAnisotropy(1, {0, nan, 0}), std::invalid_argument);
+  EXPECT_THROW(CubicAnisotropy(1, {0, 0, 0}, {0, 1, 0}), std::invalid_argument);
+  EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {0, nan, 0}), std::invalid_argument);
+  EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {3e-9, 1, 0}), std::invalid_argument);
+  EXPECT_NO_THROW(CubicAnisotropy(1, {2, 0, 0}, {1e-9, 2, 0}));
+  EXPECT_THROW(Slonczewski(1, 0, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemag({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({1, 1, 0}, 1, true), std::invalid_argument);
@@ -192,6 +198,24 @@ TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
     refuses("cayspin::Exchange: the constant must be finite", [&] { Exchange(lattice, bad); });
     refuses("cayspin::InterfacialDmi: the constant must be finite",
             [&] { InterfacialDmi(lattice, bad); });
+    refuses("cayspin::BulkDmi: the constant must be finite", [&] { BulkDmi(lattice, bad); });
+    refuses("cayspin::Biquadratic: the constant must be finite",
+            [&] { Biquadratic(lattice, bad); });
+    refuses("cayspin::ZhangLi: the velocity must be finite", [&] {
+      ZhangLi(lattice, {0, bad, 0});
+    });
+    refuses("cayspin::ZhangLi: the nonadiabaticity must be finite", [&] {
+      ZhangLi(lattice, {1, 0, 0}, bad);
+    });
+    refuses("cayspin::Slonczewski: the damping-like torque must be finite", [&] {
+      Slonczewski(bad, 0, {0, 0, 1});
+    });
+    refuses("cayspin::Slonczewski: the field-like torque must be finite", [&] {
+      Slonczewski(0, bad, {0, 0, 1});
+    });
+    refuses("cayspin::CubicAnisotropy: the constant must be finite", [&] {
+      CubicAnisotropy(bad, {1, 0, 0}, {0, 1, 0});
+    });
     refuses("cayspin::UniaxialAnisotropy: the constant must be finite", [&] {
       UniaxialAnisotropy(bad, {0, 0, 1});
     });

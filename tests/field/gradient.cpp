@@ -17,6 +17,37 @@ TYPED_TEST(Terms, Exchange) {
                 exchange_by_hand(lattice, 1.3));
 }
 
+TYPED_TEST(Terms, DzyaloshinskiiMoriya) {
+  Vec3<double> const n{1, -2, 2};
+  for (auto const& lattice : lattices) {
+    this->check("interfacial DMI", lattice, InterfacialDmi(lattice, 0.7, n),
+                dmi_by_hand(lattice, [&](Bond const& bond) {
+                  return 0.7 / bond.spacing * cross(unit(n), bond.along);
+                }));
+    this->check(
+        "bulk DMI", lattice, BulkDmi(lattice, 0.7),
+        dmi_by_hand(lattice, [](Bond const& bond) { return -0.7 / bond.spacing * bond.along; }));
+  }
+}
+
+TYPED_TEST(Terms, Biquadratic) {
+  for (auto const& lattice : lattices)
+    this->check("biquadratic", lattice, EffectiveField(Biquadratic(lattice, -0.6)),
+                biquadratic_by_hand(lattice, -0.6));
+}
+
+TYPED_TEST(Terms, CubicAnisotropy) {
+  auto const& lattice = lattices[0];
+  this->check("any axes", lattice, CubicAnisotropy(1.3, {1, 2, 2}, {2, 1, -2}),
+              cubic_by_hand(1.3, {1, 2, 2}, {2, 1, -2}));
+  this->check("one coordinate", lattice, CubicAnisotropy(-0.9, {0, 0, 2}, {3, 4, 0}),
+              cubic_by_hand(-0.9, {0, 0, 2}, {3, 4, 0}));
+  for (auto const& [e1, e2] :
+       {std::pair<Vec3<double>, Vec3<double>>{{2, 0, 0}, {0, 1, 0}}, {{0, -3, 0}, {0, 0, 1}}})
+    this->check("along coordinates", lattice, CubicAnisotropy(1.3, e1, e2),
+                cubic_by_hand(1.3, {1, 0, 0}, {0, 1, 0}));
+}
+
 TYPED_TEST(Terms, LocalTerms) {
   auto const& lattice = lattices[0];
   this->check("anisotropy", lattice, UniaxialAnisotropy(1.7, {1, -2, 2}),

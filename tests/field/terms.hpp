@@ -23,19 +23,21 @@ struct ByHand {
 struct Bond {
   std::int64_t from, to;
   double spacing;
+  Vec3<double> along;  // the axis
 };
 
 inline std::vector<Bond> bonds(Lattice const& lattice) {
   std::vector<Bond> all;
   auto const& n = lattice.shape;
   std::int64_t const stride[3] = {1, n[0], n[0] * n[1]};
+  Vec3<double> const along[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   for (int axis = 0; axis < 3; ++axis)
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
       std::int64_t const index = site / stride[axis] % n[axis];
       bool const end = index + 1 == n[axis];
       if (n[axis] == 1 || (end && lattice.boundary[axis] == Boundary::open)) continue;
       std::int64_t const next = end ? site - (n[axis] - 1) * stride[axis] : site + stride[axis];
-      all.push_back({site, next, lattice.spacing[axis]});
+      all.push_back({site, next, lattice.spacing[axis], along[axis]});
     }
   return all;
 }
@@ -76,6 +78,60 @@ inline ByHand exchange_by_hand(Lattice const& lattice,
 
 inline ByHand exchange_by_hand(Lattice const& lattice, double constant) {
   return exchange_by_hand(lattice, [=](Bond const&) { return constant; });
+}
+
+/// E = sum over bonds of (m x m').vector.
+inline ByHand dmi_by_hand(Lattice const& lattice, std::function<Vec3<double>(Bond const&)> vector) {
+  return {[=, all = bonds(lattice)](auto const& m, std::int64_t site) {
+            Vec3<double> h{0, 0, 0};
+            for (auto const& bond : all) {
+              if (bond.from == site) h = h + cross(vector(bond), at(m, bond.to));
+              if (bond.to == site) h = h - cross(vector(bond), at(m, bond.from));
+            }
+            return h;
+          },
+          [=, all = bonds(lattice)](auto const& m) {
+            double sum = 0;
+            for (auto const& bond : all)
+              sum += dot(cross(at(m, bond.from), at(m, bond.to)), vector(bond));
+            return sum;
+          }};
+}
+
+inline ByHand biquadratic_by_hand(Lattice const& lattice, double constant) {
+  return {[=, all = bonds(lattice)](auto const& m, std::int64_t site) {
+            Vec3<double> h{0, 0, 0};
+            for (auto const& bond : all) {
+              auto const along = 2 * constant * dot(at(m, bond.from), at(m, bond.to));
+              if (bond.from == site) h = h + along * at(m, bond.to);
+              if (bond.to == site) h = h + along * at(m, bond.from);
+            }
+            return h;
+          },
+          [=, all = bonds(lattice)](auto const& m) {
+            double sum = 0;
+            for (auto const& bond : all)
+              sum -= constant * std::pow(dot(at(m, bond.from), at(m, bond.to)), 2);
+            return sum;
+          }};
+}
+
+inline ByHand cubic_by_hand(double k, Vec3<double> const& axis1, Vec3<double> const& axis2) {
+  Vec3<double> const e[3] = {unit(axis1), unit(axis2), cross(unit(axis1), unit(axis2))};
+  return each_site(
+      [=](auto const& m) {
+        Vec3<double> h{0, 0, 0};
+        for (auto const& axis : e) {
+          double const along = dot(m, axis);
+          h = h + 2 * k * along * (along * along - dot(m, m)) * axis;
+        }
+        return h;
+      },
+      [=](auto const& m) {
+        double sum = dot(m, m) * dot(m, m);
+        for (auto const& axis : e) sum -= std::pow(dot(m, axis), 4);
+        return 0.5 * k * sum;
+      });
 }
 
 inline ByHand anisotropy_by_hand(double k, Vec3<double> const& axis) {

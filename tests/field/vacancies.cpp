@@ -16,6 +16,13 @@ auto every_term(Lattice const& lattice) {
                         TimeDependentZeeman(turning));
 }
 
+/// Those without a derivative among them.
+auto bonds_and_torques(Lattice const& lattice) {
+  return EffectiveField(
+      Biquadratic(lattice, 0.6), BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),
+      CubicAnisotropy(0.7, {1, 2, 2}, {2, 1, -2}), Slonczewski(0.2, 0.1, {1, 0, 1}));
+}
+
 /// A box of sites, and the sites beside it, which are vacant; all others are occupied.
 struct Box {
   Lattice lattice;
@@ -67,16 +74,16 @@ class Vacancies : public GradientTest<Backend> {
     return numbers_of(spins);
   }
 
-  template <class Stepper>
-  void expect_cut_off() const {
+  template <class Stepper, class Make>
+  void expect_cut_off(Make const& field_on) const {
     auto const m = random_directions(box.lattice.sites(), 61);
     auto alone = box.lattice;
     alone.shape = box.shape;
     alone.boundary.fill(Boundary::open);
-    FieldWithVacancies const field(every_term(box.lattice), occupation());
+    FieldWithVacancies const field(field_on(box.lattice), occupation());
     auto const found = after_ten_steps<Stepper>(field, box.lattice, m);
     auto const start = numbers_of(spins_of<Spins>(box.lattice, m));
-    EXPECT_EQ(box.part(found), after_ten_steps<Stepper>(every_term(alone), alone, box.part(m)));
+    EXPECT_EQ(box.part(found), after_ten_steps<Stepper>(field_on(alone), alone, box.part(m)));
     for (std::int64_t site = 0; site < box.lattice.sites(); ++site)
       for (int c = 0; c < 3; ++c)
         ASSERT_EQ(found[3 * site + c] == start[3 * site + c], box.is_vacant(site)) << site;
@@ -89,12 +96,13 @@ TYPED_TEST_SUITE(Vacancies, Backends, BackendName);
 // To the bit: the spins around a box of vacancies do not reach into it.
 TYPED_TEST(Vacancies, CutAClusterOff) {
   using Spins = typename TypeParam::Spins;
-  this->template expect_cut_off<Rkmk4<Spins>>();
+  this->template expect_cut_off<Rkmk4<Spins>>(every_term);
+  this->template expect_cut_off<Rkmk4<Spins>>(bonds_and_torques);
 }
 
 TYPED_TEST(Vacancies, CutAClusterOffForTheDerivativeOfTheField) {
   using Spins = typename TypeParam::Spins;
-  this->template expect_cut_off<LieEuler<Spins, isotropy::Analytic>>();
+  this->template expect_cut_off<LieEuler<Spins, isotropy::Analytic>>(every_term);
 }
 
 TYPED_TEST(Vacancies, HaveNoFieldAndNoEnergy) {

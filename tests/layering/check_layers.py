@@ -10,7 +10,7 @@ import tempfile
 # list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
 LIBRARY = [
     ("numbers", ["detail/pack.hpp", "detail/unrolled.hpp", "units.hpp", "vec3.hpp"]),
-    ("lattice", ["lattice.hpp", "lattice/", "part.hpp"]),
+    ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
     ("loops over sites", ["detail/"]),
     ("spins", ["spin_field.hpp", "stencil.hpp"]),
     ("contracts", ["concepts.hpp", "checkpoint.hpp", "optional_members.hpp", "step.hpp", "field/local_part.hpp"]),

@@ -14,6 +14,22 @@ class Exact : public ::testing::Test {
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
   typename Backend::Exec exec;
+
+  /// A free spiral turns about an axis by d with tan d = D dx / A from site to site.
+  template <class Dmi>
+  void expect_spiral(Lattice const& lattice, Dmi const& dmi, double angle, double a,
+                     Vec3<double> const& about) const {
+    auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+    EffectiveField const field(Exchange(lattice, a), dmi);
+    double const bound = std::is_same_v<Real, float> ? 5e-5 : 1e-8;
+    auto const found = minimize(exec, field, spins, {.torque = bound});
+    ASSERT_EQ(found.end, MinimizeEnd::converged);
+    auto const m = numbers_of(spins);
+    for (std::int64_t i = 0; i + 1 < lattice.sites(); ++i) {
+      EXPECT_NEAR(dot(at(m, i), at(m, i + 1)), std::cos(angle), 20 * bound) << i;
+      EXPECT_NEAR(dot(cross(at(m, i), at(m, i + 1)), about), std::sin(angle), 20 * bound) << i;
+    }
+  }
 };
 TYPED_TEST_SUITE(Exact, Backends, BackendName);
 
@@ -70,19 +86,12 @@ TYPED_TEST(Exact, BlochWall) {
   EXPECT_LT(order, 2.1);
 }
 
-// A free spiral turns by d with tan d = D dx / A from site to site.
 TYPED_TEST(Exact, Spiral) {
   double const a = 1.5, d = 0.6;
   auto const lattice = Lattice::chain(60);
-  auto spins =
-      spins_of<typename TestFixture::Spins>(lattice, random_directions(lattice.sites(), 3));
-  EffectiveField const field(Exchange(lattice, a), InterfacialDmi(lattice, d, {0, 0, 1}));
-  double const bound = std::is_same_v<typename TestFixture::Real, float> ? 5e-5 : 1e-9;
-  auto const found = minimize(this->exec, field, spins, {.torque = bound});
-  ASSERT_EQ(found.end, MinimizeEnd::converged);
-  auto const m = numbers_of(spins);
-  for (std::int64_t i = 0; i + 1 < lattice.sites(); ++i)
-    EXPECT_NEAR(dot(at(m, i), at(m, i + 1)), std::cos(std::atan(d / a)), 20 * bound) << i;
+  this->expect_spiral(lattice, InterfacialDmi(lattice, d, {0, 0, 1}), std::atan(d / a), a,
+                      {0, -1, 0});
+  this->expect_spiral(lattice, BulkDmi(lattice, d), std::atan(d / a), a, {1, 0, 0});
 }
 
 }  // namespace

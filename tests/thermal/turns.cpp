@@ -162,7 +162,7 @@ TYPED_TEST(ThermalTurns, OfSitesOneByOneAreThoseOfPacks) {
     return Kernel{spins.array(),
                   spins.output(false),
                   {0x123456789abcdefULL, 1ULL << 40U},
-                  detail::RandomTurn<TypeParam, true>(0.2),
+                  {detail::RandomTurn<TypeParam, true>(0.2)},
                   true,
                   true,
                   0,

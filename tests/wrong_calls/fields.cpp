@@ -57,6 +57,9 @@ TEST(WrongCallsOfSums, SpinsOfOthers) {
       expect_refused(all_of("spins " + kind, generator_on(own), spins));
       expect_refused(all_of_term("Exchange, spins " + kind, Exchange(own, 1), spins));
       expect_refused(all_of_term("InterfacialDmi, spins " + kind, InterfacialDmi(own, 1), spins));
+      expect_refused(all_of_term("BulkDmi, spins " + kind, BulkDmi(own, 1), spins));
+      expect_refused(all_of_term("Biquadratic, spins " + kind, Biquadratic(own, 1), spins));
+      expect_refused(all_of_term("ZhangLi, spins " + kind, ZhangLi(own, {1, 1, 1}), spins));
       expect_refused(all_of_term("LayerAveragedSlabDemag, spins " + kind,
                                  LayerAveragedSlabDemag<Kokkos::HostSpace>(own, 1), spins));
       expect_refused(
@@ -268,6 +271,12 @@ TEST(WrongCallsOfLattices, NoneThatCannotBe) {
         {std::string(name) + ", ScalarField", [&] { Scalars("numbers", lattice); }},
         {std::string(name) + ", Exchange", [&] { Exchange(lattice, 1); }},
         {std::string(name) + ", InterfacialDmi", [&] { InterfacialDmi(lattice, 1); }},
+        {std::string(name) + ", BulkDmi", [&] { BulkDmi(lattice, 1); }},
+        {std::string(name) + ", Biquadratic", [&] { Biquadratic(lattice, 1); }},
+        {std::string(name) + ", ZhangLi",
+         [&] {
+           ZhangLi(lattice, {1, 0, 0});
+         }},
         {std::string(name) + ", LayerAveragedSlabDemag",
          [&] { LayerAveragedSlabDemag<Kokkos::HostSpace>(lattice, 0); }},
         {std::string(name) + ", HostField", [&] { HostField<Spins, NoField>(lattice, NoField()); }},

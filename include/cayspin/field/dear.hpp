@@ -97,6 +97,7 @@ class Dear {
 
  public:
   using spins_type = Spins;
+  static constexpr bool is_conservative = detail::is_conservative<Term>;
 
   Dear(Lattice const& lattice, Term term)
       : term_(std::move(term)), state_(std::make_shared<State>("Dear::field", lattice)) {}

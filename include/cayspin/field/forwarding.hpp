@@ -16,6 +16,7 @@ class Forwarding {
  public:
   static constexpr bool depends_on_time = (detail::depends_on_time<Parts> || ...);
   static constexpr bool is_local = (detail::is_local<Parts> && ...);
+  static constexpr bool is_conservative = (detail::is_conservative<Parts> && ...);
 
   template <class Exec, class Spins>
   auto prepare(Exec const& exec, Spins const& spins, double t) const {

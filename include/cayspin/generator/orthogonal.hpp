@@ -124,6 +124,11 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   Generator generator_;
 };
 
+namespace detail {
+template <class Generator>
+inline constexpr bool is_conservative<Orthogonal<Generator>> = is_conservative<Generator>;
+}  // namespace detail
+
 template <class Generator>
 Orthogonal<Generator> orthogonal(Generator generator) {
   return Orthogonal<Generator>(std::move(generator));

@@ -96,6 +96,7 @@ class EnergyControl {
         options_(options),
         energy_(options.energy),
         axes_("EnergyControl::axes", like.lattice()) {
+    detail::check_conservative<Generator>();
     if (!generator_.is_conservative())
       throw std::invalid_argument(
           "cayspin::EnergyControl: the generator does not conserve its energy (damping 0 does)");

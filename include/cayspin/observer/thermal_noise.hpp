@@ -9,22 +9,60 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/step.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// Both halves of the noise between two steps, or one of them.
+/// One turn for all sites.
 template <class Real, bool OnHost>
+struct OneTurn {
+  RandomTurn<Real, OnHost> turn;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION RandomTurn<Real, OnHost> const& at(Site const&) const {
+    return turn;
+  }
+  template <class Site, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const&, Vector const&, Vector const& after) const {
+    return after;
+  }
+};
+
+/// One for each site of a crystal's cell, and none where a spin does not move.
+template <class Real, bool OnHost>
+struct TurnOfCellSite {
+  RandomTurn<Real, OnHost> const* turns;
+  std::int32_t cell_sites;
+  SiteArray<Real, 1> moves;  // without data: all do
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION RandomTurn<Real, OnHost> const& at(Site const& site) const {
+    return turns[site.z() % cell_sites];
+  }
+  template <class Site, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector kept(Site const& site, Vector const& before,
+                                          Vector const& after) const {
+    using Value = typename Site::value_type;
+    if (!moves.data) return after;
+    return select<Value>(site.load(moves) == Value(0), before, after);
+  }
+};
+
+/// Both halves of the noise between two steps, or one of them.
+template <class Real, bool OnHost, class Turns = OneTurn<Real, OnHost>>
 struct TurnAtRandom {
   SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
   RandomBits<OnHost> random;
-  RandomTurn<Real, OnHost> turn;
+  Turns turns;
   bool after, before;                     // which halves
   std::int64_t first_y, first_z, ny, nz;  // of the part in the whole lattice, and that
   std::uint64_t places;                   // for random bits, in a row
@@ -42,14 +80,16 @@ struct TurnAtRandom {
     auto const row = static_cast<std::uint64_t>(z * ny + y) * places;
     auto const bits =
         random.template get<Bits, lanes_of<Value>>(row + static_cast<std::uint64_t>(site.x()));
-    Vec3<Value> m = site.load(spins);
+    auto const& turn = turns.at(site);
+    Vec3<Value> const found = site.load(spins);
+    Vec3<Value> m = found;
     if (after) {
       // The turn's own round-off is the same in each step: left alone, lengths would drift.
       m = turn.template turned<0>(bits, m);
       m = multiply_add(Value(Real(-0.5)), dot(m, m), Value(Real(1.5))) * m;
     }
     if (before) m = turn.template turned<5>(bits, m);
-    site.store(m, output);
+    site.store(turns.kept(site, found, m), output);
   }
 
  private:
@@ -65,6 +105,8 @@ struct TurnAtRandom {
 struct ThermalNoiseOptions {
   double temperature = 0;  ///< in units of moment times field: kB T over the energy of a site
   std::uint64_t seed = 0;
+  /// Of each site of a crystal's cell: its gyromagnetic ratio over its moment. Empty: all 1.
+  std::vector<double> cell_sites = {};
 };
 
 /// The noise of a temperature around the steps of any one-step method for LandauLifshitz with
@@ -94,6 +136,27 @@ class ThermalNoise {
       throw std::invalid_argument("cayspin::ThermalNoise: the damping must be finite and >= 0");
     if (!(options.temperature >= 0) || !std::isfinite(options.temperature))
       throw std::invalid_argument("cayspin::ThermalNoise: the temperature must be finite and >= 0");
+    auto const sites = static_cast<std::int64_t>(options.cell_sites.size());
+    if (sites != 0 && sites != like.lattice().cell_sites)
+      throw std::invalid_argument(
+          "cayspin::ThermalNoise: there is not one number for each site of a cell");
+    for (double const number : options.cell_sites)
+      if (!(number > 0) || !std::isfinite(number))
+        throw std::invalid_argument(
+            "cayspin::ThermalNoise: the numbers of a cell's sites must be finite and > 0");
+    if (sites > 0)
+      cell_sites_ = Turns("cayspin::ThermalNoise::cell_sites", options.cell_sites.size());
+  }
+  /// The same, without noise where `moves` is 0.
+  ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
+               ScalarField<Real, typename Spins::memory_space> const& moves)
+      : ThermalNoise(like, damping, options) {
+    require_lattice("cayspin::ThermalNoise", lattice_, moves.lattice());
+    moves_ = moves;
+    if (options_.cell_sites.empty()) {
+      options_.cell_sites.assign(static_cast<std::size_t>(lattice_.cell_sites), 1);
+      cell_sites_ = Turns("cayspin::ThermalNoise::cell_sites", options_.cell_sites.size());
+    }
   }
 
   /// The noise before or after step number `step`, of length dt, also of ghosts.
@@ -133,18 +196,48 @@ class ThermalNoise {
     detail::check_access<Exec, typename Spins::memory_space>();
     require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
     double const u = damping_ * options_.temperature * std::abs(dt);
-    if (!(u <= 1))
+    double largest = u;
+    for (double const number : options_.cell_sites) largest = std::max(largest, number * u);
+    if (!(largest <= 1))
       throw std::invalid_argument(
           "cayspin::ThermalNoise: damping temperature dt must be at most 1: a smaller dt");
     if (u == 0) return;
+    if (options_.cell_sites.empty()) {
+      run(exec, step, after, before, spins, detail::OneTurn<Real, on_host<Exec>>{turn_of<Exec>(u)});
+      return;
+    }
+    if (u != cell_sites_u_) {
+      auto const turns = Kokkos::create_mirror_view(cell_sites_);
+      for (std::size_t site = 0; site < options_.cell_sites.size(); ++site)
+        turns(site) = turn_of<Exec>(u * options_.cell_sites[site]);
+      exec.fence("cayspin::ThermalNoise: the turns before are done");
+      Kokkos::deep_copy(exec, cell_sites_, turns);
+      exec.fence("cayspin::ThermalNoise: turns of a cell's sites");
+      cell_sites_u_ = u;
+    }
+    detail::TurnOfCellSite<Real, on_host<Exec>> turns{
+        cell_sites_.data(), static_cast<std::int32_t>(cell_sites_.size()), {}};
+    if (moves_.lattice() == lattice_) turns.moves = moves_.array();
+    run(exec, step, after, before, spins, turns);
+  }
+
+  template <class Exec>
+  static constexpr bool on_host = detail::is_host_execution<Exec>;
+  template <class Exec>
+  static detail::RandomTurn<Real, on_host<Exec>> turn_of(double u) {
+    return detail::RandomTurn<Real, on_host<Exec>>(u - u * u / 12);
+  }
+
+  template <class Exec, class TurnsOfSites>
+  void run(Exec const& exec, std::int64_t step, bool after, bool before, Spins const& spins,
+           TurnsOfSites const& turns) const {
     auto const& all = whole(lattice_);
     auto const begin = lattice_.part ? lattice_.part->begin() : std::array<std::int64_t, 3>{};
-    constexpr bool on_host = detail::is_host_execution<Exec>;
-    using Kernel = detail::TurnAtRandom<Real, on_host>;
+    using Kernel = detail::TurnAtRandom<Real, on_host<Exec>, TurnsOfSites>;
     Kernel const kernel{spins.array(),
                         spins.output(false),
                         {options_.seed, static_cast<std::uint64_t>(step)},
-                        detail::RandomTurn<Real, on_host>(u - u * u / 12),
+                        turns,
                         after,
                         before,
                         begin[1],
@@ -169,9 +262,17 @@ class ThermalNoise {
     }
   };
 
+  using Turns = Kokkos::View<
+      detail::RandomTurn<Real,
+                         detail::is_host_execution<typename Spins::memory_space::execution_space>>*,
+      typename Spins::memory_space>;
+
   Lattice lattice_;
   double damping_;
   ThermalNoiseOptions options_;
+  ScalarField<Real, typename Spins::memory_space> moves_;
+  Turns cell_sites_;
+  mutable double cell_sites_u_ = -1;  // what they are made of
 };
 
 }  // namespace cayspin::inline v0_1

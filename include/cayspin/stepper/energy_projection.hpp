@@ -122,6 +122,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
         "member is_conservative().");
     static_assert(!detail::depends_on_time<Generator>,
                   "EnergyProjection refuses fields that depend on t.");
+    detail::check_conservative<Generator>();
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, next_);
     if (!generator.is_conservative())

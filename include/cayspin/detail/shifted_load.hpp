@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+// Spins some sites away, along x, y and z at once.
+namespace cayspin::inline v0_1::detail {
+
+/// The vectors of a field, as sites see those that are not beside them. Past an open end there is
+/// the zero vector.
+template <class Real>
+struct DistantSites {
+  SiteArray<Real, 3> array;
+  std::int32_t extent[3];
+  bool periodic[3];
+  std::ptrdiff_t pitch;
+
+  DistantSites(SiteArray<Real, 3> const& of, RowLayout const& layout)
+      : array(of),
+        extent{layout.nx, layout.ny, layout.nz},
+        periodic{layout.periodic[0], layout.periodic[1], layout.periodic[2]},
+        pitch(layout.pitch) {}
+
+  /// Of sites that are all there.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> inside(std::ptrdiff_t offset) const {
+    return load_at<Value>(array.data + offset);
+  }
+
+  /// The first site of the row that is dy and dz away, at most the extents; null past an open end.
+  KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z) const {
+    y = wrapped(y, 1), z = wrapped(z, 2);
+    if (y < 0 || z < 0) return nullptr;
+    return array.data + (std::ptrdiff_t(z) * extent[1] + y) * pitch;
+  }
+
+  /// Sites x, x + 1, ... of a row, and those of its other end, at most an extent beside it.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> along(Real const* row, std::int32_t x) const {
+    constexpr std::int32_t lanes = lanes_of<Value>;
+    std::int32_t const before = -x, after = x + lanes - extent[0];
+    if (before <= 0 && after <= 0) return load_at<Value>(row + x);
+    if constexpr (lanes > 1) {
+      // A pack that leaves the row by one site is read as it lies there.
+      if (before <= 1 && after <= 1) {
+        std::int32_t const at = wrapped(before == 1 ? -1 : extent[0], 0);
+        auto const is_outside =
+            lane_numbers<Value>() == Value(scalar_t<Value>(before == 1 ? 0 : lanes - 1));
+        auto const replaced = [&](Real const* component) {
+          Value const other(at < 0 ? scalar_t<Value>(0)
+                                   : static_cast<scalar_t<Value>>(component[at]));
+          return select<Value>(is_outside, other, load<Value>(component + x));
+        };
+        return {replaced(row), replaced(row + array.stride), replaced(row + 2 * array.stride)};
+      }
+    }
+    return {lane_by_lane<Value>(row, x), lane_by_lane<Value>(row + array.stride, x),
+            lane_by_lane<Value>(row + 2 * array.stride, x)};
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* from) const {
+    return {load<Value>(from), load<Value>(from + array.stride),
+            load<Value>(from + 2 * array.stride)};
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION std::int32_t wrapped(std::int32_t i, int axis) const {
+    bool const before = i < 0, after = i >= extent[axis];
+    if (!before && !after) return i;
+    if (!periodic[axis]) return -1;
+    return before ? i + extent[axis] : i - extent[axis];
+  }
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value lane_by_lane(Real const* row, std::int32_t x) const {
+    using Scalar = scalar_t<Value>;
+    auto const at = [&](std::int32_t lane) {
+      // Lanes past the end of the row are sites of no row.
+      std::int32_t i = x + lane;
+      i = wrapped(i < 2 * extent[0] ? i : extent[0] - 1, 0);
+      return i < 0 ? Scalar(0) : static_cast<Scalar>(row[i]);
+    };
+    if constexpr (lanes_of<Value> == 1)
+      return at(0);
+    else
+      return Value([&](auto lane) { return at(static_cast<std::int32_t>(lane())); });
+  }
+};
+
+}  // namespace cayspin::inline v0_1::detail

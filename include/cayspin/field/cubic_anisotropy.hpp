@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/stencil.hpp>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace cayspin::inline v0_1 {
+
+/// Cubic anisotropy, with a, b, c the parts of m along the axes e1, e2 and e3 = e1 x e2:
+/// E = Kc (a^2 b^2 + b^2 c^2 + c^2 a^2) per site,
+/// H = -2 Kc [a (b^2 + c^2) e1 + b (c^2 + a^2) e2 + c (a^2 + b^2) e3].
+/// In reduced units, Kc is an energy of a site. Aharoni 2000, Sec. 5.1.2.
+class CubicAnisotropy {
+ public:
+  static constexpr bool is_local = true;
+
+  /// The axes are normalised. Throws std::invalid_argument when the constant is not finite, an axis
+  /// is zero or not finite, or the axes are not at right angles: |e1.e2| > 1e-9.
+  CubicAnisotropy(double constant, Vec3<double> const& axis1, Vec3<double> const& axis2)
+      : constant_(detail::finite(constant, "cayspin::CubicAnisotropy: the constant")),
+        axes_{normalized(axis1, "cayspin::CubicAnisotropy: the first axis"),
+              normalized(axis2, "cayspin::CubicAnisotropy: the second axis"),
+              {}} {
+    double const along = dot(axes_[0], axes_[1]);
+    if (!(std::abs(along) <= 1e-9))
+      throw std::invalid_argument(
+          "cayspin::CubicAnisotropy: the axes must be at right angles to each other");
+    axes_[1] = normalized(axes_[1] - along * axes_[0], "cayspin::CubicAnisotropy: the second axis");
+    axes_[2] = cross(axes_[0], axes_[1]);
+    along_coordinates_ = is_coordinate(axes_[0]) && is_coordinate(axes_[1]);
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Vec3<Value> const m = parts(stencil.center());
+    Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
+    return as_value<Value>(-2 * constant_) *
+           sum<Value>({m.x * (b + c), m.y * (c + a), m.z * (a + b)});
+  }
+  /// With |m|^2 - a^2 for b^2 + c^2, and so on, and without the multiple of m.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
+      Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
+    using Value = typename Stencil::value_type;
+    Vec3<Value> const m = parts(stencil.center());
+    return multiply_add(as_value<Value>(2 * constant_),
+                        sum<Value>({m.x * m.x * m.x, m.y * m.y * m.y, m.z * m.z * m.z}), h);
+  }
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& spin,
+                                                     Stencil const& rates) const {
+    Vec3<Value> const m = parts(spin), rate = parts(rates.center());
+    Vec3<Value> const half{m.x * rate.x, m.y * rate.y, m.z * rate.z};  // of the squares' rates
+    Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
+    Vec3<Value> const changes{rate.x * (b + c) + Value(2) * m.x * (half.y + half.z),
+                              rate.y * (c + a) + Value(2) * m.y * (half.z + half.x),
+                              rate.z * (a + b) + Value(2) * m.z * (half.x + half.y)};
+    return as_value<Value>(-2 * constant_) * sum(changes);
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return constant_ != 0; }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Vec3<Value> const m = parts(stencil.center());
+    Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
+    return as_value<Value>(constant_) * detail::multiply_add(a, b, Value(c * (a + b)));
+  }
+
+ private:
+  static bool is_coordinate(Vec3<double> const& axis) {
+    return int{axis.x == 0} + int{axis.y == 0} + int{axis.z == 0} == 2;
+  }
+
+  /// a, b and c. Where all axes are coordinates, x, y and z: E is the same in any order.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> parts(Vec3<Value> const& v) const {
+    if (along_coordinates_) [[likely]]
+      return v;
+    return {dot(v, as_value<Value>(axes_[0])), dot(v, as_value<Value>(axes_[1])),
+            dot(v, as_value<Value>(axes_[2]))};
+  }
+  /// The vector with these parts.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> sum(Vec3<Value> const& v) const {
+    if (along_coordinates_) [[likely]]
+      return v;
+    return multiply_add(
+        v.x, as_value<Value>(axes_[0]),
+        multiply_add(v.y, as_value<Value>(axes_[1]), v.z * as_value<Value>(axes_[2])));
+  }
+
+  double constant_;
+  Vec3<double> axes_[3];
+  bool along_coordinates_ = false;
+};
+
+}  // namespace cayspin::inline v0_1

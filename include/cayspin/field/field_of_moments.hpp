@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/field/effective_field.hpp>
+#include <cayspin/field/forwarding.hpp>
+#include <cayspin/field/local_part.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cayspin::inline v0_1 {
+
+namespace detail {
+
+/// A number for each site of a crystal's cell.
+struct NumbersOfCell {
+  double const* numbers;
+  std::int32_t cell_sites;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION auto at(Site const& site) const {
+    return as_value<typename Site::value_type>(numbers[site.z() % cell_sites]);
+  }
+};
+
+/// The numbers as they were given, for messages, and in memory.
+template <class MemorySpace>
+class CellNumbers {
+ public:
+  /// Throws std::invalid_argument unless there is a positive number for each site of a cell.
+  CellNumbers(char const* who, Lattice const& lattice, std::vector<double> const& numbers)
+      : view_(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(who)), numbers.size()) {
+    require_whole(who, lattice);
+    if (static_cast<std::int64_t>(numbers.size()) != lattice.cell_sites)
+      throw std::invalid_argument(std::string(who) +
+                                  ": there is not one number for each site of a cell");
+    for (double const number : numbers)
+      if (!(number > 0) || !std::isfinite(number))
+        throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
+    Kokkos::deep_copy(view_,
+                      Kokkos::View<double const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                          numbers.data(), numbers.size()));
+  }
+
+  NumbersOfCell numbers() const { return {view_.data(), static_cast<std::int32_t>(view_.size())}; }
+
+ private:
+  Kokkos::View<double*, MemorySpace> view_;
+};
+
+/// What FieldOfMoments is at one time.
+template <class Field>
+class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Field> {
+ public:
+  static constexpr bool is_local = detail::is_local<Field>;
+
+  FieldTimesNumbers(Field field, NumbersOfCell const& factors)
+      : field_(std::move(field)), factors_(factors) {}
+
+  KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    return factors_.at(stencil.site()) * field_.field(stencil);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const
+    requires has_linear_field<Field, Stencil>
+  {
+    return factors_.at(stencil.site()) * detail::linear_field(field_, stencil);
+  }
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
+                                                     Stencil const& rates) const {
+    return factors_.at(rates.site()) * detail::field_rate(field_, m, rates);
+  }
+
+ private:
+  Field field_;
+  NumbersOfCell factors_;
+};
+
+/// What ZeemanOfMoments is in kernels.
+struct AppliedToMoments {
+  static constexpr int degree = 1;  // H does not depend on the spins
+  static constexpr bool is_local = true;
+  Vec3<double> applied;
+  NumbersOfCell moments;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    return moments.at(stencil.site()) * as_value<typename Stencil::value_type>(applied);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    return Value(-1) * dot(stencil.center(), field(stencil));
+  }
+};
+
+}  // namespace detail
+
+/// The field of spins that have a moment mu and a gyromagnetic ratio g each, by sites of a
+/// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms have to
+/// stand inside; an applied field is a ZeemanOfMoments there. What conserves E without damping
+/// conserves it here.
+template <class Field, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
+ public:
+  static constexpr int energy_terms = detail::energy_terms<Field>;
+
+  /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a positive number
+  /// for each site of a cell.
+  FieldOfMoments(Lattice const& lattice, Field field, std::vector<double> const& moments,
+                 std::vector<double> const& gyromagnetic = {})
+      : field_(std::move(field)),
+        factors_("cayspin::FieldOfMoments", lattice, factors(moments, gyromagnetic)) {}
+
+  // For Forwarding.
+  template <class Make>
+  auto with_parts(Make const& make) const {
+    using Prepared = decltype(make(field_));
+    return detail::FieldTimesNumbers<Prepared>(make(field_), factors_.numbers());
+  }
+  template <class Test>
+  bool all_parts(Test const& test) const {
+    return test(field_);
+  }
+
+ private:
+  static std::vector<double> factors(std::vector<double> const& moments,
+                                     std::vector<double> const& gyromagnetic) {
+    auto made = moments;
+    for (std::size_t site = 0; site < made.size(); ++site)
+      made[site] = (gyromagnetic.empty()         ? 1
+                    : site < gyromagnetic.size() ? gyromagnetic[site]
+                                                 : 0) /
+                   moments[site];
+    return made;
+  }
+
+  Field field_;
+  detail::CellNumbers<MemorySpace> factors_;
+};
+
+template <class Field>
+FieldOfMoments(Lattice, Field, std::vector<double>, std::vector<double> = {})
+    -> FieldOfMoments<Field>;
+
+/// A uniform applied field on the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
+template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+class ZeemanOfMoments {
+ public:
+  static constexpr bool is_local = true;
+
+  /// Throws std::invalid_argument unless there is a positive moment for each site of a cell.
+  ZeemanOfMoments(Lattice const& lattice, Vec3<double> const& applied,
+                  std::vector<double> const& moments)
+      : applied_(applied), moments_("cayspin::ZeemanOfMoments", lattice, moments) {}
+
+  template <class Exec, class Spins>
+  detail::AppliedToMoments prepare(Exec const&, Spins const&, double) const {
+    return {applied_, moments_.numbers()};
+  }
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+
+ private:
+  Vec3<double> applied_;
+  detail::CellNumbers<MemorySpace> moments_;
+};
+
+ZeemanOfMoments(Lattice, Vec3<double>, std::vector<double>) -> ZeemanOfMoments<>;
+
+}  // namespace cayspin::inline v0_1

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/stencil.hpp>
+
+namespace cayspin::inline v0_1 {
+
+/// The torque of a current that is polarised along the unit vector p, t = a m x (p x m) - b m x p,
+/// as the field whose precession it is: H = a m x p + b p, which is m x t but for a multiple of m.
+/// With damping, LandauLifshitz makes t + damping m x t of it. The strengths a (damping-like, which
+/// turns m towards p) and b (field-like) are fields in reduced units. There is no energy:
+/// energy_density is 0, and what needs an energy refuses the term. Slonczewski 1996.
+class Slonczewski {
+ public:
+  static constexpr bool is_local = true;
+  static constexpr bool is_conservative = false;  // H is the derivative of no energy
+
+  /// `polarization` is normalised. Throws std::invalid_argument when it is zero, or a number not
+  /// finite.
+  Slonczewski(double damping_like, double field_like, Vec3<double> const& polarization)
+      : damping_like_(
+            detail::finite(damping_like, "cayspin::Slonczewski: the damping-like torque") *
+            normalized(polarization, "cayspin::Slonczewski: the polarization")),
+        field_like_(detail::finite(field_like, "cayspin::Slonczewski: the field-like torque") *
+                    normalized(polarization, "cayspin::Slonczewski: the polarization")) {}
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    return linear_field(stencil) + as_value<typename Stencil::value_type>(field_like_);
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    return cross(stencil.center(), as_value<typename Stencil::value_type>(damping_like_));
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
+    return damping_like_.x != 0 || damping_like_.y != 0 || damping_like_.z != 0;
+  }
+
+  /// It has no energy.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
+    return typename Stencil::value_type(0);
+  }
+
+ private:
+  Vec3<double> damping_like_, field_like_;  // a p and b p
+};
+
+}  // namespace cayspin::inline v0_1

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Couplings of pairs on crystals against sums over bonds by hand, on rows with several packs and
+// with a rest, past open ends and round periodic ones.
+#include "gradient.hpp"
+
+#include <cayspin/crystal.hpp>
+#include <cayspin/field/pair_couplings.hpp>
+
+namespace cayspin::test {
+namespace {
+
+template <class Backend>
+class Pairs : public GradientTest<Backend> {};
+TYPED_TEST_SUITE(Pairs, Backends, BackendName);
+
+/// Every bond from its first end.
+template <class Work>
+void for_each_bond(Lattice const& lattice, std::vector<Coupling> const& couplings,
+                   Work const& work) {
+  auto const& shape = lattice.shape;
+  std::int64_t const cells[3] = {shape[0], shape[1], shape[2] / lattice.cell_sites};
+  auto const number = [&](std::int64_t const* cell, int site) {
+    return ((cell[2] * lattice.cell_sites + site) * shape[1] + cell[1]) * shape[0] + cell[0];
+  };
+  for (auto const& bond : couplings)
+    for (std::int64_t k = 0; k < cells[2]; ++k)
+      for (std::int64_t j = 0; j < cells[1]; ++j)
+        for (std::int64_t i = 0; i < cells[0]; ++i) {
+          std::int64_t const here[3] = {i, j, k};
+          std::int64_t there[3];
+          bool is_there = true;
+          for (int axis = 0; axis < 3; ++axis) {
+            there[axis] = here[axis] + bond.offset[axis];
+            if (lattice.boundary[axis] == Boundary::periodic)
+              there[axis] = (there[axis] % cells[axis] + cells[axis]) % cells[axis];
+            is_there = is_there && there[axis] >= 0 && there[axis] < cells[axis];
+          }
+          if (is_there) work(bond, number(here, bond.between[0]), number(there, bond.between[1]));
+        }
+}
+
+Vec3<double> times(std::array<double, 9> const& t, Vec3<double> const& m, bool transposed) {
+  auto const row = [&](int i) {
+    return transposed ? t[i] * m.x + t[3 + i] * m.y + t[6 + i] * m.z
+                      : t[3 * i] * m.x + t[3 * i + 1] * m.y + t[3 * i + 2] * m.z;
+  };
+  return {row(0), row(1), row(2)};
+}
+
+ByHand pairs_by_hand(Lattice const& lattice, std::vector<Coupling> const& couplings) {
+  return {[=](std::vector<double> const& m, std::int64_t site) {
+            Vec3<double> h{0, 0, 0};
+            for_each_bond(lattice, couplings, [&](Coupling const& bond, auto a, auto b) {
+              double const twice = 2 * bond.biquadratic * dot(at(m, a), at(m, b));
+              if (a == site) h += times(bond.tensor, at(m, b), false) + twice * at(m, b);
+              if (b == site) h += times(bond.tensor, at(m, a), true) + twice * at(m, a);
+            });
+            return h;
+          },
+          [=](std::vector<double> const& m) {
+            double sum = 0;
+            for_each_bond(lattice, couplings, [&](Coupling const& bond, auto a, auto b) {
+              double const along = dot(at(m, a), at(m, b));
+              sum -= dot(at(m, a), times(bond.tensor, at(m, b), false)) +
+                     bond.biquadratic * along * along;
+            });
+            return sum;
+          }};
+}
+
+using Cells = std::array<std::int64_t, 3>;
+using Ends = std::array<Boundary, 3>;
+constexpr auto open = Boundary::open, periodic = Boundary::periodic;
+Ends const ends[] = {
+    {open, open, open}, {periodic, periodic, periodic}, {periodic, open, periodic}};
+
+std::vector<Coupling> shell_of_bcc() {
+  std::vector<Coupling> bonds;
+  for (int i : {-1, 0})
+    for (int j : {-1, 0})
+      for (int k : {-1, 0}) bonds.push_back(Coupling::of({0, 1}, {i, j, k}, 1.25));
+  return bonds;
+}
+
+TYPED_TEST(Pairs, ShellsOfACubicCrystal) {
+  auto bonds = shell_of_bcc();
+  for (int site : {0, 1})
+    for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+      bonds.push_back(Coupling::of({site, site}, offset, -0.5));
+  for (Cells const& cells : {Cells{35, 3, 3}, {4, 1, 2}, {16, 2, 1}, {1, 5, 4}, {24, 3, 4}})
+    for (auto const& boundary : ends) {
+      auto const lattice = Crystal::bcc().lattice(cells, boundary);
+      this->check("bcc", lattice, PairCouplings<typename TypeParam::MemorySpace>(lattice, bonds),
+                  pairs_by_hand(lattice, bonds));
+    }
+}
+
+TYPED_TEST(Pairs, LongWaysTensorsAndBiquadraticOnes) {
+  Coupling tensor{{0, 2}, {3, -1, 1}, {0.3, 0.1, -0.4, 0.7, -0.2, 0.5, 0.6, 0.9, 1.1}, 0};
+  Coupling biquadratic{{1, 0}, {0, 2, 0}, {}, 0.75};
+  std::vector<Coupling> const bonds{
+      tensor, biquadratic, Coupling::of({1, 1}, {9, 0, 0}, 0.5, {0.1, -0.2, 0.3}),
+      Coupling::of({2, 1}, {-2, 0, 0}, -1, {0, 0, 0.8}), Coupling::of({0, 0}, {0, 0, 2}, 1)};
+  for (Cells const& cells : {Cells{37, 4, 3}, {5, 3, 2}, {17, 1, 1}})
+    for (auto const& boundary : ends) {
+      auto const lattice = Crystal::kagome().lattice(cells, boundary);
+      this->check("kagome", lattice, PairCouplings<typename TypeParam::MemorySpace>(lattice, bonds),
+                  pairs_by_hand(lattice, bonds));
+    }
+}
+
+TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::cubic(19, 4, 3);
+  std::vector<Coupling> bonds;
+  for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+    bonds.push_back(Coupling::of({0, 0}, offset, 1.5));
+  typename TypeParam::Exec const exec;
+  auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+  // Up to a multiple of the spin.
+  auto const torque = [&](auto const& term) {
+    Spins const field("field", lattice);
+    evaluate_field(exec, term, spins, 0, field);
+    exec.fence();
+    auto numbers = numbers_of(field);
+    auto const m = numbers_of(spins);
+    for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+      auto const t = cross(at(m, site), at(numbers, site));
+      numbers[3 * site] = t.x, numbers[3 * site + 1] = t.y, numbers[3 * site + 2] = t.z;
+    }
+    return numbers;
+  };
+  auto const pairs = torque(PairCouplings<typename TypeParam::MemorySpace>(lattice, bonds));
+  auto const exchange = torque(Exchange(lattice, 1.5));
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    EXPECT_NEAR(pairs[i], exchange[i], 32 * epsilon<typename TypeParam::Real>);
+}
+
+TYPED_TEST(Pairs, ThatCannotBe) {
+  using Term = PairCouplings<typename TypeParam::MemorySpace>;
+  auto const lattice = Crystal::bcc().lattice({2, 2, 2});
+  for (auto const& bond : {Coupling::of({0, 2}, {0, 0, 0}, 1), Coupling::of({1, 1}, {0, 0, 0}, 1),
+                           Coupling::of({0, 1}, {0, 0, 0}, std::nan(""))})
+    EXPECT_THROW(Term(lattice, {bond}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cayspin::test

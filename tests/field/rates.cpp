@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// field_rate and linear_field of terms: dH/dt at a spin along its rate, by differences.
+#include "terms.hpp"
+
+namespace cayspin::test {
+namespace {
+
+template <class Backend>
+class FieldRates : public ::testing::Test {};
+TYPED_TEST_SUITE(FieldRates, Backends, BackendName);
+
+/// What steppers ask a prepared term for, at spins of its own and rates in the stencil's array.
+template <class Term, class Real>
+struct RateOfField {
+  Term term;
+  detail::SiteArray<Real, 3> spins;
+
+  template <class Stencil>
+  KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& rates) const {
+    return detail::field_rate(term, rates.site().load(spins), rates);
+  }
+};
+
+/// H of a local term is a polynomial of degree 3 in the spin.
+template <class Backend, class Term>
+void check(Term const& term) {
+  using Real = typename Backend::Real;
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec const exec;
+  auto const lattice = Lattice::square(19, 2);
+  auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+  auto const rates = spins_of<Spins>(lattice, random_directions(lattice.sites(), 4));
+  auto const m = numbers_of(spins), rate = numbers_of(rates);
+  auto const found = evaluated(exec, RateOfField<Term, Real>{term, spins.array()}, rates);
+  auto const field_at = [&](double step) {
+    auto moved = m;
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += step * rate[i];
+    return evaluated(exec, term, spins_of<Spins>(lattice, moved));
+  };
+  auto const h1 = field_at(0.5), h2 = field_at(-0.5), h3 = field_at(1), h4 = field_at(-1);
+  for (std::size_t i = 0; i < m.size(); ++i)
+    EXPECT_NEAR(found[i], (8 * (h1[i] - h2[i]) - (h3[i] - h4[i])) / 6, 200 * epsilon<Real>) << i;
+}
+
+TYPED_TEST(FieldRates, AreDerivativesOfTheField) {
+  check<TypeParam>(CubicAnisotropy(1.3, {1, 0, 0}, {0, 1, 0}));
+  check<TypeParam>(CubicAnisotropy(1.3, {1, 2, 2}, {2, 1, -2}));
+  check<TypeParam>(Slonczewski(0.7, -1.1, {1, -2, 2}));
+  check<TypeParam>(EffectiveField(CubicAnisotropy(-0.4, {0, 1, 0}, {3, 0, 4}),
+                                  UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
+}
+
+}  // namespace
+}  // namespace cayspin::test
