@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
 #include <fmt/args.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <iterator>
 
 namespace cayspin::program {
 namespace {
@@ -30,15 +34,27 @@ std::string length_text(io::Units const& units, double length) {
   return units.si ? fmt::format("{:.6g} m", length * units.length) : fmt::format("{:.6g}", length);
 }
 
+std::string numbers_text(std::vector<double> const& numbers) {
+  return fmt::format("[{:.6g}]", fmt::join(numbers, ", "));
+}
+
 std::string lattice_text(io::Scene const& scene) {
-  auto const& [shape, spacing, boundary] = scene.lattice;
-  std::string edges;
+  auto const& lattice = scene.lattice;
+  auto const cell_sites = std::ssize(lattice.basis);
+  auto cells = lattice.shape;
+  cells[2] /= cell_sites;
+  std::string more;
   for (std::size_t axis = 0; axis < 3; ++axis)
-    if (shape[axis] > 1)
-      edges += fmt::format("; {}: spacing {}, {}", "xyz"[axis],
-                           length_text(scene.units, spacing[axis]), io::to_string(boundary[axis]));
-  return fmt::format("{} x {} x {} = {} sites{}", shape[0], shape[1], shape[2], io::sites(scene),
-                     edges);
+    if (cells[axis] > 1)
+      more += fmt::format("; {}: spacing {}, {}", "xyz"[axis],
+                          length_text(scene.units, lattice.spacing[axis]),
+                          io::to_string(lattice.boundary[axis]));
+  if (!lattice.moments.empty()) more += "; moments " + numbers_text(lattice.moments);
+  if (!lattice.gyromagnetic.empty()) more += "; gyromagnetic " + numbers_text(lattice.gyromagnetic);
+  if (!lattice.occupied.empty()) more += "; occupied where " + lattice.occupied;
+  if (!lattice.frozen.empty()) more += "; frozen where " + lattice.frozen;
+  return fmt::format("{} = {} sites{}", cells_text(lattice.shape, cell_sites), io::sites(scene),
+                     more);
 }
 
 // The term's formula with its parameters in it.
@@ -54,13 +70,16 @@ std::string term_text(Term const& term) {
   return fmt::vformat(Term::formula, numbers);
 }
 
+std::string component_text(io::AppliedComponent const& component) {
+  if (auto const* const text = std::get_if<std::string>(&component)) return *text;
+  return fmt::format("{:.6g}", std::get<double>(component));
+}
+
 std::string components_text(std::array<io::AppliedComponent, 3> const& applied) {
   std::string text;
   for (auto const& component : applied) {
     if (!text.empty()) text += ", ";
-    text += std::holds_alternative<double>(component)
-                ? fmt::format("{:.6g}", std::get<double>(component))
-                : std::get<std::string>(component);
+    text += component_text(component);
   }
   return "(" + text + ")";
 }
@@ -99,6 +118,22 @@ std::string material_text(io::Material const& material) {
   if (material.alpha > 0) text += material.gilbert ? " (Gilbert)" : " (Landau-Lifshitz)";
   add(material.gamma, "gamma", "rad/(s T)");
   return text;
+}
+
+std::string of_site_text(int site) {
+  return site < 0 ? std::string() : fmt::format(", site {}", site);
+}
+
+void add_torques(io::Torque const& torque,
+                 std::vector<std::pair<std::string, std::string>>& lines) {
+  if (auto const& of = torque.zhang_li)
+    lines.emplace_back("torque", fmt::format("Zhang-Li, u = {}, xi = {:.6g}",
+                                             components_text(of->velocity), of->nonadiabaticity));
+  if (auto const& of = torque.slonczewski)
+    lines.emplace_back("torque",
+                       fmt::format("Slonczewski, damping-like {}, field-like {}, p = {}",
+                                   component_text(of->damping_like), component_text(of->field_like),
+                                   vector_text(of->polarization)));
 }
 
 std::string slab_text(io::Field const& field) {
@@ -151,7 +186,18 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     io::for_each_lattice_term(field, [&]<class Term>(std::optional<Term> const& term) {
       if (term) lines.emplace_back(Term::key, term_text(*term));
     });
-    for (auto const& term : field.anisotropies) lines.emplace_back("anisotropy", term_text(term));
+    if (field.bulk_dmi)
+      lines.emplace_back("dmi", fmt::format("E = {:.6g} m.curl m", field.bulk_dmi->constant));
+    if (auto const bonds = io::couplings(scene).size())
+      lines.emplace_back("couplings", fmt::format("{} bonds of a cell", bonds));
+    for (auto const& term : field.anisotropies)
+      lines.emplace_back("anisotropy", term_text(term) + of_site_text(term.site));
+    for (auto const& term : field.cubic_anisotropies)
+      lines.emplace_back("anisotropy",
+                         fmt::format("E = {:.6g} (a^2 b^2 + b^2 c^2 + c^2 a^2), axes {} and {}{}",
+                                     term.constant, vector_text(term.axes[0]),
+                                     vector_text(term.axes[1]), of_site_text(term.site)));
+    add_torques(field.torque, lines);
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
     if (!field.applied_in_turn.empty()) lines.emplace_back("applied", list_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));

@@ -36,16 +36,30 @@ std::vector<std::int64_t> chosen_frames(ExportOptions const& options, std::int64
   return {number};
 }
 
+bool is_rectangular(io::Lattice const& lattice) {
+  if (lattice.basis.size() > 1) return false;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t c = 0; c < 3; ++c)
+      if (a == c ? lattice.cell[a][c] <= 0 : lattice.cell[a][c] != 0) return false;
+  return true;
+}
+
 // Nodes in the middle of cells of the lattice's spacing. The start is of no interest here, and may
 // be one that only the run's own program could give.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
   auto const scene =
       io::parse_scene(info.header.scene_text, info.path, {"initial={uniform=[0,0,1]}"});
+  if (!is_rectangular(scene.lattice))
+    throw std::runtime_error(fmt::format(
+        "{}: its sites are no rectangular mesh, which is all that OVF has; accepted: a file of a "
+        "lattice with one site in a cell along the axes",
+        info.path.string()));
   io::OvfMesh mesh;
   mesh.nodes = info.header.shape;
   if (scene.units.si) mesh.unit = "m";
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    mesh.step[axis] = scene.lattice.spacing[axis] * scene.units.length;
+    mesh.step[axis] =
+        scene.lattice.cell[axis][axis] * scene.lattice.spacing[axis] * scene.units.length;
     mesh.base[axis] = mesh.step[axis] / 2;
   }
   return mesh;

@@ -133,9 +133,9 @@ std::vector<std::string> lines_of(FollowedTrajectory const& run, Report const& r
     lines.push_back(fmt::format("{:<13} {}", name, text));
   };
   auto const sites = static_cast<double>(header.shape[0] * header.shape[1] * header.shape[2]);
-  add("file", fmt::format("{}, {} x {} x {} sites, {} precision, {}, {} threads",
-                          run.path().string(), header.shape[0], header.shape[1], header.shape[2],
-                          header.precision, header.space, header.threads));
+  add("file", fmt::format("{}, {}, {} precision, {}, {} threads", run.path().string(),
+                          sites_text(header.shape, header.cell_sites), header.precision,
+                          header.space, header.threads));
   add("run", fate_text(report));
   if (run.steps().empty()) return lines;
   auto const& now = run.scalars().back();

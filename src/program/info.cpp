@@ -20,6 +20,13 @@ void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t f
       "magnetization ({:.6f}, {:.6f}, {:.6f})\n",
       name, info.frame_steps[frame], info.frame_times[frame], si ? " s" : "", scalars.energy,
       si ? " J" : "", scalars.norm_defect, m[0], m[1], m[2]);
+  auto const sites = static_cast<std::size_t>(info.header.cell_sites);
+  if (sites == 1) return;
+  for (std::size_t site = 0; site < sites; ++site) {
+    auto const& mean = info.frame_sublattices[frame * sites + site];
+    fmt::print("{:<12} site {}: magnetization ({:.6f}, {:.6f}, {:.6f})\n", "", site, mean[0],
+               mean[1], mean[2]);
+  }
 }
 
 void print_scene(char const* name, std::string const& text) {
@@ -48,8 +55,8 @@ int info(std::filesystem::path const& file) {
   fmt::print("{:<12} {} (format {})\n", "file", file.string(), info.format);
   fmt::print("{:<12} {}\n", "complete",
              info.complete ? "yes" : "no: interrupted, failed, or still being written");
-  fmt::print("{:<12} {} x {} x {} sites, {} precision\n", "lattice", header.shape[0],
-             header.shape[1], header.shape[2], header.precision);
+  fmt::print("{:<12} {}, {} precision\n", "lattice", sites_text(header.shape, header.cell_sites),
+             header.precision);
   fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);
   fmt::print("{:<12} {}\n", "units", describe_units(header.units));
   if (info.frames > 0) print_frame("first frame", info, 0);

@@ -46,7 +46,9 @@ class Relaxation {
   int run() {
     auto const fields = io::fields_in_turn(scene_);
     for (auto const& field : fields) {
-      auto const found = relax_in(SceneField<Spins>(field, spins_.lattice(), false));
+      auto in_field = scene_;
+      in_field.field = field;
+      auto const found = relax_in(field_of<Spins>(in_field, spins_.lattice(), false).undamped());
       cost_.evaluations += found.evaluations;
       cost_.relaxed->torque = std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
       bool const interrupted = found.end == MinimizeEnd::interrupted;
@@ -77,7 +79,7 @@ class Relaxation {
                              }});
     cost_.step_seconds += clock.seconds();
     Step const step{states_, static_cast<double>(states_), 1, true};
-    last_ = sample(exec_, field, step, spins_);
+    last_ = sample_scene(exec_, field, step, spins_);
     auto const scalars = as_scalars(last_, scene_.units);
     auto const numbers = copy_to_host(spins_);
     std::ranges::copy(numbers, file_->template frame<Real>());

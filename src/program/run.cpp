@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +53,11 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
     throw io::scene_error(scene, "integrator.method", accepted + "or another method");
   if (has_dear_field(scene))
     throw io::scene_error(scene, "field.slab_demag.dear", accepted + "or no such key");
+  if (io::needs_pass(scene))
+    throw io::scene_error(scene, "field",
+                          accepted +
+                              "or a scene without crystals, couplings, currents and sites of "
+                              "their own");
   auto const& slab = scene.field.slab_demag;
   if (slab && slab->average_layer && (slab->on_host || slab->normal[0] != 0 || !on_host))
     throw io::scene_error(scene, "field.slab_demag.average",
@@ -65,6 +71,7 @@ io::CheckpointHeader checkpoint_header(io::Scene const& typed, io::Scene const& 
           .cayspin_version = CAYSPIN_VERSION_STRING,
           .precision = std::string(to_string(precision)),
           .shape = scene.lattice.shape,
+          .cell_sites = std::ssize(scene.lattice.basis),
           .step = step.number,
           .time = step.time * scene.units.time,
           .si = scene.units.si};
@@ -127,7 +134,8 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   if (scene.integrator.energy_control)
     controlled.emplace(watch, simulation.generator, simulation.spins);
   std::optional<ThermalWatch<Real, Space>> thermal;
-  if (is_thermal(scene)) thermal.emplace(watch, scene, simulation.spins, times.first);
+  if (is_thermal(scene))
+    thermal.emplace(watch, scene, simulation.generator, simulation.spins, times.first);
   auto const exchange = [&](Checkpoint& checkpoint, bool& continues) {
     exchange_state(checkpoint, simulation, *method, continues, watch.guard(),
                    controlled ? &controlled->control() : nullptr);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -50,6 +51,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
         first_(first),
         generator_(generator),
         output_(scene.output),
+        cell_sites_(std::ssize(scene.lattice.basis)),
         units_(scene.units),
         until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
@@ -77,8 +79,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
     if (!recorded && !stored && !guard_.due(step)) return Next::proceed;
 
-    Sample const now = torque_ ? sample(exec, generator_, step, spins, *torque_)
-                               : sample(exec, generator_, step, spins);
+    Sample const now = torque_ ? sample_scene(exec, generator_, step, spins, *torque_)
+                               : sample_scene(exec, generator_, step, spins);
     failure_ = guard_.judge(step, now.energy, now.norm_defect);
     if (failure_) return Next::stop;
     at_rest_ = torque_ && step.number > first_ && now.energy.value < guard_.first_energy() &&
@@ -153,7 +155,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     auto const& shape = whole(local).shape;
     io::TrajectoryStorage const storage{output_.compression, output_.chunk};
     auto const at_once =
-        io::frame_pieces(shape, sizeof(Real), storage, ranks_.planes_at_once(local)).planes;
+        io::frame_pieces(shape, sizeof(Real), storage, ranks_.planes_at_once(local), cell_sites_)
+            .planes;
     for (std::int64_t first = 0;; first += at_once) {
       auto const planes = std::min(at_once, shape[2] - first);
       ranks_.gather(local, 3 * sizeof(Real), first, planes, own, room);
@@ -171,6 +174,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   SceneGenerator<Spins> generator_;
   std::optional<SceneGenerator<Spins>> torque_;
   io::Output output_;
+  std::int64_t cell_sites_;
   io::Units units_;
   std::optional<double> until_torque_;
   OpenFile open_file_;
@@ -221,9 +225,9 @@ class ThermalWatch : public RunObserver<Space, SpinField<Real, typename Space::m
 
  public:
   /// `first`: the step after which the run begins.
-  ThermalWatch(Watch<Real, Space>& watch, io::Scene const& scene, Spins const& spins,
-               std::int64_t first)
-      : watch_(watch), noise_(scene, spins), first_(first) {}
+  ThermalWatch(Watch<Real, Space>& watch, io::Scene const& scene,
+               SceneGenerator<Spins> const& generator, Spins const& spins, std::int64_t first)
+      : watch_(watch), noise_(scene, generator, spins), first_(first) {}
 
   bool due(Step const&) const override { return true; }
 

@@ -121,9 +121,44 @@ void check_tangent(Scene const& scene) {
            "\"cayley\"");
 }
 
+// Terms that are evaluated for all spins at once.
+void check_pass(Scene const& scene) {
+  if (!needs_pass(scene)) return;
+  auto const& [field, integrator] = std::tie(scene.field, scene.integrator);
+  auto const& method = *integrator.method;
+  auto const refuse_method = [&](bool wrong, std::string_view why) {
+    if (wrong)
+      refuse(scene, "integrator.method", fmt::format("\"{}\" {}", method.word, why),
+             "another method, such as \"heun\", \"rkmk4\", \"dp5\"");
+  };
+  refuse_method(method.neighbors == Neighbors::by_colour, "needs a field of the neighbours alone");
+  refuse_method(method.differentiates_field,
+                "differentiates the field, which it cannot with terms such as couplings");
+  if (integrator.isotropy == Isotropy::analytic || integrator.isotropy == Isotropy::energy)
+    refuse(scene, "integrator.isotropy",
+           fmt::format("\"{}\" does not go with terms such as couplings",
+                       to_string(integrator.isotropy)),
+           "\"zero\", { constant = sigma }");
+  if (integrator.energy_control)
+    refuse(scene, "integrator.energy_control", "does not go with terms such as couplings",
+           "no such key");
+  if (has_torque(field) && integrator.until_torque)
+    refuse(scene, "integrator.until_torque", "a current moves spins for ever", "no such key");
+  // Those that divide by the length of a spin, or by that of all.
+  bool const divides = method.stiff || (method.is_baseline() && method.keeps_length);
+  refuse_method(!scene.lattice.occupied.empty() && divides, "needs a spin on every site");
+  if (!scene.lattice.occupied.empty() && integrator.generator == Generator::tangent)
+    refuse(scene, "integrator.generator", "\"tangent\" needs a spin on every site",
+           "\"default\", \"orthogonal\"");
+  if (field.slab_demag && field.slab_demag->dear)
+    refuse(scene, "field.slab_demag.dear", "does not go with terms such as couplings",
+           "no such key");
+}
+
 }  // namespace
 
 void check_combination(Scene const& scene) {
+  check_pass(scene);
   if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->on_host)
     refuse(scene, "field.slab_demag", "where = \"host\" does not go with a program's own field",
            "no such key");

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
+#include "site_numbers.hpp"
 
 #include <cayspin/io/expression.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace cayspin::inline v0_1::io::detail {
@@ -41,10 +44,36 @@ Term read_lattice_term(Item const& item, Scene& scene) {
   }
 }
 
+// The interaction of a chiral crystal, or one that differs from site to site.
+bool read_other_dmi(Item const& item, Scene& scene, Field& field) {
+  constexpr std::string_view accepted = "{ interfacial = D, normal = [x, y, z] } or { bulk = D }";
+  if (!item.node->is_table()) item.wrong_type(accepted);
+  Table const table(item, scene);
+  auto const bulk = table.find("bulk");
+  table.accept_only({"interfacial", "normal", "bulk"});
+  if (bulk && item.node->as_table()->size() > 1)
+    item.fail("is of an interface and of the bulk", accepted);
+  if (bulk) {
+    field.bulk_dmi = {number_of_sites(*bulk, scene, field.dmi_factors)};
+    return true;
+  }
+  auto const interfacial = table.find("interfacial");
+  if (!interfacial || !read_site_numbers(*interfacial, scene, field.dmi_factors)) return false;
+  field.dmi = {1, direction(table.required("normal", "three numbers"))};
+  return true;
+}
+
 void read_lattice_terms(Table const& table, Field& field) {
   for_each_lattice_term(field, [&]<class Term>(std::optional<Term>& term) {
-    if (auto const item = table.find(Term::key))
-      term = read_lattice_term<Term>(*item, table.scene());
+    auto const item = table.find(Term::key);
+    if (!item) return;
+    if (std::is_same_v<Term, InterfacialDmi> && read_other_dmi(*item, table.scene(), field)) return;
+    if (std::is_same_v<Term, Exchange> &&
+        read_site_numbers(*item, table.scene(), field.exchange_factors)) {
+      field.exchange = {1};
+      return;
+    }
+    term = read_lattice_term<Term>(*item, table.scene());
   });
 }
 
@@ -52,22 +81,65 @@ std::vector<std::string_view> field_keys() {
   std::vector<std::string_view> keys;
   for_each_lattice_term(Field{},
                         [&]<class Term>(std::optional<Term> const&) { keys.push_back(Term::key); });
-  keys.insert(keys.end(), {"anisotropy", "applied", "slab_demag", "mu0"});
+  keys.insert(keys.end(), {"couplings", "anisotropy", "applied", "slab_demag", "mu0"});
   return keys;
 }
 
-std::vector<Anisotropy> read_anisotropies(Item const& item, Scene& scene) {
-  constexpr std::string_view accepted =
-      "{ constant = K, axis = [x, y, z] }, or an array of such tables";
-  if (item.node->is_table()) return {read_term<Anisotropy>(item, scene)};
-  std::vector<Anisotropy> all;
-  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted)) {
-    all.push_back(read_term<Anisotropy>(entry, scene));
-  }
-  return all;
+// All sites of the cell, or one.
+int read_site(Table const& table) {
+  auto const item = table.find("site");
+  if (!item) return -1;
+  auto const sites = table.scene().lattice.basis.size();
+  auto const accepted = fmt::format("a site of the cell, 0 to {}", sites - 1);
+  auto const site = integer(*item, 0, accepted);
+  if (site >= static_cast<std::int64_t>(sites))
+    item->fail(fmt::format("the cell has no site {}", site), accepted);
+  return static_cast<int>(site);
 }
 
-AppliedComponent read_applied_component(Item const& item) {
+CubicAnisotropy read_cubic(Table const& table) {
+  constexpr std::string_view accepted = "two vectors at right angles";
+  CubicAnisotropy term;
+  for (auto const* const other : {"constant", "axis"})
+    if (auto const item = table.find(other)) item->fail("belongs to a uniaxial one", "no such key");
+  term.constant = number(table.required("cubic", "a finite number"));
+  auto const axes = table.required("axes", accepted);
+  std::ranges::transform(entries(axes, 2, 2, accepted), term.axes.begin(), direction);
+  auto const& [a, b] = term.axes;
+  if (!(std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) < 1e-9))
+    axes.fail("the axes are not at right angles", accepted);
+  term.site = read_site(table);
+  return term;
+}
+
+void read_anisotropy(Item const& item, Scene& scene, Field& field) {
+  Table const table(item, scene);
+  table.accept_only({"constant", "axis", "cubic", "axes", "site"});
+  if (table.contains("cubic")) {
+    field.cubic_anisotropies.push_back(read_cubic(table));
+    return;
+  }
+  if (auto const axes = table.find("axes")) axes->fail("belongs to a cubic one", "no such key");
+  Anisotropy term;
+  term.constant =
+      number_of_sites(table.required("constant", "a finite number"), scene, term.factors);
+  term.axis = direction(table.required("axis", "three numbers"));
+  term.site = read_site(table);
+  field.anisotropies.push_back(std::move(term));
+}
+
+void read_anisotropies(Item const& item, Scene& scene, Field& field) {
+  constexpr std::string_view accepted =
+      "{ constant = K, axis = [x, y, z] }, { cubic = Kc, axes = [[..], [..]] }, or an array of "
+      "such tables";
+  if (item.node->is_table()) return read_anisotropy(item, scene, field);
+  for (auto const& entry : entries(item, 1, std::numeric_limits<std::size_t>::max(), accepted))
+    read_anisotropy(entry, scene, field);
+}
+
+}  // namespace
+
+AppliedComponent read_component_in_time(Item const& item) {
   constexpr std::string_view accepted = "a finite number, or a string with an expression in t";
   if (!item.node->is_string()) return number(item, accepted);
   auto text = string(item, accepted);
@@ -80,6 +152,8 @@ AppliedComponent read_applied_component(Item const& item) {
   return text;
 }
 
+namespace {
+
 // Three components, or a list of fields of three numbers each.
 void read_applied(Item const& item, Field& field) {
   auto const* const array = item.node->as_array();
@@ -91,7 +165,7 @@ void read_applied(Item const& item, Field& field) {
   }
   auto const three = entries(item, 3, 3, "three numbers or expressions in t");
   field.applied.emplace();
-  std::ranges::transform(three, field.applied->begin(), read_applied_component);
+  std::ranges::transform(three, field.applied->begin(), read_component_in_time);
 }
 
 // Whether the scene's one word stands there.
@@ -150,8 +224,9 @@ Field read_field(Table const& root, SystemKind kind) {
   table.accept_only(field_keys());
   if (root.scene().units.si) refuse_reduced_keys(table);
   read_lattice_terms(table, field);
+  if (auto const item = table.find("couplings")) read_couplings(*item, root.scene(), field);
   if (auto const item = table.find("anisotropy")) {
-    field.anisotropies = read_anisotropies(*item, root.scene());
+    read_anisotropies(*item, root.scene(), field);
   }
   if (auto const item = table.find("applied")) read_applied(*item, field);
   if (auto const item = table.find("slab_demag")) {
@@ -167,13 +242,27 @@ namespace cayspin::inline v0_1::io {
 
 bool depends_on_time(Field const& field) {
   if (field.own.uniform) return true;
-  if (!field.applied) return false;
-  for (auto const& component : *field.applied) {
+  auto const depends = [](AppliedComponent const& component) {
     auto const* const text = std::get_if<std::string>(&component);
-    if (text != nullptr && Expression(*text, {"t"}).depends_on("t")) return true;
-  }
-  return false;
+    return text != nullptr && Expression(*text, {"t"}).depends_on("t");
+  };
+  auto const& [zhang_li, slonczewski] = field.torque;
+  return (field.applied && std::ranges::any_of(*field.applied, depends)) ||
+         (zhang_li && std::ranges::any_of(zhang_li->velocity, depends)) ||
+         (slonczewski && (depends(slonczewski->damping_like) || depends(slonczewski->field_like)));
 }
+
+Field without_numbers_of_sites(Field field) {
+  if (field.exchange_factors.there()) field.exchange.reset();
+  if (field.dmi_factors.there()) {
+    field.dmi.reset();
+    field.bulk_dmi.reset();
+  }
+  std::erase_if(field.anisotropies, [](Anisotropy const& term) { return term.factors.there(); });
+  return field;
+}
+
+bool has_torque(Field const& field) { return field.torque.zhang_li || field.torque.slonczewski; }
 
 bool is_nonlocal(Field const& field) {
   auto const& slab = field.slab_demag;

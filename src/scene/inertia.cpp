@@ -2,6 +2,7 @@
 #include "hdf5/real_dataset.hpp"
 #include "hdf5/survives.hpp"
 #include "sections.hpp"
+#include "site_numbers.hpp"
 #include "start_file.hpp"
 
 #include <cayspin/io/scene.hpp>
@@ -74,11 +75,14 @@ std::optional<std::string> detail::inertia_fault(InertiaTensor const& tensor, do
 void check_files(Scene const& scene) {
   if (auto const* const start = std::get_if<FileStart>(&scene.initial)) {
     try {
-      detail::check_start_file(start->path, scene.lattice.shape);
+      detail::check_start_file(start->path, scene.lattice);
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }
   }
+  couplings(scene);
+  detail::require_occupied(scene);
+  detail::check_site_numbers(scene);
   auto const* const file = std::get_if<InertiaFile>(&scene.system.inertia);
   if (scene.system.kind == SystemKind::rigid_body && file != nullptr) {
     try {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "crystal.hpp"
 #include "sections.hpp"
 #include "start.hpp"
 
@@ -11,14 +12,14 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-ExpressionStart read_expressions(Item const& item) {
+ExpressionStart read_expressions(Item const& item, Lattice const& lattice) {
   constexpr std::string_view accepted = "three strings, each an expression in x, y, z, i, j, k";
   ExpressionStart start;
   auto const three = entries(item, 3, 3, accepted);
   for (std::size_t component = 0; component < 3; ++component) {
     auto text = string(three[component], accepted);
     try {
-      Expression(text, start_variables());
+      Expression(text, site_variables(lattice));
     } catch (std::invalid_argument const& error) {
       three[component].fail(error.what());
     }
@@ -53,7 +54,8 @@ Initial read_initial(Table const& root) {
     table.item().fail(fmt::format("has {} keys", count), accepted);
   }
   if (auto const item = table.find("uniform")) return UniformStart{direction(*item)};
-  if (auto const item = table.find("expression")) return read_expressions(*item);
+  if (auto const item = table.find("expression"))
+    return read_expressions(*item, root.scene().lattice);
   if (auto const item = table.find("random")) return read_random(*item, root.scene());
   if (auto const item = table.find("given")) return read_given(*item, root.scene());
   return FileStart{input_file(table, "file", "the name of an HDF5 or OVF 2.0 file")};

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "crystal.hpp"
 #include "start.hpp"
 #include "start_file.hpp"
 
@@ -35,25 +36,33 @@ double random_number(std::uint64_t start, std::uint64_t counter) {
 struct Start {
   Scene const& scene;
   SiteBox const& box;
+  std::vector<unsigned char> const& occupied;
   std::vector<double>& spins;
 
   std::size_t size() const { return spins.size() / 3; }
+  // A site without a spin has the zero vector.
+  bool is_vacant(std::size_t site) const { return !occupied.empty() && !occupied[site]; }
   void set(std::size_t site, Triple const& m) const {
+    if (is_vacant(site)) return;
     std::copy_n(m.data(), 3, spins.begin() + static_cast<std::ptrdiff_t>(3 * site));
   }
 
   // The site and its spin go into the message.
   void set_normalised(std::size_t site, Triple const& m, std::string_view key) const {
+    if (is_vacant(site)) return;
     if (auto const unit = detail::normalise(m)) {
       set(site, *unit);
       return;
     }
-    auto const [i, j, k] = site_at(box, site);
+    auto const [i, j, plane] = site_at(box, site);
+    auto const sites = static_cast<std::int64_t>(scene.lattice.basis.size());
+    auto const where = sites == 1 ? fmt::format("site ({}, {}, {})", i, j, plane)
+                                  : fmt::format("site {} of cell ({}, {}, {})", plane % sites, i, j,
+                                                plane / sites);
     throw scene_error(
         scene, key,
-        fmt::format("the spin of site ({}, {}, {}) is ({}, {}, {}); accepted: a finite vector that "
-                    "is not zero",
-                    i, j, k, m[0], m[1], m[2]));
+        fmt::format("the spin of {} is ({}, {}, {}); accepted: a finite vector that is not zero",
+                    where, m[0], m[1], m[2]));
   }
 
   void operator()(UniformStart const& uniform) const {
@@ -63,17 +72,10 @@ struct Start {
   void operator()(ExpressionStart const& start) const {
     std::vector<Expression> components;
     for (auto const& text : start.components) {
-      components.emplace_back(text, detail::start_variables());
+      components.emplace_back(text, detail::site_variables(scene.lattice));
     }
-    auto const& shape = scene.lattice.shape;
     for (std::size_t site = 0; site < size(); ++site) {
-      auto const index = site_at(box, site);
-      std::array<double, 6> variables;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        auto const position = static_cast<double>(index[axis]);
-        variables[axis] = (position + 0.5) / static_cast<double>(shape[axis]);
-        variables[3 + axis] = position;
-      }
+      auto const variables = detail::site_values(scene.lattice, site_at(box, site));
       Triple m;
       try {
         for (std::size_t c = 0; c < 3; ++c) m[c] = components[c](variables.data());
@@ -102,7 +104,7 @@ struct Start {
   void operator()(FileStart const& file) const {
     std::vector<double> values;
     try {
-      values = detail::read_start_file(file.path, scene.lattice.shape, box);
+      values = detail::read_start_file(file.path, scene.lattice, box);
     } catch (std::runtime_error const& error) {
       throw scene_error(scene, "initial.file", error.what());
     }
@@ -135,7 +137,8 @@ std::vector<double> initial_spins(Scene const& scene) {
 std::vector<double> initial_spins(Scene const& scene, SiteBox const& box) {
   auto const& [nx, ny, nz] = box.extent;
   std::vector<double> spins(3 * static_cast<std::size_t>(nx * ny * nz));
-  std::visit(Start{scene, box, spins}, scene.initial);
+  auto const occupied = io::occupied(scene, box);
+  std::visit(Start{scene, box, occupied, spins}, scene.initial);
   return spins;
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "crystal.hpp"
 #include "sections.hpp"
 
 #include <fmt/format.h>
@@ -25,12 +26,18 @@ void read_per_axis(Item const& item, std::size_t axes, std::array<Value, 3>& val
   for (std::size_t axis = 0; axis < axes; ++axis) values[axis] = read(items[axis]);
 }
 
+constexpr std::string_view keys_of_spins[] = {"spacing",      "boundary", "crystal",
+                                              "cell",         "basis",    "moments",
+                                              "gyromagnetic", "occupied", "frozen"};
+
 }  // namespace
 
 Lattice read_lattice(Table const& root, SystemKind kind) {
   auto const table = root.table("lattice", "a table [lattice]");
-  table.accept_only({"shape", "spacing", "boundary"});
   bool const bodies = kind == SystemKind::rigid_body;
+  std::vector<std::string_view> keys{"shape"};
+  keys.insert(keys.end(), std::begin(keys_of_spins), std::end(keys_of_spins));
+  table.accept_only(keys);
   std::string_view const accepted = bodies ? "[count]" : "[nx], [nx, ny] or [nx, ny, nz]";
 
   auto const shape = table.required("shape", accepted);
@@ -46,7 +53,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     room /= extent;
     lattice.shape[axis] = extent;
   }
-  for (auto const* const name : {"spacing", "boundary"}) {
+  for (auto const name : keys_of_spins) {
     if (auto const item = table.find(name); item && bodies) {
       item->fail("has no meaning for independent rigid bodies", "no such key");
     }
@@ -66,6 +73,13 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     auto const read = [](Item const& entry) { return word<BoundaryKind>(entry); };
     read_per_axis(*item, extents.size(), lattice.boundary, read, all_words<BoundaryKind>());
   }
+  if (bodies) return lattice;
+  read_crystal(root, table, lattice);
+  auto const sites = static_cast<std::int64_t>(lattice.basis.size());
+  if (sites > room || lattice.shape[2] * sites > most_extent)
+    shape.fail(fmt::format("more sites than memory can address, with {} in a cell", sites),
+               "a smaller shape");
+  lattice.shape[2] *= sites;
   return lattice;
 }
 

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace cayspin::inline v0_1::io {
@@ -72,9 +73,31 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   if (scene.system.kind != SystemKind::llg)
     throw scene_error(scene, "system.kind",
                       "rigid bodies have no state of rest; accepted: \"llg\"");
+  if (has_torque(scene.field))
+    throw scene_error(scene, "torque",
+                      "moves spins for ever, and a state of rest needs an energy that falls; "
+                      "accepted: no such table");
   if (depends_on_time(scene.field))
     throw scene_error(scene, "field.applied",
                       "depends on t, and a state of rest does not; accepted: numbers");
+}
+
+// Where the cell is that of a unit-cell file, its sites go into the text: who reads that again need
+// not have the file.
+bool write_cell(toml::table& document, Scene const& scene) {
+  auto const& [lattice, places] = std::tie(scene.lattice, scene.places);
+  if (scene.field.couplings_file.empty() || places.contains("lattice.crystal") ||
+      places.contains("lattice.cell") || places.contains("lattice.basis"))
+    return false;
+  auto const array_of = [](auto const& vectors) {
+    toml::array all;
+    for (auto const& [x, y, z] : vectors) all.push_back(toml::array{x, y, z});
+    return all;
+  };
+  auto& table = *document["lattice"].as_table();
+  table.insert("cell", array_of(lattice.cell));
+  table.insert("basis", array_of(lattice.basis));
+  return true;
 }
 
 Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path const& path,
@@ -86,24 +109,28 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   scene.text = std::move(text);
   auto document = parse(scene.text, path);
   for (auto const& assignment : overrides) detail::apply_override(document, assignment);
-  if (!overrides.empty()) {
-    std::ostringstream stream;
-    stream << document << '\n';
-    scene.text = stream.str();
-  }
 
   detail::Table const root({&document, "", fmt::format("{}:1", path.string())}, scene);
-  root.accept_only({"units", "material", "system", "lattice", "field", "initial", "integrator",
-                    "thermal", "output"});
+  root.accept_only({"units", "material", "system", "lattice", "field", "torque", "initial",
+                    "integrator", "thermal", "output"});
   scene.units.si = detail::read_is_si(root);
   scene.system = detail::read_system(root);
   scene.lattice = detail::read_lattice(root, scene.system.kind);
+  detail::read_dampings(root, scene);
   scene.field = detail::read_field(root, scene.system.kind);
+  scene.field.torque = detail::read_torque(root, scene.system.kind);
   scene.initial = detail::read_initial(root);
   scene.integrator = read_integrator_for(purpose, root, scene.system.kind);
   scene.thermal = detail::read_thermal(root, scene.system.kind);
   scene.output = detail::read_output(root, scene.integrator.steps);
+  if (scene.units.si) detail::refuse_in_si(scene);
   if (scene.units.si) detail::convert_to_reduced(root);
+  if (write_cell(document, scene) || !overrides.empty()) {
+    std::ostringstream stream;
+    stream << document << '\n';
+    scene.text = stream.str();
+  }
+  detail::check_crystal(scene);
   if (purpose == Purpose::run || has_integrator(scene)) check_combination(scene);
   check_purpose(purpose, scene);
   return scene;

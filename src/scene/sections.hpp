@@ -13,12 +13,25 @@ void convert_to_reduced(Table const& root);
 std::string scaled_expression(std::string_view text, double time, double field);
 
 System read_system(Table const& root);
+/// Those that differ from site to site: after the lattice.
+void read_dampings(Table const& root, Scene& scene);
 /// A rigid body takes neither spacing nor boundary, and one extent.
 Lattice read_lattice(Table const& root, SystemKind kind);
+/// After the lattice, which the scene has by then.
 Field read_field(Table const& root, SystemKind kind);
+void read_couplings(Item const& item, Scene& scene, Field& field);
+/// A number, or an expression in t.
+AppliedComponent read_component_in_time(Item const& item);
+Torque read_torque(Table const& root, SystemKind kind);
+/// Refuses what is known in reduced units alone.
+void refuse_in_si(Scene const& scene);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind);
+/// Refuses a lattice without a spin.
+void require_occupied(Scene const& scene);
+/// Refuses terms that need neighbours along the axes of a lattice in a crystal that has none.
+void check_crystal(Scene const& scene);
 /// Refuses what does not go with a temperature above 0.
 void check_thermal(Scene const& scene);
 Output read_output(Table const& root, std::int64_t steps);

@@ -5,13 +5,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace cayspin::inline v0_1::io::detail {
-
-/// What an expression in [initial] may use: the position (index + 1/2)/extent and the indices.
-inline std::vector<std::string> start_variables() { return {"x", "y", "z", "i", "j", "k"}; }
 
 /// v/|v|; nothing when v is zero or not finite. Scaling by a power of two is exact and keeps |v|^2
 /// from overflowing or underflowing.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
+#include "site_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -50,10 +51,13 @@ System read_system(Table const& root) {
   system.kind = word<SystemKind>(table.required("kind", all_words<SystemKind>()));
   if (system.kind == SystemKind::llg) {
     refuse(table, "inertia", "llg");
-    if (!table.scene().units.si)
-      system.damping = non_negative_number(table.required("damping", "a number >= 0"));
-    else if (auto const item = table.find("damping"))
+    if (!table.scene().units.si) {
+      auto const item = table.required("damping", "a number >= 0");
+      if (!item.node->is_string() && !item.node->is_table())
+        system.damping = non_negative_number(item);
+    } else if (auto const item = table.find("damping")) {
       item->fail("belongs to reduced units", "material.alpha with material.damping_form");
+    }
     if (auto const item = table.find("precession")) system.precession = boolean(*item);
   } else {
     refuse(table, "damping", "rigid_body");
@@ -61,6 +65,12 @@ System read_system(Table const& root) {
     system.inertia = read_inertia(table.required("inertia", inertia_accepted), table.scene());
   }
   return system;
+}
+
+void read_dampings(Table const& root, Scene& scene) {
+  auto const item = root.table("system", "a table [system]").find("damping");
+  if (item && scene.system.kind == SystemKind::llg)
+    read_site_numbers(*item, scene, scene.system.dampings);
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

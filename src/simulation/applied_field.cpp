@@ -6,21 +6,34 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace cayspin::simulation {
 
+namespace {
+
+std::array<io::AppliedComponent, 3> const none{0.0, 0.0, 0.0};
+
+}  // namespace
+
 AppliedField::AppliedField(io::Field const& field)
-    : own_(field.own.uniform),
-      mu0_(field.mu0),
-      present_(field.applied || own_),
-      depends_on_time_(io::depends_on_time(field)) {
-  if (!field.applied) return;
+    : AppliedField(field.applied.value_or(none), "field.applied") {
+  own_ = field.own.uniform;
+  mu0_ = field.mu0;
+  present_ = field.applied || own_;
+  depends_on_time_ = depends_on_time_ || own_;
+}
+
+AppliedField::AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key)
+    : key_(std::move(key)) {
   for (std::size_t c = 0; c < 3; ++c) {
-    auto const& component = (*field.applied)[c];
-    if (auto const* text = std::get_if<std::string>(&component))
-      components_[c] = io::Expression(*text, {"t"});
-    else
-      components_[c] = std::get<double>(component);
+    if (auto const* text = std::get_if<std::string>(&components[c])) {
+      io::Expression expression(*text, {"t"});
+      depends_on_time_ = depends_on_time_ || expression.depends_on("t");
+      components_[c] = std::move(expression);
+    } else {
+      components_[c] = std::get<double>(components[c]);
+    }
   }
 }
 
@@ -37,7 +50,7 @@ Vec3<double> AppliedField::operator()(double t) const {
     try {
       return mu0_ * (*expression)(&t);
     } catch (std::runtime_error const& error) {
-      throw NumbersFailed(fmt::format("field.applied, t = {}: {}", t, error.what()));
+      throw NumbersFailed(fmt::format("{}, t = {}: {}", key_, t, error.what()));
     }
   };
   return {at(0), at(1), at(2)};

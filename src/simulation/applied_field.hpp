@@ -7,14 +7,16 @@
 
 #include <array>
 #include <functional>
+#include <string>
 #include <variant>
 
 namespace cayspin::simulation {
 
-/// The uniform field mu0 applied(t) of a scene.
+/// The uniform field mu0 applied(t) of a scene, or another vector that its expressions give.
 class AppliedField {
  public:
   explicit AppliedField(io::Field const& field);
+  AppliedField(std::array<io::AppliedComponent, 3> const& components, std::string key);
 
   bool present() const { return present_; }
   bool depends_on_time() const { return depends_on_time_; }
@@ -25,8 +27,9 @@ class AppliedField {
  private:
   std::array<std::variant<double, io::Expression>, 3> components_;
   std::function<std::array<double, 3>(double t)> own_;
-  double mu0_;
-  bool present_, depends_on_time_;
+  double mu0_ = 1;
+  bool present_ = true, depends_on_time_ = false;
+  std::string key_ = "field.applied";
 };
 
 }  // namespace cayspin::simulation

@@ -15,8 +15,8 @@ namespace cayspin::simulation {
 
 inline bool energy_must_fall(io::Scene const& scene) {
   return scene.system.kind == io::SystemKind::llg && scene.system.damping > 0 &&
-         !is_thermal(scene) && !io::depends_on_time(scene.field) && scene.integrator.energy_guard &&
-         scene.integrator.method->keeps_length;
+         !is_thermal(scene) && !io::has_torque(scene.field) && !io::depends_on_time(scene.field) &&
+         scene.integrator.energy_guard && scene.integrator.method->keeps_length;
 }
 
 /// Watches the numbers of a run: all must be finite; a length that is kept must be 1 to 64 epsilon

@@ -12,6 +12,7 @@
 
 #include <cayspin/detail/exact_sum.hpp>
 #include <cayspin/detail/row_layout.hpp>
+#include <cayspin/field/bonds_of_sites.hpp>
 #include <cayspin/io/ovf.hpp>
 #include <cayspin/io/trajectory.hpp>
 #include <cayspin/stability.hpp>
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace cayspin::simulation {
@@ -29,6 +31,7 @@ Lattice make_lattice(io::Scene const& scene) {
   Lattice lattice;
   lattice.shape = scene.lattice.shape;
   lattice.spacing = scene.lattice.spacing;
+  lattice.cell_sites = static_cast<std::int64_t>(scene.lattice.basis.size());
   for (int axis = 0; axis < 3; ++axis)
     lattice.boundary[axis] = scene.lattice.boundary[axis] == io::BoundaryKind::periodic
                                  ? Boundary::periodic
@@ -42,44 +45,126 @@ Lattice make_lattice(io::Scene const& scene) {
   return lattice;
 }
 
-// The largest |mu0 applied| at 1001 equal times of the run.
-double largest_applied(io::Scene const& scene, Times const& times) {
-  AppliedField const applied(scene.field);
-  if (!applied.present()) return 0;
-  int const samples = applied.depends_on_time() ? 1000 : 0;
+// The largest length of a vector at 1001 equal times of the run.
+double largest(AppliedField const& vector, std::string_view key, io::Scene const& scene,
+               Times const& times) {
+  if (!vector.present()) return 0;
+  int const samples = vector.depends_on_time() ? 1000 : 0;
   double const end = times.at(times.steps);
   double largest = 0;
   for (int i = 0; i <= samples; ++i) {
     double const t = samples == 0 ? 0 : end * i / samples;
     try {
-      auto const h = applied(t);
+      auto const h = vector(t);
       largest = std::max(largest, std::hypot(h.x, h.y, h.z));
     } catch (NumbersFailed const& error) {
-      if (!scene.units.si) throw io::scene_error(scene, "field.applied", error.what());
-      throw io::scene_error(scene, "field.applied",
-                            "is not finite at t = " + time_text(scene.units, t));
+      if (!scene.units.si) throw io::scene_error(scene, key, error.what());
+      throw io::scene_error(scene, key, "is not finite at t = " + time_text(scene.units, t));
     }
   }
   return largest;
 }
 
-double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+double largest_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers,
+                        std::string_view key) {
+  double largest = 0;
+  for (double const value :
+       io::numbers_of_sites(scene, numbers, key, {{0, 0, 0}, scene.lattice.shape}))
+    largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+double largest_damping(io::Scene const& scene) {
+  auto const& system = scene.system;
+  return system.dampings.there() ? largest_of_sites(scene, system.dampings, "system.damping")
+                                 : system.damping;
+}
+
+// Of terms whose constants differ from site to site.
+double bound_of_numbers(io::Scene const& scene, Lattice const& lattice) {
   auto const& field = scene.field;
+  double bound = 0;
+  if (field.exchange_factors.there())
+    bound += field.exchange->field_bound(lattice) *
+             largest_of_sites(scene, field.exchange_factors, "field.exchange");
+  if (field.dmi_factors.there())
+    for (int axis = 0; axis < 3; ++axis)
+      if (lattice.has_neighbors(axis))
+        bound +=
+            2 * largest_of_sites(scene, field.dmi_factors, "field.dmi") / lattice.spacing[axis];
+  for (auto const& term : field.anisotropies)
+    if (term.factors.there()) bound += largest_of_sites(scene, term.factors, "field.anisotropy");
+  return bound;
+}
+
+// Of the terms that have sites of their own: the largest of the sites of a cell.
+double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all) {
+  auto const field = io::without_numbers_of_sites(scene.field);
+  of_all += bound_of_numbers(scene, lattice);
+  cayspin::detail::BondLists const bonds(lattice, io::couplings(scene));
+  if (field.bulk_dmi)
+    for (int axis = 0; axis < 3; ++axis)
+      if (lattice.has_neighbors(axis))
+        of_all += 2 * std::abs(field.bulk_dmi->constant) / lattice.spacing[axis];
+  double largest = 0;
+  for (std::size_t site = 0; site < bonds.field_bounds.size(); ++site) {
+    double bound = of_all + bonds.field_bounds[site];
+    auto const add = [&](int of, double constant) {
+      if (of < 0 || of == static_cast<int>(site)) bound += std::abs(constant);
+    };
+    for (auto const& term : field.anisotropies) add(term.site, term.constant);
+    for (auto const& term : field.cubic_anisotropies) add(term.site, 2 * term.constant);
+    auto const of_site = [&](std::vector<double> const& numbers) {
+      return numbers.empty() ? 1 : numbers[site];
+    };
+    bound *= of_site(scene.lattice.gyromagnetic) / of_site(scene.lattice.moments);
+    largest = std::max(largest, bound);
+  }
+  return largest;
+}
+
+double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+  auto const& torque = scene.field.torque;
+  double bound = 0;
+  if (auto const& of = torque.zhang_li) {
+    constexpr auto key = "torque.zhang_li.velocity";
+    double const velocity = largest(AppliedField(of->velocity, key), key, scene, times);
+    for (int axis = 0; axis < 3; ++axis)
+      if (lattice.has_neighbors(axis)) bound += velocity / lattice.spacing[axis];
+    bound *= std::hypot(1, of->nonadiabaticity);
+  }
+  if (auto const& of = torque.slonczewski) {
+    constexpr auto key = "torque.slonczewski";
+    bound += largest(AppliedField({of->damping_like, of->field_like, 0.0}, key), key, scene, times);
+  }
+  return bound;
+}
+
+double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+  auto const field = io::without_numbers_of_sites(scene.field);
   double bound = 0;
   io::for_each_lattice_term(field, [&](auto const& term) {
     if (term) bound += term->field_bound(lattice);
   });
-  bound += largest_applied(scene, times);
-  for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
   if (field.slab_demag) bound += std::abs(field.mu0 * field.slab_demag->strength);
-  return bound;
+  double const applied = largest(AppliedField(field), "field.applied", scene, times);
+  if (!io::needs_pass(scene)) {
+    for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
+    return bound + applied;
+  }
+  auto const fastest = [](std::vector<double> const& numbers) {
+    return numbers.empty() ? 1 : std::ranges::max(numbers);
+  };
+  return bound_of_sites(scene, lattice, bound) + fastest(scene.lattice.gyromagnetic) * applied +
+         torque_bound(scene, lattice, times);
 }
 
 // At most |A|: of rigid bodies the largest row sum of I^-1, where it is in the scene.
 double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times) {
   auto const& system = scene.system;
   if (system.kind == io::SystemKind::llg)
-    return field_bound(scene, lattice, times) * std::hypot(system.damping, system.precession);
+    return field_bound(scene, lattice, times) *
+           std::hypot(largest_damping(scene), system.precession);
   double largest = 0;
   if (std::holds_alternative<io::InertiaFile>(system.inertia)) return largest;
   for (auto const& [xx, yy, zz, xy, xz, yz] : io::inverse_inertia(scene))
@@ -100,8 +185,10 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
                  Precision precision, std::int64_t planes_at_once) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
-  memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field), precision);
+  memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field) && !io::needs_pass(scene),
+                                   precision);
   if (scene.field.own.nonlocal) memory.field += memory.spins;
+  if (io::needs_pass(scene)) memory.field += memory.spins + 3 * field_bytes<Real>(lattice, 1);
   if (auto const& slab = scene.field.slab_demag) {
     if (slab->on_host || slab->dear) memory.field += memory.spins;
     // Means, and of parts that share layers their exact sums.
@@ -129,9 +216,11 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     start += 8 * (9 + 6 + 6) * all.sites();
   }
   // Two frames or pieces of them on their way, and the copies of a chunk that HDF5 makes.
-  auto const pieces = io::frame_pieces(all.shape, sizeof(Real), storage_of(scene), planes_at_once);
+  auto const pieces = io::frame_pieces(all.shape, sizeof(Real), storage_of(scene), planes_at_once,
+                                       std::ssize(scene.lattice.basis));
+  std::int64_t const positions = writes && has_positions(scene.lattice) ? 8 * numbers_of_all : 0;
   std::int64_t const frames =
-      (writes ? static_cast<std::int64_t>(2 * pieces.bytes + pieces.copied) : 0) +
+      (writes ? static_cast<std::int64_t>(2 * pieces.bytes + pieces.copied) : 0) + positions +
       (is_part ? static_cast<std::int64_t>(sizeof(Real)) * numbers : 0);
   // A field on its way into a checkpoint, in double.
   bool const stores = !scene.output.checkpoint_every.is_never();
@@ -188,7 +277,7 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
       throw io::scene_error(scene, "field",
                             "its largest value is not finite; accepted: smaller constants, or a "
                             "larger lattice.spacing");
-    plan.stable_dt = substeps * plan.variant.stable_step(bound, scene.system.damping,
+    plan.stable_dt = substeps * plan.variant.stable_step(bound, largest_damping(scene),
                                                          scene.system.precession, plan.options);
   }
   bool const in_double = precision == Precision::double_precision;
@@ -199,9 +288,16 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   std::int64_t const sample_bytes = 8 * 7;
   plan.file_bytes = plan.frames * (lattice.sites() * 3 * (in_double ? 8 : 4) + sample_bytes) +
                     count(scene.output.scalars_every) * sample_bytes;
+  if (has_positions(scene.lattice))
+    plan.file_bytes += 24 * (lattice.sites() + plan.frames * std::ssize(scene.lattice.basis));
   // What a step has to follow. Its fastest modes are those of exchange: a stable dt guards them.
   io::Scene followed = scene;
-  if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) followed.field.exchange.reset();
+  if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {
+    followed.field.exchange.reset();
+    followed.field.exchange_factors = {};
+    followed.field.couplings.clear();
+    followed.field.couplings_file.clear();
+  }
   plan.turn = integrator.dt / substeps * largest_rate(followed, lattice, plan.times);
   return plan;
 }

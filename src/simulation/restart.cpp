@@ -3,10 +3,12 @@
 
 #include "failure.hpp"
 #include "run_state.hpp"
+#include "text.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -73,12 +75,12 @@ Restart::Restart(LeftBehind from, io::Scene const& scene, Plan const& plan, Prec
   if (!uses_checkpoint_ && !has_frame) refuse("it holds no frame", "a file with one");
 
   auto const& shape = uses_checkpoint_ ? checkpoint->shape : trajectory->header.shape;
+  auto const cell_sites = uses_checkpoint_ ? checkpoint->cell_sites : trajectory->header.cell_sites;
   auto const& stored = uses_checkpoint_ ? checkpoint->precision : trajectory->header.precision;
   double const time = uses_checkpoint_ ? checkpoint->time : trajectory->frame_times.back();
   step_ = uses_checkpoint_ ? checkpoint->step : trajectory->frame_steps.back();
-  if (shape != scene.lattice.shape)
-    refuse(fmt::format("its lattice is {} x {} x {}", shape[0], shape[1], shape[2]),
-           "the scene's lattice");
+  if (shape != scene.lattice.shape || cell_sites != std::ssize(scene.lattice.basis))
+    refuse(fmt::format("its lattice is {}", cells_text(shape, cell_sites)), "the scene's lattice");
   if (stored != to_string(precision))
     refuse(fmt::format("its spins are in {} precision", stored),
            fmt::format("--precision {}", stored));
@@ -105,7 +107,8 @@ Restart::Restart(LeftBehind from, io::Scene const& scene, Plan const& plan, Prec
 
 std::vector<double> Restart::spins(io::SiteBox const& box) const {
   return uses_checkpoint_ ? from_.checkpoint->field("spins", box)
-                          : io::read_spins(from_.path, from_.trajectory->header.shape, box);
+                          : io::read_spins(from_.path, from_.trajectory->header.shape, box,
+                                           from_.trajectory->header.cell_sites);
 }
 
 std::vector<double> Restart::spins() const {

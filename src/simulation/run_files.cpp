@@ -11,8 +11,10 @@
 
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 namespace cayspin::simulation {
 namespace {
@@ -27,7 +29,29 @@ bool is_whole_checkpoint(std::filesystem::path const& path) {
   }
 }
 
+// Site by site of the cell, as the file has them.
+std::vector<double> positions(io::Lattice const& lattice, io::Triple const& spacing) {
+  auto const [nx, ny, planes] = lattice.shape;
+  auto const nz = planes / std::ssize(lattice.basis);
+  std::vector<double> numbers;
+  numbers.reserve(static_cast<std::size_t>(3 * nx * ny * planes));
+  for (auto const& fraction : lattice.basis)
+    for (std::int64_t k = 0; k < nz; ++k)
+      for (std::int64_t j = 0; j < ny; ++j)
+        for (std::int64_t i = 0; i < nx; ++i)
+          for (std::size_t c = 0; c < 3; ++c)
+            numbers.push_back(((static_cast<double>(i) + fraction[0]) * lattice.cell[0][c] +
+                               (static_cast<double>(j) + fraction[1]) * lattice.cell[1][c] +
+                               (static_cast<double>(k) + fraction[2]) * lattice.cell[2][c]) *
+                              spacing[c]);
+  return numbers;
+}
+
 }  // namespace
+
+bool has_positions(io::Lattice const& lattice) {
+  return lattice.basis.size() > 1 || lattice.cell != io::Lattice().cell;
+}
 
 io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& space, int threads,
@@ -42,6 +66,7 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
   header.precision = to_string(precision);
   header.threads = threads;
   header.shape = scene.lattice.shape;
+  header.cell_sites = std::ssize(scene.lattice.basis);
   header.units = scene.units;
   return header;
 }
@@ -60,7 +85,9 @@ io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite) 
           .storage = storage_of(scene),
           .xdmf = output.xdmf,
           .table = output.table,
-          .spacing = spacing};
+          .spacing = spacing,
+          .positions = has_positions(scene.lattice) ? positions(scene.lattice, spacing)
+                                                    : std::vector<double>()};
 }
 
 void require_free_output(std::filesystem::path const& path, bool overwrite) {

@@ -18,6 +18,9 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& space, int threads,
                                 std::string const& git_commit);
 
+/// Does a file say where the sites are? They are on no regular grid.
+bool has_positions(io::Lattice const& lattice);
+
 /// With the frames that the scene asks for.
 io::TrajectoryStorage storage_of(io::Scene const& scene);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "scene_generator.hpp"
+
 #include <cayspin/integrate.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
@@ -17,9 +19,8 @@ namespace cayspin::simulation {
 template <class Spins>
 class RunNoise {
  public:
-  RunNoise(io::Scene const& scene, Spins const& like)
-      : noise_(like, scene.system.damping,
-               {scene.thermal->temperature, static_cast<std::uint64_t>(scene.thermal->seed)}) {}
+  RunNoise(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& like)
+      : noise_(noise(scene, generator, like)) {}
 
   /// After step `step` of a run that goes on from step `first`. Calls look() where that is
   /// `wanted`; the next step is begun unless look() says to stop, or it is the last.
@@ -48,6 +49,17 @@ class RunNoise {
 
  private:
   using Half = typename ThermalNoise<Spins>::Half;
+
+  static ThermalNoise<Spins> noise(io::Scene const& scene, SceneGenerator<Spins> const& generator,
+                                   Spins const& like) {
+    ThermalNoiseOptions options{scene.thermal->temperature,
+                                static_cast<std::uint64_t>(scene.thermal->seed)};
+    auto const& pass = generator.landau_lifshitz().field().pass();
+    if (!pass) return {like, scene.system.damping, options};
+    options.cell_sites = pass->noise_of_sites();
+    if (pass->moves()) return {like, scene.system.damping, options, *pass->moves()};
+    return {like, scene.system.damping, options};
+  }
 
   // Into the next step, and out of the last one if that `ends`.
   template <class Exec>

@@ -6,7 +6,18 @@
 
 #include <cayspin/io/scene.hpp>
 
+#include <utility>
+
 namespace cayspin::simulation {
+
+template <class Spins>
+SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_dear) {
+  std::optional<FieldInPass<Spins>> pass;
+  if (io::needs_pass(scene)) pass.emplace(scene, lattice);
+  return SceneField<Spins>(io::without_numbers_of_sites(scene.field), lattice, has_dear,
+                           std::move(pass));
+}
+
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice)
     : SceneGenerator(scene, lattice,
@@ -16,8 +27,8 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lattice,
                                       std::vector<SymmetricTensor> const& inverse_inertia)
-    : llg_(SceneField<Spins>(scene.field, lattice, has_dear_field(scene)), scene.system.damping,
-           scene.system.precession),
+    : llg_(field_of<Spins>(scene, lattice, has_dear_field(scene)), scene.system.damping,
+           scene.system.precession || scene.system.dampings.there()),
       is_llg_(scene.system.kind == io::SystemKind::llg),
       orthogonal_(scene.integrator.generator == io::Generator::orthogonal),
       bodies_(inverse_inertia, lattice) {}
@@ -25,7 +36,7 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {
   SceneGenerator other = *this;
-  other.llg_ = LandauLifshitz(llg_.field(), 0, true);
+  other.llg_ = LandauLifshitz(llg_.field().undamped(), 0, true);
   other.orthogonal_ = false;
   return other;
 }
@@ -67,8 +78,10 @@ CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
 #undef CAYSPIN_INSTANTIATE
 
-#define CAYSPIN_INSTANTIATE(Space, Real) \
-  template class SceneGenerator<SpinField<Real, Space::memory_space>>;
+#define CAYSPIN_INSTANTIATE(Space, Real)                                               \
+  template class SceneGenerator<SpinField<Real, Space::memory_space>>;                 \
+  template SceneField<SpinField<Real, Space::memory_space>> field_of(io::Scene const&, \
+                                                                     Lattice const&, bool);
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
 #undef CAYSPIN_INSTANTIATE

@@ -6,6 +6,7 @@
 
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/generator/orthogonal.hpp>
+#include <cayspin/observer/record.hpp>
 
 namespace cayspin::inline v0_1::io {
 struct Scene;
@@ -132,6 +133,22 @@ class SceneGenerator {
   bool is_llg_, orthogonal_;
   SceneBodies<Spins> bodies_;
 };
+
+/// cayspin::sample, with the magnetization of a scene's own moments. `of_scene`: its generator or
+/// its field, of which the energy is taken.
+template <class Exec, class OfScene, class Spins, class... Generators>
+Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step, Spins const& spins,
+                    Generators const&... generators) {
+  auto found = cayspin::sample(exec, of_scene, step, spins, generators...);
+  auto const& pass = [&]() -> auto const& {
+    if constexpr (requires { of_scene.landau_lifshitz(); })
+      return of_scene.landau_lifshitz().field().pass();
+    else
+      return of_scene.pass();
+  }();
+  if (pass) found.magnetization = pass->magnetization(exec, spins);
+  return found;
+}
 
 /// The isotropies that are a number, zero among them: asked at run time.
 struct SceneIsotropy {

@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <mutex>
 
@@ -178,6 +179,7 @@ void SceneRun::save(std::filesystem::path const& checkpoint) {
                                          .cayspin_version = CAYSPIN_VERSION_STRING,
                                          .precision = std::string(to_string(precision_)),
                                          .shape = scene_.lattice.shape,
+                                         .cell_sites = std::ssize(scene_.lattice.basis),
                                          .step = number_,
                                          .time = time(),
                                          .si = scene_.units.si});

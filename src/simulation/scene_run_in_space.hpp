@@ -17,8 +17,8 @@
 
 namespace cayspin::simulation {
 
-/// The terms of a field, each alone, under the names of their keys.
-std::vector<std::pair<std::string, io::Field>> single_terms(io::Field const& field);
+/// A scene with each term of its field alone, under the names of their keys.
+std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& scene);
 
 /// A SceneRun in one precision and execution space.
 template <class Real, class Space>
@@ -37,7 +37,7 @@ class SceneRunInSpace final
         guard_(scene, epsilon) {
     if (on_host) threads_ = simulation_.exec.concurrency();
     if (scene.integrator.energy_control) control_.emplace(simulation_.generator, simulation_.spins);
-    if (is_thermal(scene)) noise_.emplace(scene, simulation_.spins);
+    if (is_thermal(scene)) noise_.emplace(scene, simulation_.generator, simulation_.spins);
     if (scene.integrator.until_torque) torque_.emplace(simulation_.generator.precession_alone());
   }
 
@@ -109,8 +109,8 @@ class SceneRunInSpace final
     looked_ = step.number;
     next_look_ = step.number + looks_.period;
     auto const now = torque_ && looks_.until_torque
-                         ? cayspin::sample(exec, simulation_.generator, step, spins, *torque_)
-                         : cayspin::sample(exec, simulation_.generator, step, spins);
+                         ? sample_scene(exec, simulation_.generator, step, spins, *torque_)
+                         : sample_scene(exec, simulation_.generator, step, spins);
     failure_ = guard_.judge(step, now.energy, now.norm_defect);
     if (failure_) return Next::stop;
     if (!torque_ || !looks_.until_torque || first) return Next::proceed;
@@ -153,9 +153,11 @@ class SceneRunInSpace final
       require_memory(scene_, make_plan_to_relax(scene_, precision()));
       minimizer_.emplace(simulation_.spins);
     }
+    auto in_field = scene_;
+    in_field.field = field;
     return minimizer_->minimize(simulation_.exec, scene_,
-                                SceneField<Spins>(field, plan_.lattice, false), simulation_.spins,
-                                options);
+                                field_of<Spins>(in_field, plan_.lattice, false).undamped(),
+                                simulation_.spins, options);
   }
 
   // With other spins.
@@ -177,7 +179,7 @@ class SceneRunInSpace final
   }
 
   Sample look() override {
-    return cayspin::sample(simulation_.exec, simulation_.generator, now(), simulation_.spins);
+    return sample_scene(simulation_.exec, simulation_.generator, now(), simulation_.spins);
   }
 
   std::vector<std::pair<std::string, double>> term_energies() override {
@@ -187,9 +189,7 @@ class SceneRunInSpace final
       return energies;
     }
     if (terms_.empty())
-      for (auto const& [name, field] : single_terms(scene_.field)) {
-        auto alone = scene_;
-        alone.field = field;
+      for (auto const& [name, alone] : single_terms(scene_)) {
         terms_.emplace_back(name, SceneGenerator<Spins>(alone, plan_.lattice));
       }
     for (auto const& [name, generator] : terms_)
@@ -201,7 +201,7 @@ class SceneRunInSpace final
 
   LentVectors evaluated_field() override {
     Vectors const field("field", plan_.lattice);
-    evaluate_field(simulation_.exec, simulation_.generator.landau_lifshitz().field(),
+    evaluate_field(simulation_.exec, simulation_.generator.landau_lifshitz().field().undamped(),
                    simulation_.spins, reduced_time(), field);
     simulation_.exec.fence("cayspin::SceneRun: field evaluated");
     if constexpr (on_host)

@@ -38,6 +38,16 @@ std::string counted(std::int64_t count, std::string_view what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
+std::string cells_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites) {
+  auto text = fmt::format("{} x {} x {}", shape[0], shape[1], shape[2] / cell_sites);
+  if (cell_sites > 1) text += fmt::format(" cells of {} sites", cell_sites);
+  return text;
+}
+
+std::string sites_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites) {
+  return cells_text(shape, cell_sites) + (cell_sites > 1 ? "" : " sites");
+}
+
 std::string rate_text(double per_second) {
   auto const [value, prefix] = prefixed(per_second);
   return fmt::format("{:.3g} {}", value, prefix);

@@ -60,6 +60,7 @@ class CheckpointWriter::Implementation {
     attributes.create("scene", header.scene_text);
     attributes.create("resolved_scene", header.resolved_scene);
     attributes.create("precision", header.precision);
+    if (header.cell_sites > 1) attributes.create("cell_sites", header.cell_sites);
     attributes.create("step", header.step);
     attributes.create("time", header.time);
     attributes.create("units", std::string(header.si ? si_units : reduced_units));
@@ -213,6 +214,7 @@ class CheckpointReader::Implementation {
     header_.scene_text = attributes.read_text("scene");
     header_.resolved_scene = attributes.read_text("resolved_scene");
     header_.precision = attributes.read_text("precision");
+    if (attributes.has("cell_sites")) header_.cell_sites = attributes.read_integer("cell_sites");
     header_.step = attributes.read_integer("step");
     header_.time = attributes.read_real("time");
     header_.si = attributes.read_text("units") == si_units;

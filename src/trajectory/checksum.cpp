@@ -29,7 +29,12 @@ std::uint32_t sum_of(Sample const& sample) {
 
 }  // namespace
 
-std::uint32_t row_checksum(Sample const& sample) { return never_zero(mixed(0, sum_of(sample))); }
+std::uint32_t row_checksum(Sample const& sample, std::span<Vector const> sublattices) {
+  auto const row = mixed(0, sum_of(sample));
+  if (sublattices.empty()) return never_zero(row);
+  auto const bytes = std::as_bytes(sublattices);
+  return never_zero(mixed(row, fletcher32(bytes.data(), bytes.size())));
+}
 
 std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32) {
   return never_zero(mixed(mixed(0, sum_of(sample)), fletcher32));

@@ -43,8 +43,9 @@ void FollowedTrajectory::read_times_of_file() {
   identity_ = status.stx_ino;
 }
 
-void FollowedTrajectory::read_series(hid_t group, Series& series, bool all) const {
-  auto const stored = ScalarSeries::open(group, path_);
+void FollowedTrajectory::read_series(hid_t group, std::int64_t cell_sites, Series& series,
+                                     bool all) const {
+  auto const stored = ScalarSeries::open(group, path_, cell_sites);
   auto const in_file = stored.readable(all ? 0 : most_pending, path_);
   auto const begin = static_cast<std::int64_t>(series.steps.size());
   if (in_file < begin)
@@ -63,10 +64,10 @@ void FollowedTrajectory::read_file() {
   auto const file = open_file(path_, Locking::off);
   // `complete` is written last: once it is there, so is all else.
   auto const info = read_header(file.get(), path_);
-  read_series(file.get(), frames_, info.complete);
+  read_series(file.get(), info.header.cell_sites, frames_, info.complete);
   GroupHandle const scalars(
       check(H5Gopen2(file.get(), "scalars", H5P_DEFAULT), path_, "cannot open group scalars"));
-  read_series(scalars.get(), samples_, info.complete);
+  read_series(scalars.get(), 1, samples_, info.complete);
   header_ = info.header;
   cost_ = info.cost;
   complete_ = info.complete;

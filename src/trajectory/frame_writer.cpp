@@ -3,9 +3,11 @@
 
 #include "format.hpp"
 #include "hdf5/error.hpp"
+#include "sublattice.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -14,20 +16,35 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// Without HDF5's filters a frame is written alone into its chunk, whose other frames keep their
-// bytes.
-std::array<hsize_t, 5> chunk_of(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
-                                TrajectoryStorage const& storage) {
-  auto chunk = frame_chunk(shape, number_bytes, storage.chunk);
+using Shape = std::array<std::int64_t, 3>;
+
+// What the file has of a site of a cell in one piece.
+Shape block_of(Shape shape, std::int64_t cell_sites) {
+  shape[2] /= cell_sites;
+  return shape;
+}
+
+// Of such a block. Without HDF5's filters a frame is written alone into its chunk, whose other
+// frames keep their bytes.
+std::array<hsize_t, 5> chunk_of(Shape const& block, std::int64_t cell_sites,
+                                std::size_t number_bytes, TrajectoryStorage const& storage) {
+  auto chunk = frame_chunk(block, number_bytes, storage.chunk);
   if (storage.compression > 0) return chunk;
-  std::int64_t chunks = storage.frames;
+  std::int64_t chunks = storage.frames * cell_sites;
   for (int axis = 0; axis < 3; ++axis) {
     auto const of_chunk = static_cast<std::int64_t>(chunk[3 - axis]);
-    chunks *= (shape[axis] + of_chunk - 1) / of_chunk;
+    chunks *= (block[axis] + of_chunk - 1) / of_chunk;
   }
   chunk[0] = static_cast<hsize_t>(
       frames_of_chunk(3 * number_bytes * chunk[1] * chunk[2] * chunk[3], chunks));
   return chunk;
+}
+
+// (frame, z, y, x, 3), or with the site of a cell as the second extent.
+Extents with_site(std::array<hsize_t, 5> const& extents, std::int64_t cell_sites, hsize_t sites) {
+  Extents all(extents.begin(), extents.end());
+  if (cell_sites > 1) all.insert(all.begin() + 1, sites);
+  return all;
 }
 
 // A frame that never reached the disk reads as NaN, not as zeros.
@@ -35,8 +52,12 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
                            TrajectoryStorage const& storage, std::array<hsize_t, 5> const& chunk,
                            std::filesystem::path const& path) {
   bool const single = header.precision == single_precision;
-  std::array<hsize_t, 4> inner{0, 0, 0, 3};
-  for (int axis = 0; axis < 3; ++axis) inner[2 - axis] = static_cast<hsize_t>(header.shape[axis]);
+  auto const sites = header.cell_sites;
+  auto const block = block_of(header.shape, sites);
+  std::array<hsize_t, 5> extents{0, 0, 0, 0, 3};
+  for (int axis = 0; axis < 3; ++axis) extents[3 - axis] = static_cast<hsize_t>(block[axis]);
+  auto inner = with_site(extents, sites, static_cast<hsize_t>(sites));
+  inner.erase(inner.begin());
   PropertyHandle properties(H5Pcreate(H5P_DATASET_CREATE));
   auto const missing = std::numeric_limits<double>::quiet_NaN();
   check(H5Pset_fill_value(properties.get(), H5T_NATIVE_DOUBLE, &missing), path,
@@ -46,12 +67,12 @@ DatasetHandle create_spins(hid_t file, TrajectoryHeader const& header,
     check(H5Pset_deflate(properties.get(), static_cast<unsigned>(storage.compression)), path,
           "cannot create dataset spins");
   }
-  return create_growing_dataset(file, "spins", single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, chunk,
-                                std::move(properties), path, inner);
+  return create_growing_dataset(file, "spins", single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE,
+                                with_site(chunk, sites, 1), std::move(properties), path, inner);
 }
 
 // Chunks of whole planes of one frame, as they lie in memory.
-bool written_raw(std::array<std::int64_t, 3> const& shape, std::array<hsize_t, 5> const& chunk,
+bool written_raw(Shape const& shape, std::array<hsize_t, 5> const& chunk,
                  TrajectoryStorage const& storage) {
   return std::endian::native == std::endian::little && storage.compression == 0 && chunk[0] == 1 &&
          chunk[2] == static_cast<hsize_t>(shape[1]) && chunk[3] == static_cast<hsize_t>(shape[0]);
@@ -60,33 +81,42 @@ bool written_raw(std::array<std::int64_t, 3> const& shape, std::array<hsize_t, 5
 }  // namespace
 
 FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
-                         TrajectoryStorage const& storage, std::int64_t most_planes) {
-  auto const chunk = chunk_of(shape, number_bytes, storage);
+                         TrajectoryStorage const& storage, std::int64_t most_planes,
+                         std::int64_t cell_sites) {
+  auto const chunk = chunk_of(block_of(shape, cell_sites), cell_sites, number_bytes, storage);
   auto const of_chunk = static_cast<std::int64_t>(chunk[1]);
   auto const plane_bytes = 3 * number_bytes * static_cast<std::size_t>(shape[0] * shape[1]);
+  auto const of_chunk_bytes = 3 * number_bytes * chunk[0] * chunk[1] * chunk[2] * chunk[3];
+  auto const copied = written_raw(shape, chunk, storage) ? 0 : 2 * of_chunk_bytes;
+  if (cell_sites > 1)
+    return {.planes = shape[2],
+            .bytes = plane_bytes * static_cast<std::size_t>(shape[2]),
+            .copied = copied + plane_bytes * chunk[1]};
   std::int64_t const most = most_planes > 0 ? std::min(most_planes, shape[2]) : shape[2];
   std::int64_t const chunks = most == shape[2] ? (most + of_chunk - 1) / of_chunk
                                                : std::max<std::int64_t>(1, most / of_chunk);
-  auto const room = plane_bytes * static_cast<std::size_t>(chunks * of_chunk);
-  auto const of_chunk_bytes = 3 * number_bytes * chunk[0] * chunk[1] * chunk[2] * chunk[3];
   return {.planes = std::min(chunks * of_chunk, shape[2]),
-          .bytes = room,
-          .copied = written_raw(shape, chunk, storage) ? 0 : 2 * of_chunk_bytes};
+          .bytes = plane_bytes * static_cast<std::size_t>(chunks * of_chunk),
+          .copied = copied};
 }
 
 FrameWriter::FrameWriter(hid_t file, TrajectoryHeader const& header,
                          TrajectoryStorage const& storage, std::filesystem::path path)
     : path_(std::move(path)),
       shape_(header.shape),
+      cell_sites_(header.cell_sites),
       number_bytes_(header.precision == single_precision ? sizeof(float) : sizeof(double)),
       plane_bytes_(3 * number_bytes_ * static_cast<std::size_t>(shape_[0] * shape_[1])) {
-  chunk_ = chunk_of(shape_, number_bytes_, storage);
+  chunk_ = chunk_of(block_of(shape_, cell_sites_), cell_sites_, number_bytes_, storage);
   dataset_ = create_spins(file, header, storage, chunk_, path_);
   raw_ = written_raw(shape_, chunk_, storage);
+  if (cell_sites_ > 1) part_.resize(plane_bytes_ * chunk_[1]);
 }
 
 std::uint64_t FrameWriter::frame_bytes() const {
-  return plane_bytes_ * static_cast<std::uint64_t>(shape_[2]) * chunk_[0];
+  auto const of_chunk = static_cast<std::int64_t>(chunk_[1]);
+  auto const planes = (planes_of_site() + of_chunk - 1) / of_chunk * of_chunk * cell_sites_;
+  return plane_bytes_ * static_cast<std::uint64_t>(planes) * chunk_[0];
 }
 
 void FrameWriter::begin(std::int64_t frame) {
@@ -97,48 +127,94 @@ void FrameWriter::begin(std::int64_t frame) {
 
 void FrameWriter::require_planes(std::int64_t planes) const {
   auto const left = shape_[2] - planes_, of_chunk = static_cast<std::int64_t>(chunk_[1]);
-  if (planes == left || (planes > 0 && planes < left && planes % of_chunk == 0)) return;
+  bool const in_pieces = cell_sites_ == 1 && planes > 0 && planes < left && planes % of_chunk == 0;
+  if (planes == left || in_pieces) return;
+  auto const accepted = cell_sites_ > 1 ? "all" : "whole chunks, of " + std::to_string(of_chunk);
   throw std::logic_error(path_.string() + ": " + std::to_string(planes) + " planes of " +
-                         std::to_string(left) + " that are left; accepted: whole chunks, of " +
-                         std::to_string(of_chunk));
+                         std::to_string(left) + " that are left; accepted: " + accepted);
 }
 
 void FrameWriter::add(std::int64_t planes, void const* spins) {
   require_planes(planes);
-  append_block(dataset_.get(),
-               number_bytes_ == sizeof(float) ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
-               place(planes_),
-               {1, static_cast<hsize_t>(planes), static_cast<hsize_t>(shape_[1]),
-                static_cast<hsize_t>(shape_[0]), 3},
-               spins, path_);
-  checksum_.add(static_cast<std::byte const*>(spins),
-                plane_bytes_ * static_cast<std::size_t>(planes));
+  auto const* const bytes = static_cast<std::byte const*>(spins);
+  if (cell_sites_ > 1) return add_by_sites(bytes);
+  write_part(0, planes_, planes, spins);
+  checksum_.add(bytes, plane_bytes_ * static_cast<std::size_t>(planes));
   planes_ += planes;
 }
 
 void FrameWriter::add_in_room(std::int64_t planes, std::byte* spins) {
-  if (!raw_) return add(planes, spins);
+  if (!raw_ || cell_sites_ > 1) return add(planes, spins);
   require_planes(planes);
   add_raw(planes, spins);
 }
 
-// HDF5 would copy each chunk.
 void FrameWriter::add_raw(std::int64_t planes, std::byte* spins) {
   if (planes_ == 0) grow(dataset_.get(), static_cast<hsize_t>(frame_) + 1, path_);
   auto const of_chunk = static_cast<std::int64_t>(chunk_[1]);
-  auto const chunk_bytes = plane_bytes_ * chunk_[1];
   for (std::int64_t begin = 0; begin < planes; begin += of_chunk) {
-    auto const bytes = plane_bytes_ * static_cast<std::size_t>(std::min(of_chunk, planes - begin));
+    auto const of_this = std::min(of_chunk, planes - begin);
     auto* const chunk = spins + plane_bytes_ * static_cast<std::size_t>(begin);
-    std::fill(chunk + bytes, chunk + chunk_bytes, std::byte{0});
-    checksum_.add(chunk, bytes);
-    write_raw_chunk(dataset_.get(), place(planes_ + begin), chunk, chunk_bytes, path_);
+    checksum_.add(chunk, plane_bytes_ * static_cast<std::size_t>(of_this));
+    write_chunk(0, planes_ + begin, of_this, chunk);
   }
   planes_ += planes;
 }
 
-Extents FrameWriter::place(std::int64_t plane) const {
-  return {static_cast<hsize_t>(frame_), static_cast<hsize_t>(plane), 0, 0, 0};
+// Plane k * cell_sites + s has the sites s of the cells k.
+void FrameWriter::add_by_sites(std::byte const* spins) {
+  if (raw_) grow(dataset_.get(), static_cast<hsize_t>(frame_) + 1, path_);
+  auto const of_chunk = static_cast<std::int64_t>(chunk_[1]);
+  sublattices_.clear();
+  for (std::int64_t site = 0; site < cell_sites_; ++site) {
+    SublatticeMean mean;
+    for (std::int64_t first = 0; first < planes_of_site(); first += of_chunk) {
+      auto const planes = std::min(of_chunk, planes_of_site() - first);
+      for (std::int64_t k = 0; k < planes; ++k) {
+        auto const from = static_cast<std::size_t>((first + k) * cell_sites_ + site);
+        std::memcpy(part_.data() + plane_bytes_ * static_cast<std::size_t>(k),
+                    spins + plane_bytes_ * from, plane_bytes_);
+      }
+      for (std::int64_t row = 0; row < planes * shape_[1]; ++row)
+        if (number_bytes_ == sizeof(float))
+          mean.add_row(reinterpret_cast<float const*>(part_.data()) + 3 * shape_[0] * row,
+                       shape_[0]);
+        else
+          mean.add_row(reinterpret_cast<double const*>(part_.data()) + 3 * shape_[0] * row,
+                       shape_[0]);
+      checksum_.add(part_.data(), plane_bytes_ * static_cast<std::size_t>(planes));
+      raw_ ? write_chunk(site, first, planes, part_.data())
+           : write_part(site, first, planes, part_.data());
+    }
+    sublattices_.push_back(mean.value());
+  }
+  planes_ = shape_[2];
+}
+
+void FrameWriter::write_part(std::int64_t site, std::int64_t first, std::int64_t planes,
+                             void const* spins) {
+  auto const nx = shape_[0], ny = shape_[1];
+  append_block(
+      dataset_.get(), number_bytes_ == sizeof(float) ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE,
+      place(site, first),
+      with_site(
+          {1, static_cast<hsize_t>(planes), static_cast<hsize_t>(ny), static_cast<hsize_t>(nx), 3},
+          cell_sites_, 1),
+      spins, path_);
+}
+
+// Past HDF5, which would copy it. The chunk has room for all its planes.
+void FrameWriter::write_chunk(std::int64_t site, std::int64_t first, std::int64_t planes,
+                              std::byte* chunk) {
+  auto const chunk_bytes = plane_bytes_ * chunk_[1];
+  std::fill(chunk + plane_bytes_ * static_cast<std::size_t>(planes), chunk + chunk_bytes,
+            std::byte{0});
+  write_raw_chunk(dataset_.get(), place(site, first), chunk, chunk_bytes, path_);
+}
+
+Extents FrameWriter::place(std::int64_t site, std::int64_t plane) const {
+  return with_site({static_cast<hsize_t>(frame_), static_cast<hsize_t>(plane), 0, 0, 0},
+                   cell_sites_, static_cast<hsize_t>(site));
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -10,10 +10,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 namespace cayspin::inline v0_1::io {
 
-/// Dataset /spins of a trajectory file, to which frames are added by planes along z.
+/// Dataset /spins of a trajectory file, to which frames are added by planes along z. Those of a
+/// crystal with several sites in a cell come whole, and lie site by site in the file.
 class FrameWriter {
  public:
   FrameWriter() = default;
@@ -35,22 +37,31 @@ class FrameWriter {
   std::int64_t planes() const { return planes_; }  ///< of the frame, so far
   bool is_whole() const { return planes_ == shape_[2]; }
   Fletcher32 const& checksum() const { return checksum_; }
+  /// Of a whole frame of a crystal: TrajectoryInfo::frame_sublattices. Otherwise empty.
+  std::vector<std::array<double, 3>> const& sublattices() const { return sublattices_; }
 
   void close() { dataset_.close(); }
 
  private:
   void require_planes(std::int64_t planes) const;
   void add_raw(std::int64_t planes, std::byte* spins);
-  Extents place(std::int64_t plane) const;
+  void add_by_sites(std::byte const* spins);
+  void write_part(std::int64_t site, std::int64_t first, std::int64_t planes, void const* spins);
+  void write_chunk(std::int64_t site, std::int64_t first, std::int64_t planes, std::byte* chunk);
+  std::int64_t planes_of_site() const { return shape_[2] / cell_sites_; }
+  Extents place(std::int64_t site, std::int64_t plane) const;
 
   std::filesystem::path path_;
   DatasetHandle dataset_;
   std::array<std::int64_t, 3> shape_{};
+  std::int64_t cell_sites_ = 1;
   std::array<hsize_t, 5> chunk_{};
   std::size_t number_bytes_ = 0, plane_bytes_ = 0;
   bool raw_ = false;
   std::int64_t frame_ = 0, planes_ = 0;
   Fletcher32 checksum_;
+  std::vector<std::byte> part_;  // of a site: as many planes as a chunk has
+  std::vector<std::array<double, 3>> sublattices_;
 };
 
 }  // namespace cayspin::inline v0_1::io

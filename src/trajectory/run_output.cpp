@@ -57,16 +57,20 @@ class RunOutput::Implementation {
                  RunOutputOptions const& options)
       : single_(header.precision == single_precision) {
     if (options.xdmf) require_spacing(options.spacing);
+    if (options.xdmf && header.cell_sites > 1 && options.positions.empty())
+      throw std::invalid_argument("the sites of a crystal have no positions for its XDMF file");
     if (options.xdmf) require_free_beside(path, ".xdmf", options.overwrite);
     if (options.table) require_free_beside(path, ".txt", options.overwrite);
-    file_.emplace(path, header, options.overwrite, options.storage);
+    file_.emplace(path, header, options.overwrite, options.storage, options.positions);
     if (options.xdmf)
-      xdmf_.emplace(beside(path, ".xdmf"), path, header.shape, options.spacing, single_,
-                    options.overwrite);
+      xdmf_.emplace(
+          beside(path, ".xdmf"), path,
+          XdmfGrid{header.shape, header.cell_sites, options.spacing, !options.positions.empty()},
+          single_, options.overwrite);
     if (options.table) table_.emplace(beside(path, ".txt"), header.units.si, options.overwrite);
     planes_ = header.shape[2];
     pieces_ = frame_pieces(header.shape, single_ ? sizeof(float) : sizeof(double), options.storage,
-                           options.most_planes);
+                           options.most_planes, header.cell_sites);
     for (auto& buffer : buffers_) {
       // Zeroed: all memory is taken before a run.
       buffer = std::make_unique<std::byte[]>(pieces_.bytes);

@@ -7,12 +7,15 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <stdexcept>
+#include <string>
 
 namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr hsize_t samples_per_chunk = 512;
+constexpr char const* sublattices_name = "sublattice_magnetization";
 
 DatasetHandle create_column(hid_t group, char const* name, hid_t type,
                             std::filesystem::path const& path) {
@@ -44,7 +47,8 @@ std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, st
 
 }  // namespace
 
-ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path) {
+ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path,
+                                  std::int64_t cell_sites) {
   ScalarSeries series;
   series.time_ = create_column(group, "time", H5T_IEEE_F64LE, path);
   series.step_ = create_column(group, "step", H5T_STD_I64LE, path);
@@ -54,10 +58,17 @@ ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path
   series.magnetization_ =
       create_growing_dataset(group, "magnetization", H5T_IEEE_F64LE, chunk, PropertyHandle(), path);
   series.checksum_ = create_column(group, "checksum", H5T_STD_U64LE, path);
+  series.cell_sites_ = cell_sites;
+  if (cell_sites == 1) return series;
+  auto const sites = static_cast<hsize_t>(cell_sites);
+  std::array<hsize_t, 3> const of_sites{std::max<hsize_t>(1, samples_per_chunk / sites), sites, 3};
+  series.sublattices_ = create_growing_dataset(group, sublattices_name, H5T_IEEE_F64LE, of_sites,
+                                               PropertyHandle(), path);
   return series;
 }
 
-ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path) {
+ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
+                                std::int64_t cell_sites) {
   ScalarSeries series;
   series.time_ = open_dataset(group, "time", 1, path);
   series.step_ = open_dataset(group, "step", 1, path);
@@ -69,36 +80,48 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path) 
   auto const has_checksums =
       check(H5Lexists(group, "checksum", H5P_DEFAULT), path, "cannot read dataset checksum");
   if (has_checksums > 0) series.checksum_ = open_dataset(group, "checksum", 1, path);
+  series.cell_sites_ = cell_sites;
+  if (cell_sites == 1) return series;
+  series.sublattices_ = open_dataset(group, sublattices_name, 3, path);
+  auto const extents = dataset_extents(series.sublattices_.get(), path);
+  if (extents[1] != static_cast<hsize_t>(cell_sites) || extents[2] != 3)
+    throw_failure(path, std::string("cannot read dataset ") + sublattices_name,
+                  "its inner extents are not (" + std::to_string(cell_sites) + ", 3)");
   return series;
 }
 
 // Without the filter fletcher32: its sum would stand for a chunk of 512 samples that is written in
 // pieces.
 void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
-                          std::uint32_t spins) {
+                          std::uint32_t spins, std::vector<Vector> const& sublattices) {
   if (samples.empty()) return;
   auto const times = column(samples, [](auto const& s) { return s.time; });
   auto const steps = column(samples, [](auto const& s) { return s.step; });
   auto const energies = column(samples, [](auto const& s) { return s.scalars.energy; });
   auto const defects = column(samples, [](auto const& s) { return s.scalars.norm_defect; });
   auto const means = column(samples, [](auto const& s) { return s.scalars.magnetization; });
-  auto const checksums =
-      column(samples, [&](auto const& s) { return std::uint64_t{row_checksum(s)} << 32U | spins; });
+  auto const checksums = column(samples, [&](auto const& s) {
+    return std::uint64_t{row_checksum(s, sublattices)} << 32U | spins;
+  });
   hsize_t const count = samples.size();
   append_block(time_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, times.data(), path);
   append_block(step_.get(), H5T_NATIVE_INT64, {size_}, {count}, steps.data(), path);
   append_block(energy_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, energies.data(), path);
   append_block(norm_defect_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, defects.data(), path);
   append_block(magnetization_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {count, 3}, means.data(), path);
+  if (sublattices_.get() >= 0)
+    append_block(sublattices_.get(), H5T_NATIVE_DOUBLE, {size_, 0, 0},
+                 {count, static_cast<hsize_t>(cell_sites_), 3}, sublattices.data(), path);
   append_block(checksum_.get(), H5T_NATIVE_UINT64, {size_}, {count}, checksums.data(), path);
   size_ += count;
 }
 
 std::int64_t ScalarSeries::size(std::filesystem::path const& path) const {
   auto shortest = dataset_extents(time_.get(), path)[0];
-  for (auto const* dataset : {&step_, &energy_, &norm_defect_, &magnetization_})
-    shortest = std::min(shortest, dataset_extents(dataset->get(), path)[0]);
-  if (has_checksums()) shortest = std::min(shortest, dataset_extents(checksum_.get(), path)[0]);
+  for (auto const* dataset :
+       {&step_, &energy_, &norm_defect_, &magnetization_, &checksum_, &sublattices_})
+    if (dataset->get() >= 0)
+      shortest = std::min(shortest, dataset_extents(dataset->get(), path)[0]);
   return static_cast<std::int64_t>(shortest);
 }
 
@@ -138,12 +161,25 @@ std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
     samples.push_back({steps[i], times[i], {energies[i], defects[i], means[i]}});
   if (!has_checksums()) return samples;
   auto const checksums = read_checksums(begin, end, path);
+  auto const sublattices = read_sublattices(begin, end, path);
+  auto const of_sample = sublattices.empty() ? 0 : static_cast<std::size_t>(cell_sites_);
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (checksums[i] >> 32U != row_checksum(samples[i]))
+    if (checksums[i] >> 32U !=
+        row_checksum(samples[i], std::span(sublattices).subspan(i * of_sample, of_sample)))
       throw_failure(path, "cannot read the trajectory",
                     "sample " + std::to_string(begin + static_cast<std::int64_t>(i)) +
                         " is damaged: its checksum differs");
   return samples;
+}
+
+std::vector<Vector> ScalarSeries::read_sublattices(std::int64_t begin, std::int64_t end,
+                                                   std::filesystem::path const& path) const {
+  if (sublattices_.get() < 0 || begin == end) return {};
+  std::vector<Vector> means(static_cast<std::size_t>((end - begin) * cell_sites_));
+  read_block(sublattices_.get(), H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(begin), 0, 0},
+             {static_cast<hsize_t>(end - begin), static_cast<hsize_t>(cell_sites_), 3},
+             means.data(), path);
+  return means;
 }
 
 std::uint32_t ScalarSeries::spins_checksum(std::int64_t frame,

@@ -5,6 +5,7 @@
 
 #include <cayspin/io/trajectory.hpp>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -12,22 +13,29 @@
 
 namespace cayspin::inline v0_1::io {
 
+using Vector = std::array<double, 3>;
+
 struct Sample {
   std::int64_t step;
   double time;
   Scalars scalars;
 };
 
-/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group. Files of
+/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group, and
+/// sublattice_magnetization of the frames of crystals with several sites in a cell. Files of
 /// earlier versions have no checksums.
 class ScalarSeries {
  public:
-  static ScalarSeries create(hid_t group, std::filesystem::path const& path);
-  static ScalarSeries open(hid_t group, std::filesystem::path const& path);
+  /// `cell_sites`: of frames; 1 for samples without them.
+  static ScalarSeries create(hid_t group, std::filesystem::path const& path,
+                             std::int64_t cell_sites = 1);
+  static ScalarSeries open(hid_t group, std::filesystem::path const& path,
+                           std::int64_t cell_sites = 1);
 
-  /// `spins`: the checksum of a frame's spins, and 1 for samples without.
+  /// `spins`: the checksum of a frame's spins, and 1 for samples without. `sublattices` of one
+  /// frame, where they are stored.
   void append(std::vector<Sample> const& samples, std::filesystem::path const& path,
-              std::uint32_t spins = 1);
+              std::uint32_t spins = 1, std::vector<Vector> const& sublattices = {});
 
   /// Samples that are whole: the shortest of the datasets counts.
   std::int64_t size(std::filesystem::path const& path) const;
@@ -42,6 +50,10 @@ class ScalarSeries {
   std::vector<Sample> read(std::int64_t begin, std::int64_t end,
                            std::filesystem::path const& path) const;
 
+  /// Of each sample, one after the other; empty where none are stored.
+  std::vector<Vector> read_sublattices(std::int64_t begin, std::int64_t end,
+                                       std::filesystem::path const& path) const;
+
   bool has_checksums() const { return checksum_.get() >= 0; }
   /// The checksum of the spins of a frame, which has_checksums() has.
   std::uint32_t spins_checksum(std::int64_t frame, std::filesystem::path const& path) const;
@@ -51,7 +63,8 @@ class ScalarSeries {
   std::vector<std::uint64_t> read_checksums(std::int64_t begin, std::int64_t end,
                                             std::filesystem::path const& path) const;
 
-  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_, checksum_;
+  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_, checksum_, sublattices_;
+  std::int64_t cell_sites_ = 1;
   hsize_t size_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include "scalar_series.hpp"
 
 #include <cayspin/io/site_box.hpp>
+#include <cayspin/io/trajectory.hpp>
 
 #include <array>
 #include <cstdint>
@@ -17,11 +18,14 @@ namespace cayspin::inline v0_1::io {
 /// Dataset /spins of any HDF5 file, open for reading.
 class StoredSpins {
  public:
-  /// Throws unless it fits a lattice (nx, ny, nz), and, where it has frames, holds a whole one.
-  StoredSpins(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape);
+  /// Throws unless it fits a lattice (nx, ny, nz) with so many sites in a cell, and, where it has
+  /// frames, holds a whole one.
+  StoredSpins(std::filesystem::path const& path, std::array<std::int64_t, 3> const& shape,
+              std::int64_t cell_sites = any_cell_sites);
 
   /// The state or the last whole frame, packed as (nz, ny, nx, 3), or of it the sites of a box.
-  /// Throws where a trajectory's frame is not as it was written.
+  /// Throws where a trajectory's frame is not as it was written. What lies site by site in the file
+  /// comes back in the order of TrajectoryHeader::shape.
   std::vector<double> last() const;
   std::vector<double> last(SiteBox const& box) const;
 
@@ -30,12 +34,17 @@ class StoredSpins {
 
  private:
   SiteBox all() const { return {{0, 0, 0}, shape_}; }
+  [[noreturn]] void refuse_extents(std::int64_t cell_sites) const;
+  template <class Read>
+  std::vector<double> by_planes(SiteBox const& box, Read const& read) const;
   std::vector<double> checked(Extents const& begin, SiteBox const& box) const;
 
   std::filesystem::path path_;
   std::array<std::int64_t, 3> shape_;
   RealDataset dataset_;
   std::optional<ScalarSeries> series_;  // of a trajectory file
+  std::int64_t sites_ = 1;              // of a cell, where they lie one after the other
+  bool framed_ = false;
   Extents begin_, frame_;
 };
 

@@ -152,7 +152,7 @@ void require_whole(fs::path const& file) {
   auto const info = read_info(file);
   auto const trial = file.string() + ".trial";
   auto const read_and_copy = [&] {
-    StoredSpins const spins(file, info.header.shape);
+    StoredSpins const spins(file, info.header.shape, info.header.cell_sites);
     for (std::int64_t frame = 0; frame < info.frames; ++frame) spins.frame(frame);
     FileHandle const copy(check(H5Fcreate(trial.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                                 trial, "cannot create the file"));

@@ -15,8 +15,10 @@
 #include <bit>
 #include <chrono>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace cayspin::inline v0_1::io {
@@ -26,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto longest_wait = std::chrono::seconds(1);
 
 // What a frame, or as many samples as may be pending, can take besides the spins: index nodes and a
-// new chunk in each of the ten scalar datasets.
+// new chunk in each of the scalar datasets.
 constexpr std::uint64_t overhead_bytes = 512 * 1024;
 
 void write_units(RootAttributes const& attributes, Units const& units) {
@@ -59,12 +61,43 @@ void write_attributes(hid_t file, TrajectoryHeader const& header,
   attributes.create("complete", std::int64_t{0});
 }
 
-void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& storage) {
+void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& storage,
+                   std::vector<double> const& positions) {
   require_precision(header.precision);
   require_shape(header.shape);
+  if (header.cell_sites < 1 || header.shape[2] % header.cell_sites != 0)
+    throw std::invalid_argument("the planes of the lattice are not those of whole cells");
   if (storage.compression < 0 || storage.compression > 9)
     throw std::invalid_argument("compression is not in 0 to 9");
   if (storage.chunk < 0) throw std::invalid_argument("chunk is negative");
+  auto const [nx, ny, nz] = header.shape;
+  if (!positions.empty() && std::ssize(positions) != 3 * nx * ny * nz)
+    throw std::invalid_argument("the positions are not three numbers of each site");
+}
+
+// Checked by HDF5, as nothing else is that lies beside the frames.
+void write_positions(hid_t file, TrajectoryHeader const& header,
+                     std::vector<double> const& positions, std::filesystem::path const& path) {
+  std::string const action = "cannot write dataset positions";
+  auto block = header.shape;
+  block[2] /= header.cell_sites;
+  auto const of_chunk = frame_chunk(block, sizeof(double));
+  Extents chunk(of_chunk.begin() + 1, of_chunk.end()), extents{3};
+  for (auto const extent : block) extents.insert(extents.begin(), static_cast<hsize_t>(extent));
+  if (header.cell_sites > 1) {
+    chunk.insert(chunk.begin(), 1);
+    extents.insert(extents.begin(), static_cast<hsize_t>(header.cell_sites));
+  }
+  auto const rank = static_cast<int>(extents.size());
+  PropertyHandle const properties(H5Pcreate(H5P_DATASET_CREATE));
+  check(H5Pset_chunk(properties.get(), rank, chunk.data()), path, action);
+  check(H5Pset_fletcher32(properties.get()), path, action);
+  DataspaceHandle const space(check(H5Screate_simple(rank, extents.data(), nullptr), path, action));
+  DatasetHandle const dataset(check(H5Dcreate2(file, "positions", H5T_IEEE_F64LE, space.get(),
+                                               H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                                    path, action));
+  check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, positions.data()),
+        path, action);
 }
 
 }  // namespace
@@ -72,18 +105,21 @@ void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& stor
 class TrajectoryFile::Implementation {
  public:
   Implementation(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
-                 TrajectoryStorage const& storage)
+                 TrajectoryStorage const& storage, std::vector<double> const& positions)
       : path_(std::move(path)), single_(header.precision == single_precision) {
-    require_valid(header, storage);
+    require_valid(header, storage, positions);
     if (storage.sync) synced_ = std::make_unique<SyncedFile>();
     NewFile file(path_, overwrite, false, synced_.get());
     space_ = OpenFileSpace(file.get(), path_);
-    space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size(), path_);
+    space_.reserve(overhead_bytes + header.scene_text.size() + header.resolved_scene.size() +
+                       sizeof(double) * positions.size(),
+                   path_);
     write_attributes(file.get(), header, path_);
     if (synced_)
       RootAttributes(file.get(), path_)
           .create("journal", std::bit_cast<std::int64_t>(synced_->mark()));
     create_datasets(file.get(), header, storage);
+    if (!positions.empty()) write_positions(file.get(), header, positions, path_);
     check(H5Fflush(file.get(), H5F_SCOPE_GLOBAL), path_, "cannot create the file");
     file_ = file.commit();
   }
@@ -115,7 +151,8 @@ class TrajectoryFile::Implementation {
     if (!spins_.is_whole())
       throw std::logic_error(path_.string() + ": a frame ends before its last plane");
     if (!synced_) flush();
-    frame_series_.append({sample}, path_, spins_checksum(sample, spins_.checksum().value()));
+    frame_series_.append({sample}, path_, spins_checksum(sample, spins_.checksum().value()),
+                         spins_.sublattices());
     flush();
     spins_.begin(++frames_);
   }
@@ -157,7 +194,7 @@ class TrajectoryFile::Implementation {
                        TrajectoryStorage const& storage) {
     spins_ = FrameWriter(file, header, storage, path_);
     planes_ = header.shape[2];
-    frame_series_ = ScalarSeries::create(file, path_);
+    frame_series_ = ScalarSeries::create(file, path_, header.cell_sites);
     scalars_ = GroupHandle(check(H5Gcreate2(file, "scalars", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                                  path_, "cannot create group scalars"));
     sample_series_ = ScalarSeries::create(scalars_.get(), path_);
@@ -214,9 +251,11 @@ class TrajectoryFile::Implementation {
 };
 
 TrajectoryFile::TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header,
-                               bool overwrite, TrajectoryStorage const& storage) {
+                               bool overwrite, TrajectoryStorage const& storage,
+                               std::vector<double> const& positions) {
   QuietErrors const quiet;
-  implementation_ = std::make_unique<Implementation>(std::move(path), header, overwrite, storage);
+  implementation_ =
+      std::make_unique<Implementation>(std::move(path), header, overwrite, storage, positions);
 }
 
 TrajectoryFile::~TrajectoryFile() = default;

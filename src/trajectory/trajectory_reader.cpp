@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <string>
 
 namespace cayspin::inline v0_1::io {
@@ -37,6 +38,27 @@ void require_whole_texts(RootAttributes const& attributes, TrajectoryHeader cons
   if (stored != text_checksum(header))
     throw_failure(path, "cannot read the trajectory",
                   "its attributes are damaged: their checksum differs");
+}
+
+// (frame, nz, ny, nx, 3), or (frame, site, nz, ny, nx, 3) of a crystal.
+void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const& path) {
+  constexpr std::size_t rank = 5;
+  auto const spins = open_dataset(file, "spins", path);
+  auto extents = dataset_extents(spins.get(), path);
+  info.frames = extents.empty() ? 0 : static_cast<std::int64_t>(extents[0]);
+  auto& header = info.header;
+  if (extents.size() == rank + 1) {
+    header.cell_sites = static_cast<std::int64_t>(extents[1]);
+    extents.erase(extents.begin() + 1);
+  } else if (extents.size() != rank) {
+    throw_failure(path, "cannot read dataset spins", "its rank is neither 5 nor 6");
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    header.shape[axis] = static_cast<std::int64_t>(extents[3 - axis]);
+  if (header.cell_sites < 1 ||
+      header.shape[2] > std::numeric_limits<std::int64_t>::max() / header.cell_sites)
+    throw_failure(path, "cannot read dataset spins", "its second extent is no number of sites");
+  header.shape[2] *= header.cell_sites;
 }
 
 }  // namespace
@@ -67,11 +89,7 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   if (attributes.has("converged"))
     info.cost.relaxed = {attributes.read_real("torque"), attributes.read_integer("converged") == 1};
   info.complete = attributes.read_integer("complete") == 1;
-  auto const spins = open_dataset(file, "spins", 5, path);
-  auto const extents = dataset_extents(spins.get(), path);
-  for (int axis = 0; axis < 3; ++axis)
-    info.header.shape[axis] = static_cast<std::int64_t>(extents[3 - axis]);
-  info.frames = static_cast<std::int64_t>(extents[0]);
+  read_extents(file, info, path);
   return info;
 }
 
@@ -80,13 +98,14 @@ namespace {
 TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
   auto const file = open_file(path);
   auto info = read_header(file.get(), path);
-  auto const series = ScalarSeries::open(file.get(), path);
+  auto const series = ScalarSeries::open(file.get(), path, info.header.cell_sites);
   info.frames = std::min(info.frames, series.readable(info.complete ? 0 : 1, path));
   for (auto const& sample : series.read(info.frames, path)) {
     info.frame_steps.push_back(sample.step);
     info.frame_times.push_back(sample.time);
     info.frame_scalars.push_back(sample.scalars);
   }
+  info.frame_sublattices = series.read_sublattices(0, info.frames, path);
   GroupHandle const scalars(
       check(H5Gopen2(file.get(), "scalars", H5P_DEFAULT), path, "cannot open group scalars"));
   info.samples =

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace cayspin::inline v0_1::io {
@@ -28,14 +30,10 @@ std::string escaped(std::string const& text) {
   return result;
 }
 
-}  // namespace
-
 // XDMF lists the axes as HDF5 does, z first.
-XdmfFile::XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
-                   std::array<std::int64_t, 3> const& shape, std::array<double, 3> const& spacing,
-                   bool single, bool overwrite)
-    : path_(std::move(path)), shape_(shape) {
-  grid_ = fmt::format(
+std::string grid_text(std::array<std::int64_t, 3> const& shape,
+                      std::array<double, 3> const& spacing) {
+  return fmt::format(
       R"(        <Topology TopologyType="3DCoRectMesh" Dimensions="{} {} {}"/>
         <Geometry GeometryType="ORIGIN_DXDYDZ">
           <DataItem Dimensions="3" NumberType="Float" Precision="8" Format="XML">{} {} {}</DataItem>
@@ -44,21 +42,50 @@ XdmfFile::XdmfFile(std::filesystem::path path, std::filesystem::path const& traj
 )",
       shape[2], shape[1], shape[0], spacing[2] / 2, spacing[1] / 2, spacing[0] / 2, spacing[2],
       spacing[1], spacing[0]);
+}
+
+std::string points_text(std::array<std::int64_t, 3> const& shape, std::string const& extents,
+                        std::string const& file) {
+  return fmt::format(
+      R"(        <Topology TopologyType="Polyvertex" NumberOfElements="{}" NodesPerElement="1"/>
+        <Geometry GeometryType="XYZ">
+          <DataItem Dimensions="{}" NumberType="Float" Precision="8" Format="HDF">{}:/positions</DataItem>
+        </Geometry>
+)",
+      shape[0] * shape[1] * shape[2], extents, file);
+}
+
+}  // namespace
+
+XdmfFile::XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
+                   XdmfGrid const& grid, bool single, bool overwrite)
+    : path_(std::move(path)) {
+  auto const file = escaped(trajectory.filename().string());
+  auto const& [nx, ny, nz] = grid.shape;
+  if (grid.cell_sites > 1) extents_ = fmt::format("{} ", grid.cell_sites);
+  extents_ += fmt::format("{} {} {} 3", nz / grid.cell_sites, ny, nx);
+  grid_ = grid.has_positions ? points_text(grid.shape, extents_, file)
+                             : grid_text(grid.shape, grid.spacing);
   spins_ = fmt::format(R"(NumberType="Float" Precision="{}" Format="HDF">{}:/spins)",
-                       single ? 4 : 8, escaped(trajectory.filename().string()));
+                       single ? 4 : 8, file);
   write(overwrite);
 }
 
 void XdmfFile::add_frame(double time) {
-  auto const extents = fmt::format("{} {} {} 3", shape_[2], shape_[1], shape_[0]);
+  auto const rank = 1 + std::ranges::count(extents_, ' ') + 1;
+  std::string zeros, ones;
+  for (std::ptrdiff_t axis = 1; axis < rank; ++axis) {
+    zeros += " 0";
+    ones += " 1";
+  }
   frames_ += fmt::format(
       R"(      <Grid Name="frame {0}" GridType="Uniform">
         <Time Value="{1}"/>
 {2}        <Attribute Name="m" AttributeType="Vector" Center="Node">
           <DataItem ItemType="HyperSlab" Dimensions="{3}">
-            <DataItem Dimensions="3 5" NumberType="Int" Format="XML">
-              {0} 0 0 0 0
-              1 1 1 1 1
+            <DataItem Dimensions="3 {6}" NumberType="Int" Format="XML">
+              {0}{7}
+              1{8}
               1 {3}
             </DataItem>
             <DataItem Dimensions="{4} {3}" {5}</DataItem>
@@ -66,7 +93,7 @@ void XdmfFile::add_frame(double time) {
         </Attribute>
       </Grid>
 )",
-      count_, time, grid_, extents, count_ + 1, spins_);
+      count_, time, grid_, extents_, count_ + 1, spins_, rank, zeros, ones);
   ++count_;
   if (count_ <= always_written || Clock::now() - last_write_ > rest_between_writes) write(true);
 }

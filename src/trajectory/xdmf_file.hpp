@@ -9,14 +9,22 @@
 
 namespace cayspin::inline v0_1::io {
 
+/// Where the sites are that an XDMF file describes.
+struct XdmfGrid {
+  std::array<std::int64_t, 3> shape;  ///< as TrajectoryHeader has it
+  std::int64_t cell_sites = 1;
+  std::array<double, 3> spacing = {1, 1, 1};
+  bool has_positions = false;  ///< in the trajectory file, which count in place of the spacing
+};
+
 /// Describes /spins of a trajectory file to viewers such as ParaView: an XDMF time series of a
-/// vector field on a regular grid. It is replaced as a whole, so that it is valid at every moment.
+/// vector field on a regular grid, or at the points of /positions. It is replaced as a whole, so
+/// that it is valid at every moment.
 class XdmfFile {
  public:
   /// Creates the file, without frames. One that exists is an error unless `overwrite`.
   XdmfFile(std::filesystem::path path, std::filesystem::path const& trajectory,
-           std::array<std::int64_t, 3> const& shape, std::array<double, 3> const& spacing,
-           bool single, bool overwrite);
+           XdmfGrid const& grid, bool single, bool overwrite);
 
   /// Adds the next frame. Of more than a thousand, those of about a second are written together.
   void add_frame(double time);
@@ -29,8 +37,7 @@ class XdmfFile {
 
   using Clock = std::chrono::steady_clock;
   std::filesystem::path path_;
-  std::string grid_, spins_, frames_;
-  std::array<std::int64_t, 3> shape_;
+  std::string grid_, extents_, spins_, frames_;
   std::int64_t count_ = 0, written_ = 0;
   Clock::time_point last_write_;
 };

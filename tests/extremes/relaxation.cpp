@@ -26,7 +26,7 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
   auto const start = copy_to_host(spins);
   Minimum found;
   try {
-    found = minimize(HostSpace(), SceneField<Spins>(scene.field, plan.lattice, false), spins,
+    found = minimize(HostSpace(), field_of<Spins>(scene, plan.lattice, false).undamped(), spins,
                      {.torque = setting.torque});
   } catch (std::invalid_argument const& error) {
     bool const by_bound = setting.torque < Minimizer<Spins>::least_bound;

@@ -36,7 +36,7 @@ class Look : public RunObserver<HostSpace, Spins> {
       : setting_(setting),
         generator_(generator),
         guard_(scene, std::numeric_limits<Real>::epsilon()) {
-    if (is_thermal(scene)) noise_.emplace(scene, spins);
+    if (is_thermal(scene)) noise_.emplace(scene, generator, spins);
   }
 
   // Long runs are looked at in between.

@@ -42,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongScene{"damping_nan", "0.05\np", "nan\np", ":3: system.damping: nan is not finite", ""},
         WrongScene{"damping_inf", "0.05\np", "inf\np", ":3: system.damping: inf is not finite", ""},
         WrongScene{"damping_string", "0.05\np", "\"big\"\np",
-                   ":3: system.damping: 'big' is a string", "a number >= 0"},
+                   ":3: system.damping: expression \"big\"", "a formula in x, y, z, i, j, k"},
         WrongScene{"precession_type", "= true", "= 1", ":4: system.precession: 1 is an integer",
                    "true, false"},
         WrongScene{"inertia", "precession = true", "inertia = [1, 2, 3]", ":4: system.inertia",

@@ -20,7 +20,8 @@ struct CheckpointHeader {
   std::string scene_text, resolved_scene;  ///< as in TrajectoryHeader
   std::string cayspin_version;
   std::string precision = "double";            ///< of the run and of the fields: "single", "double"
-  std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz
+  std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz, as in TrajectoryHeader
+  std::int64_t cell_sites = 1;
   std::int64_t step = 0;
   double time = 0;  ///< in the scene's units
   bool si = false;  ///< are they SI?

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/coupling.hpp>
 #include <cayspin/io/own_field.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -98,14 +100,58 @@ struct InterfacialDmi {
   }
 };
 
+/// A number, or the text of an expression in t.
+using AppliedComponent = std::variant<double, std::string>;
+
+/// A number for each site: an expression as in [initial], or a dataset of an HDF5 file.
+struct SiteNumbers {
+  std::string expression;
+  std::filesystem::path file;
+
+  bool there() const { return !expression.empty() || !file.empty(); }
+};
+
 /// H = constant (m.axis) axis.
 struct Anisotropy {
-  double constant = 0;  ///< K in H = K (m.e) e
-  Triple axis = {};     ///< unit vector e
+  double constant = 0;       ///< K in H = K (m.e) e
+  Triple axis = {};          ///< unit vector e
+  int site = -1;             ///< of the cell; all where it is below 0
+  SiteNumbers factors = {};  ///< of the constant, which then is 1
 
   static constexpr std::string_view formula = "H = {} (m.e) e, e = {}";
   static constexpr std::array parameters{Parameter<Anisotropy>{"constant", &Anisotropy::constant},
                                          Parameter<Anisotropy>{"axis", &Anisotropy::axis}};
+};
+
+/// Of a cubic crystal: E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2), the m along its axes.
+struct CubicAnisotropy {
+  double constant = 0;  ///< Kc
+  std::array<Triple, 2> axes =
+      {};         ///< unit vectors normal to each other; the third is their product
+  int site = -1;  ///< of the cell; all where it is below 0
+};
+
+/// Bulk Dzyaloshinskii-Moriya interaction: E = constant m.(curl m).
+struct BulkDmi {
+  double constant = 0;
+};
+
+/// Zhang and Li 2004: t = -(u.grad) m + xi m x (u.grad) m.
+struct ZhangLi {
+  std::array<AppliedComponent, 3> velocity = {};  ///< u
+  double nonadiabaticity = 0;                     ///< xi
+};
+
+/// Slonczewski 1996: t = a m x (p x m) - b m x p.
+struct Slonczewski {
+  AppliedComponent damping_like = 0.0, field_like = 0.0;  ///< a, b
+  Triple polarization = {};                               ///< unit vector p
+};
+
+/// The table [torque].
+struct Torque {
+  std::optional<ZhangLi> zhang_li;
+  std::optional<Slonczewski> slonczewski;
 };
 
 /// H = -strength (m.normal) normal, per spin or averaged over layers.
@@ -117,14 +163,18 @@ struct SlabDemagnetization {
   bool dear = false;           ///< evaluated once or twice a step, between substeps of the rest
 };
 
-/// A number, or the text of an expression in t.
-using AppliedComponent = std::variant<double, std::string>;
-
 /// Only terms that stand in the scene have a value.
 struct Field {
   std::optional<Exchange> exchange;
   std::optional<InterfacialDmi> dmi;
+  std::optional<BulkDmi> bulk_dmi;
+  SiteNumbers exchange_factors, dmi_factors;  ///< of constants that then are 1
   std::vector<Anisotropy> anisotropies;
+  std::vector<CubicAnisotropy> cubic_anisotropies;
+  std::vector<Coupling> couplings;       ///< as typed, or made of shells
+  std::filesystem::path couplings_file;  ///< of Vampire; empty without one
+  double couplings_scale = 1;            ///< of the numbers in that file
+  Torque torque;
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::vector<Triple> applied_in_turn;  ///< of `cayspin relax`: one state of rest for each
   std::optional<SlabDemagnetization> slab_demag;
@@ -136,6 +186,12 @@ struct Field {
 
 /// True when a component of the applied field contains t, or the uniform field is a program's.
 bool depends_on_time(Field const& field);
+
+/// Without the terms whose constants differ from site to site.
+Field without_numbers_of_sites(Field field);
+
+/// True when a current moves the spins, and their energy need not fall.
+bool has_torque(Field const& field);
 
 /// True when the field at a site depends on more than the site and its neighbours.
 bool is_nonlocal(Field const& field);

@@ -54,7 +54,7 @@ class FollowedTrajectory {
   }
   void read_file();
   void read_times_of_file();
-  void read_series(std::int64_t group, Series& series, bool all) const;
+  void read_series(std::int64_t group, std::int64_t cell_sites, Series& series, bool all) const;
 
   std::filesystem::path path_;
   std::uint64_t identity_ = 0;

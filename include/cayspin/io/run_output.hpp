@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 namespace cayspin::inline v0_1::io {
 
@@ -18,6 +19,8 @@ struct RunOutputOptions {
   bool xdmf = false;                          ///< FILE.xdmf, which describes FILE.h5 to viewers
   bool table = false;                         ///< FILE.txt, a line for each sample
   std::array<double, 3> spacing = {1, 1, 1};  ///< of the lattice, for the XDMF file
+  /// Of the sites of a crystal, x, y and z in the order of the file; empty: on a regular grid.
+  std::vector<double> positions = {};
 };
 
 /// Writes the files of a run while the run goes on: a thread of its own takes up to two frames, or

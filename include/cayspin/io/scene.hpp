@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/crystal.hpp>
 #include <cayspin/io/field.hpp>
 #include <cayspin/io/method.hpp>
 #include <cayspin/io/site_box.hpp>
@@ -41,15 +42,22 @@ struct InertiaFile {
 struct System {
   SystemKind kind = SystemKind::llg;
   double damping = 0;      ///< llg: lambda >= 0
+  SiteNumbers dampings;    ///< llg: in place of it, which then is 0
   bool precession = true;  ///< llg: false is the overdamped A = lambda m x H
   std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
 };
 
 /// The table [lattice].
 struct Lattice {
-  std::array<std::int64_t, 3> shape = {1, 1, 1};  ///< nx, ny, nz; rigid bodies: count, 1, 1
+  /// nx, ny, nz; rigid bodies: count, 1, 1. Of a crystal nz is cells times sites of a cell: plane
+  /// k * basis.size() + s has the sites s of the cells k.
+  std::array<std::int64_t, 3> shape = {1, 1, 1};
   Triple spacing = {1, 1, 1};
   std::array<BoundaryKind, 3> boundary = {};
+  std::array<Triple, 3> cell = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< in units of spacing
+  std::vector<Triple> basis = {{0, 0, 0}};    ///< in fractions of the cell's vectors
+  std::vector<double> moments, gyromagnetic;  ///< one for each site of the cell; empty: all 1
+  std::string occupied, frozen;               ///< expressions; empty: all, none
 };
 
 /// All spins along one direction.
@@ -216,6 +224,26 @@ std::vector<double> initial_spins(Scene const& scene);
 
 /// The start of these sites alone, in the same order. Of a file in OVF all is read.
 std::vector<double> initial_spins(Scene const& scene, SiteBox const& box);
+
+/// The bonds of a scene, each once: those that are typed, or those of its unit-cell file. Throws
+/// SceneError.
+std::vector<Coupling> couplings(Scene const& scene);
+
+/// 1 for the sites that hold a spin, and for those whose spin does not move, in the order of
+/// initial_spins; empty where all do and none is frozen. Throws SceneError.
+std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box);
+std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box);
+
+/// A number for each site, in the order of initial_spins. `key`: of the scene, for messages. Throws
+/// SceneError.
+std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numbers,
+                                     std::string_view key, SiteBox const& box);
+
+/// Is the field evaluated in a pass of its own, for terms that few scenes have?
+bool needs_pass(Scene const& scene);
+
+/// A lattice's cell.
+Crystal crystal(Lattice const& lattice);
 
 /// The inertia tensors of a rigid body scene, row by row: one when all bodies share it, otherwise
 /// one per body. Throws SceneError naming the body that is not symmetric positive definite.

@@ -30,9 +30,12 @@ struct TrajectoryHeader {
   std::string space;                 ///< name of the execution space
   std::string precision = "double";  ///< of the run and of /spins: "single" or "double"
   int threads = 1;
-  std::array<std::int64_t, 3> shape{1, 1, 1};  ///< nx, ny, nz
-  Units units;                                 ///< of the times and energies in the file
-  bool relaxes = false;                        ///< it ends with RunCost::relaxed
+  /// nx, ny, nz. Of a crystal nz is cells times cell_sites: plane k * cell_sites + s has the sites
+  /// s of the cells k.
+  std::array<std::int64_t, 3> shape{1, 1, 1};
+  std::int64_t cell_sites = 1;  ///< sites of a cell
+  Units units;                  ///< of the times and energies in the file
+  bool relaxes = false;         ///< it ends with RunCost::relaxed
 };
 
 /// How /spins lies in the file.
@@ -51,9 +54,11 @@ struct FramePieces {
 };
 
 /// Pieces of whole chunks and at most so many planes (0: all), but of one chunk at least. For a
-/// lattice (nx, ny, nz) and numbers of 4 or 8 bytes.
+/// lattice (nx, ny, nz) and numbers of 4 or 8 bytes. A frame of a crystal with several sites in a
+/// cell is one piece.
 FramePieces frame_pieces(std::array<std::int64_t, 3> const& shape, std::size_t number_bytes,
-                         TrajectoryStorage const& storage, std::int64_t most_planes = 0);
+                         TrajectoryStorage const& storage, std::int64_t most_planes = 0,
+                         std::int64_t cell_sites = 1);
 
 /// The observables of one instant, always in double.
 struct Scalars {
@@ -83,9 +88,10 @@ class TrajectoryFile {
  public:
   /// Creates the file with everything but frames. An existing file is an error unless `overwrite`;
   /// it is then replaced only once the new one stands beside it (as PATH.partial) with its header.
-  /// A failed creation changes nothing that was there and leaves no new file.
+  /// A failed creation changes nothing that was there and leaves no new file. `positions` of the
+  /// sites, three numbers each in the order of the file, or none.
   TrajectoryFile(std::filesystem::path path, TrajectoryHeader const& header, bool overwrite,
-                 TrajectoryStorage const& storage = {});
+                 TrajectoryStorage const& storage = {}, std::vector<double> const& positions = {});
 
   /// Closes the file; without finish() before, it stays marked as not complete.
   ~TrajectoryFile();
@@ -133,6 +139,9 @@ struct TrajectoryInfo {
   std::vector<std::int64_t> frame_steps;
   std::vector<double> frame_times;
   std::vector<Scalars> frame_scalars;
+  /// Of crystals with several sites in a cell, cell_sites entries for each frame: the mean of m
+  /// over the sites s that have a spin; zero where none has.
+  std::vector<std::array<double, 3>> frame_sublattices;
   std::int64_t samples = 0;  ///< length of /scalars
 };
 
@@ -143,18 +152,24 @@ void complete_file(std::filesystem::path const& path);
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 
+/// Whatever the file has, where its sites fill the planes of the lattice.
+inline constexpr std::int64_t any_cell_sites = 0;
+
 /// Reads dataset /spins of any HDF5 file for a lattice (nx, ny, nz): (nz, ny, nx, 3), or the last
-/// of (frame, nz, ny, nx, 3), of a trajectory file the last whole one. Float or double, bits are
-/// kept; the result is packed as (nz, ny, nx, 3).
+/// of (frame, nz, ny, nx, 3), of a trajectory file the last whole one. Of a crystal also
+/// the last of (frame, cell_sites, nz / cell_sites, ny, nx, 3). Float or double, bits are kept; the
+/// result is packed as (nz, ny, nx, 3), in the order of TrajectoryHeader::shape.
 std::vector<double> read_spins(std::filesystem::path const& path,
                                std::array<std::int64_t, 3> const& shape);
 
 /// The same for the sites of a box. Memory is taken for them, and for a chunk or some planes.
 std::vector<double> read_spins(std::filesystem::path const& path,
-                               std::array<std::int64_t, 3> const& shape, SiteBox const& box);
+                               std::array<std::int64_t, 3> const& shape, SiteBox const& box,
+                               std::int64_t cell_sites = any_cell_sites);
 
 /// The same for frame number `frame`, counted from 0, of a file with frames.
 std::vector<double> read_spins(std::filesystem::path const& path,
-                               std::array<std::int64_t, 3> const& shape, std::int64_t frame);
+                               std::array<std::int64_t, 3> const& shape, std::int64_t frame,
+                               std::int64_t cell_sites = any_cell_sites);
 
 }  // namespace cayspin::inline v0_1::io

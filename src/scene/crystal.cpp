@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "crystal.hpp"
+
+#include "sections.hpp"
+#include "unit_cell_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace cayspin::inline v0_1::io::detail {
+namespace {
+
+constexpr std::string_view crystal_words =
+    "\"bcc\", \"fcc\", \"hcp\", \"honeycomb\", \"kagome\", \"pyrochlore\"";
+
+Crystal crystal_of(Item const& item) {
+  auto const name = string(item, crystal_words);
+  if (name == "bcc") return Crystal::bcc();
+  if (name == "fcc") return Crystal::fcc();
+  if (name == "hcp") return Crystal::hcp();
+  if (name == "honeycomb") return Crystal::honeycomb();
+  if (name == "kagome") return Crystal::kagome();
+  if (name == "pyrochlore") return Crystal::pyrochlore();
+  unknown_word(item, name, {"bcc", "fcc", "hcp", "honeycomb", "kagome", "pyrochlore"},
+               crystal_words);
+}
+
+// A unit-cell file says what the cell is, where the scene does not.
+std::optional<Crystal> crystal_of_couplings(Table const& root) {
+  auto const field = root.find("field");
+  if (!field || !field->node->is_table()) return std::nullopt;
+  auto const couplings = Table(*field, root.scene()).find("couplings");
+  if (!couplings || !couplings->node->is_table()) return std::nullopt;
+  Table const table(*couplings, root.scene());
+  auto const file = table.find("file");
+  if (!file) return std::nullopt;
+  auto const path = input_file(table, "file", accepted_unit_cell_file);
+  try {
+    return read_unit_cell(path);
+  } catch (std::runtime_error const& error) {
+    file->fail(error.what());
+  }
+}
+
+void read_cell(Item const& item, Lattice& lattice) {
+  constexpr std::string_view accepted = "three vectors of three numbers that span a volume";
+  auto const vectors = entries(item, 3, 3, accepted);
+  for (std::size_t i = 0; i < 3; ++i) lattice.cell[i] = triple(vectors[i]);
+  if (!(crystal(lattice).fullness() > 1e-12)) item.fail("the vectors span no volume", accepted);
+}
+
+void read_basis(Item const& item, Lattice& lattice) {
+  constexpr std::string_view accepted =
+      "an array of sites, three fractions of the cell's vectors each";
+  lattice.basis.clear();
+  auto const sites = entries(item, 1, most_sites, accepted);
+  for (auto const& entry : sites) lattice.basis.push_back(triple(entry));
+  if (auto const two = crystal(lattice).sites_at_one_place())
+    sites[(*two)[1]].fail(fmt::format("is the place of site {}, too", (*two)[0]),
+                          "sites at places of their own");
+}
+
+std::vector<double> read_numbers_of_sites(Item const& item, std::size_t sites) {
+  if (!item.node->is_array()) return std::vector<double>(sites, positive_number(item));
+  std::vector<double> numbers;
+  auto const accepted = fmt::format("{} numbers > 0, one for each site of the cell", sites);
+  for (auto const& entry : entries(item, sites, sites, accepted))
+    numbers.push_back(positive_number(entry));
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::string> site_variables(Lattice const& lattice) {
+  std::vector<std::string> variables{"x", "y", "z", "i", "j", "k"};
+  if (lattice.basis.size() > 1) variables.emplace_back("s");
+  return variables;
+}
+
+void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
+  auto const use = [&](Crystal const& crystal) {
+    lattice.cell = crystal.cell;
+    lattice.basis = crystal.basis;
+  };
+  if (auto const item = table.find("crystal")) {
+    for (auto const* const name : {"cell", "basis"})
+      if (auto const other = table.find(name))
+        other->fail("stands beside lattice.crystal, which says it", "no such key");
+    use(crystal_of(*item));
+  }
+  if (!table.contains("crystal") && !table.contains("cell") && !table.contains("basis"))
+    if (auto const found = crystal_of_couplings(root)) use(*found);
+  if (auto const item = table.find("cell")) read_cell(*item, lattice);
+  if (auto const item = table.find("basis")) read_basis(*item, lattice);
+  auto const sites = lattice.basis.size();
+  if (auto const item = table.find("moments"))
+    lattice.moments = read_numbers_of_sites(*item, sites);
+  if (auto const item = table.find("gyromagnetic"))
+    lattice.gyromagnetic = read_numbers_of_sites(*item, sites);
+  for (auto const& [name, member] :
+       {std::pair{"occupied", &Lattice::occupied}, {"frozen", &Lattice::frozen}}) {
+    auto const item = table.find(name);
+    if (!item) continue;
+    auto const variables = site_variables(lattice);
+    lattice.*member =
+        string(*item, fmt::format("a string with an expression in {}", fmt::join(variables, ", ")));
+    try {
+      Expression(lattice.*member, variables);
+    } catch (std::invalid_argument const& error) {
+      item->fail(error.what());
+    }
+  }
+}
+
+void check_crystal(Scene const& scene) {
+  auto const& lattice = scene.lattice;
+  auto const& field = scene.field;
+  if (lattice.basis.size() == 1 && lattice.cell == Lattice{}.cell) return;
+  auto const refuse = [&](bool there, std::string_view key, std::string_view accepted) {
+    if (!there) return;
+    auto const needs = lattice.basis.size() > 1 ? "needs one site in a cell"
+                                                : "needs a cell along the axes, of the spacing";
+    throw scene_error(scene, key, fmt::format("{}; accepted: {}", needs, accepted));
+  };
+  refuse(field.exchange.has_value(), "field.exchange", "field.couplings with J");
+  refuse(field.dmi || field.bulk_dmi, "field.dmi", "field.couplings with D");
+  refuse(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
+         "no such key");
+  refuse(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
+}
+
+}  // namespace cayspin::inline v0_1::io::detail
+
+namespace cayspin::inline v0_1::io {
+
+Crystal crystal(Lattice const& lattice) { return {lattice.cell, lattice.basis}; }
+
+}  // namespace cayspin::inline v0_1::io

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "site_numbers.hpp"
+
+#include "crystal.hpp"
+#include "hdf5/real_dataset.hpp"
+#include "hdf5/survives.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+// /values (nz, ny, nx), or (site, nz, ny, nx) of a crystal.
+class ValuesOfSites {
+ public:
+  ValuesOfSites(std::filesystem::path const& path, Lattice const& lattice)
+      : shape_(lattice.shape),
+        sites_(static_cast<std::int64_t>(lattice.basis.size())),
+        dataset_(path, "/values") {
+    std::vector<hsize_t> expected;
+    for (auto const extent : {sites_, shape_[2] / sites_, shape_[1], shape_[0]})
+      expected.push_back(static_cast<hsize_t>(extent));
+    if (sites_ == 1) expected.erase(expected.begin());
+    if (dataset_.extents() != Extents(expected.begin(), expected.end()))
+      dataset_.refuse_extents(fmt::format("({})", fmt::join(expected, ", ")));
+  }
+
+  std::vector<double> in(SiteBox const& box) const {
+    auto const all = dataset_.read();
+    std::vector<double> numbers;
+    auto const cells = shape_[2] / sites_;
+    for (std::int64_t k = 0; k < box.extent[2]; ++k)
+      for (std::int64_t j = 0; j < box.extent[1]; ++j) {
+        auto const plane = box.begin[2] + k;
+        auto const stored = plane % sites_ * cells + plane / sites_;
+        auto const from =
+            all.begin() + (stored * shape_[1] + box.begin[1] + j) * shape_[0] + box.begin[0];
+        numbers.insert(numbers.end(), from, from + box.extent[0]);
+      }
+    return numbers;
+  }
+
+ private:
+  std::array<std::int64_t, 3> shape_;
+  std::int64_t sites_;
+  RealDataset dataset_;
+};
+
+}  // namespace
+
+namespace detail {
+
+std::vector<double> values_at_sites(Scene const& scene, std::string const& text,
+                                    std::string_view key, SiteBox const& box) {
+  Expression const expression(text, site_variables(scene.lattice));
+  auto const& [nx, ny, nz] = box.extent;
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(nx * ny * nz));
+  for (std::int64_t k = 0; k < nz; ++k)
+    for (std::int64_t j = 0; j < ny; ++j)
+      for (std::int64_t i = 0; i < nx; ++i) {
+        auto const variables =
+            site_values(scene.lattice, {box.begin[0] + i, box.begin[1] + j, box.begin[2] + k});
+        try {
+          values.push_back(expression(variables.data()));
+        } catch (std::runtime_error const& error) {
+          throw scene_error(scene, key, error.what());
+        }
+      }
+  return values;
+}
+
+bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
+  if (item.node->is_table()) {
+    Table const table(item, scene);
+    table.accept_only({"file"});
+    numbers.file = input_file(table, "file");
+    return true;
+  }
+  if (!item.node->is_string()) return false;
+  numbers.expression = string(item, "an expression in x, y, z, i, j, k");
+  try {
+    Expression(numbers.expression, site_variables(scene.lattice));
+  } catch (std::invalid_argument const& error) {
+    item.fail(error.what());
+  }
+  return true;
+}
+
+double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
+  if (read_site_numbers(item, scene, numbers)) return 1;
+  return number(item,
+                "a finite number, an expression in x, y, z, i, j, k, or { file = \"NAME.h5\" }");
+}
+
+void check_site_numbers(Scene const& scene) {
+  auto const check = [&](SiteNumbers const& numbers, std::string_view key) {
+    if (numbers.file.empty()) return;
+    try {
+      try_in_child(numbers.file, [&] { ValuesOfSites(numbers.file, scene.lattice); });
+    } catch (std::runtime_error const& error) {
+      throw scene_error(scene, key, error.what());
+    }
+  };
+  auto const& field = scene.field;
+  check(scene.system.dampings, "system.damping");
+  check(field.exchange_factors, "field.exchange");
+  check(field.dmi_factors, "field.dmi");
+  for (auto const& term : field.anisotropies) check(term.factors, "field.anisotropy");
+}
+
+}  // namespace detail
+
+std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numbers,
+                                     std::string_view key, SiteBox const& box) {
+  if (numbers.file.empty()) return detail::values_at_sites(scene, numbers.expression, key, box);
+  try {
+    auto const values = read_guarded(
+        numbers.file, [&] { return ValuesOfSites(numbers.file, scene.lattice).in(box); });
+    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+      throw std::runtime_error(numbers.file.string() + ": a value is not finite");
+    return values;
+  } catch (std::runtime_error const& error) {
+    throw scene_error(scene, key, error.what());
+  }
+}
+
+}  // namespace cayspin::inline v0_1::io

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+#include "site_numbers.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+// 1 where an expression is not 0; nothing without one.
+std::vector<unsigned char> sites_where(Scene const& scene, std::string const& text,
+                                       std::string_view key, SiteBox const& box) {
+  if (text.empty()) return {};
+  auto const values = detail::values_at_sites(scene, text, key, box);
+  std::vector<unsigned char> where(values.size());
+  std::ranges::transform(values, where.begin(), [](double value) { return value != 0 ? 1 : 0; });
+  return where;
+}
+
+}  // namespace
+
+namespace detail {
+
+void refuse_in_si(Scene const& scene) {
+  for (auto const* const key :
+       {"lattice.crystal", "lattice.cell", "lattice.basis", "lattice.moments",
+        "lattice.gyromagnetic", "lattice.occupied", "lattice.frozen", "field.couplings", "torque"})
+    if (scene.places.contains(key))
+      throw scene_error(scene, key,
+                        "is for reduced units so far; accepted: no such key in units = \"SI\"");
+}
+
+void require_occupied(Scene const& scene) {
+  auto const& shape = scene.lattice.shape;
+  if (scene.lattice.occupied.empty()) return;
+  for (std::int64_t plane = 0; plane < shape[2]; ++plane) {
+    auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], 1}});
+    if (std::ranges::find(there, 1) != there.end()) return;
+  }
+  throw scene_error(scene, "lattice.occupied",
+                    "leaves no spin; accepted: an expression that is true somewhere");
+}
+
+}  // namespace detail
+
+std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box) {
+  return sites_where(scene, scene.lattice.occupied, "lattice.occupied", box);
+}
+std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box) {
+  return sites_where(scene, scene.lattice.frozen, "lattice.frozen", box);
+}
+
+bool needs_pass(Scene const& scene) {
+  auto const& lattice = scene.lattice;
+  auto const& field = scene.field;
+  bool const has_sites = scene.system.dampings.there() || field.exchange_factors.there() ||
+                         field.dmi_factors.there() ||
+                         std::ranges::any_of(field.anisotropies, [](auto const& term) {
+                           return term.site >= 0 || term.factors.there();
+                         });
+  return lattice.basis.size() > 1 || !lattice.moments.empty() || !lattice.gyromagnetic.empty() ||
+         !lattice.occupied.empty() || !lattice.frozen.empty() || !field.couplings.empty() ||
+         !field.couplings_file.empty() || !field.cubic_anisotropies.empty() || has_sites ||
+         field.bulk_dmi || field.torque.zhang_li || field.torque.slonczewski;
+}
+
+}  // namespace cayspin::inline v0_1::io

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "unit_cell_file.hpp"
+
+#include "crystal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+// The lengths of the cell's edges, its three vectors in units of these, its atoms, its bilinear
+// interactions and, in some files, biquadratic ones. Vampire counts atoms by their lines, whatever
+// their first number is. E = -sum S.J S' over the bonds, each of which stands there from both ends.
+namespace cayspin::inline v0_1::io::detail {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// The lines of a file as words, without comments and empty lines.
+class Lines {
+ public:
+  explicit Lines(std::filesystem::path const& path) : path_(path), stream_(path) {
+    if (!stream_ || std::filesystem::is_directory(path)) fail("cannot be read");
+  }
+
+  [[noreturn]] void fail(std::string_view what) const {
+    auto const place = number_ > 0 ? fmt::format("{}:{}", path_.string(), number_) : path_.string();
+    throw std::runtime_error(fmt::format("{}: {}", place, what));
+  }
+
+  std::optional<Words> next() {
+    for (std::string line; std::getline(stream_, line);) {
+      ++number_;
+      if (line.size() > 4096) fail("is longer than 4096 characters");
+      if (auto words = words_of(line.substr(0, line.find('#'))); !words.empty()) return words;
+    }
+    return std::nullopt;
+  }
+  /// `what`: for the message where the file ends.
+  Words required(std::size_t least, std::string_view what) {
+    auto words = next();
+    if (!words) fail(fmt::format("ends before {}", what));
+    if (words->size() < least) fail(fmt::format("has {} words; accepted: {}", words->size(), what));
+    return std::move(*words);
+  }
+
+  double number(std::string const& word) const {
+    double value = 0;
+    auto const* const end = word.data() + word.size();
+    auto const [at, error] = std::from_chars(word.data() + (word[0] == '+'), end, value);
+    if (error != std::errc() || at != end || !std::isfinite(value))
+      fail(fmt::format("\"{:.40}\" is not a finite number", word));
+    return value;
+  }
+  std::int64_t integer(std::string const& word, std::int64_t least, std::int64_t most) const {
+    double const value = number(word);
+    if (value != std::floor(value) || value < static_cast<double>(least) ||
+        value > static_cast<double>(most))
+      fail(fmt::format("{:.40} is not a whole number from {} to {}", word, least, most));
+    return static_cast<std::int64_t>(value);
+  }
+  Crystal::Point vector(Words const& words, std::size_t from) const {
+    return {number(words[from]), number(words[from + 1]), number(words[from + 2])};
+  }
+
+ private:
+  static Words words_of(std::string_view line) {
+    constexpr std::string_view gaps = " \t\r,";
+    Words words;
+    for (std::size_t at = 0; (at = line.find_first_not_of(gaps, at)) != line.npos;) {
+      auto const end = std::min(line.find_first_of(gaps, at), line.size());
+      words.emplace_back(line.substr(at, end - at));
+      at = end;
+    }
+    return words;
+  }
+
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::int64_t number_ = 0;
+};
+
+Crystal read_crystal(Lines& lines) {
+  Crystal crystal;
+  auto const edges = lines.vector(lines.required(3, "the three lengths of a cell"), 0);
+  double length = 0;  // of the first vector
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto& vector = crystal.cell[i] = lines.vector(lines.required(3, "three vectors of a cell"), 0);
+    if (i == 0) length = std::abs(edges[0]) * std::hypot(vector[0], vector[1], vector[2]);
+    for (double& component : vector) component *= edges[i] / length;
+  }
+  if (!(crystal.fullness() > 1e-12)) lines.fail("the cell has no volume");
+
+  auto const counts = lines.required(1, "the number of atoms");
+  auto const atoms = lines.integer(counts[0], 1, most_sites);
+  crystal.basis.clear();
+  for (std::int64_t i = 0; i < atoms; ++i)
+    crystal.basis.push_back(lines.vector(
+        lines.required(4, fmt::format("{} atoms, of each number x y z ..", atoms)), 1));
+  if (auto const two = crystal.sites_at_one_place())
+    lines.fail(fmt::format("atoms {} and {} are at one place", (*two)[0], (*two)[1]));
+  return crystal;
+}
+
+void require_sites(Lines const& lines, Crystal const& file, Crystal const& scene) {
+  if (file.basis.size() != scene.basis.size())
+    lines.fail(fmt::format("has {} atoms in a cell; accepted: {}, as lattice.basis",
+                           file.basis.size(), scene.basis.size()));
+  for (std::size_t i = 0; i < file.basis.size(); ++i) {
+    auto const &there = file.basis[i], &here = scene.basis[i];
+    auto const is_far = [](double a, double b) { return std::abs(a - b) > 1e-4; };
+    if (is_far(there[0], here[0]) || is_far(there[1], here[1]) || is_far(there[2], here[2]))
+      lines.fail(fmt::format("atom {} is at ({}); accepted: ({}), as in lattice.basis", i,
+                             fmt::join(there, ", "), fmt::join(here, ", ")));
+  }
+}
+
+/// How many numbers an interaction of this kind has.
+std::size_t numbers_of(Lines const& lines, std::string_view word) {
+  constexpr std::string_view normalised = "normalised-";
+  auto const kind = word.starts_with(normalised) ? word.substr(normalised.size()) : word;
+  if (kind == "isotropic" || kind == "0") return 1;
+  if (kind == "vectorial" || kind == "1") return 3;
+  if (kind == "tensorial" || kind == "2") return 9;
+  lines.fail(fmt::format(
+      "\"{:.40}\" is no kind of exchange; accepted: isotropic, vectorial, tensorial", word));
+}
+
+using Key = std::tuple<std::array<int, 2>, std::array<int, 3>>;
+using Tensor = std::array<double, 9>;
+using Tensors = std::map<Key, Tensor>;
+
+Key reversed(Key const& key) {
+  auto const& [between, offset] = key;
+  return {{between[1], between[0]}, {-offset[0], -offset[1], -offset[2]}};
+}
+
+std::string name_of(Key const& key) {
+  auto const& [between, offset] = key;
+  return fmt::format("the bond from atom {} to atom {} of the cell ({}, {}, {}) away", between[0],
+                     between[1], offset[0], offset[1], offset[2]);
+}
+
+Tensor read_tensor(Lines const& lines, Words const& words, std::size_t numbers) {
+  Tensor tensor{};
+  for (std::size_t i = 0; i < 9; ++i) {
+    if (numbers == 9) tensor[i] = lines.number(words[6 + i]);
+    if (numbers < 9 && i % 4 == 0) tensor[i] = lines.number(words[numbers == 1 ? 6 : 6 + i / 4]);
+  }
+  return tensor;
+}
+
+Tensors read_interactions(Lines& lines, Words const& head, std::int64_t atoms) {
+  constexpr std::int64_t most_bonds = 100'000'000, most_cells = 1'000'000;
+  auto const count = lines.integer(head[0], 0, most_bonds);
+  auto const numbers = head.size() > 1 ? numbers_of(lines, head[1]) : 1;
+  auto const accepted =
+      fmt::format("{} interactions, of each number i j dx dy dz and {} of J", count, numbers);
+  Tensors tensors;
+  for (std::int64_t n = 0; n < count; ++n) {
+    auto const words = lines.required(6 + numbers, accepted);
+    if (words.size() > 6 + numbers)
+      lines.fail(fmt::format("has {} words; accepted: {}", words.size(), accepted));
+    Key key;
+    auto& [between, offset] = key;
+    for (std::size_t end = 0; end < 2; ++end)
+      between[end] = static_cast<int>(lines.integer(words[1 + end], 0, atoms - 1));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      offset[axis] = static_cast<int>(lines.integer(words[3 + axis], -most_cells, most_cells));
+    if (key == reversed(key)) lines.fail(fmt::format("couples atom {} to itself", between[0]));
+    if (!tensors.emplace(key, read_tensor(lines, words, numbers)).second)
+      lines.fail(name_of(key) + " stands there twice");
+  }
+  return tensors;
+}
+
+/// Of the two ends of each bond one, with the mean of what they say, which differs by rounding.
+Tensors one_way(Lines const& lines, Tensors const& tensors) {
+  double largest = 0;
+  for (auto const& [key, tensor] : tensors)
+    for (double const number : tensor) largest = std::max(largest, std::abs(number));
+  Tensors once;
+  for (auto const& [key, tensor] : tensors) {
+    auto const back = tensors.find(reversed(key));
+    if (back == tensors.end())
+      lines.fail(name_of(key) + " does not stand there from its other end");
+    if (!(key < reversed(key))) continue;
+    auto& mean = once[key];
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) {
+        double const here = tensor[3 * i + j], there = back->second[3 * j + i];
+        if (std::abs(here - there) > 1e-3 * largest)
+          lines.fail(
+              fmt::format("{} is {} there and {} from its other end", name_of(key), here, there));
+        mean[3 * i + j] = 0.5 * (here + there);
+      }
+  }
+  return once;
+}
+
+}  // namespace
+
+Crystal read_unit_cell(std::filesystem::path const& path) {
+  Lines lines(path);
+  return read_crystal(lines);
+}
+
+std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
+                                               Crystal const& crystal, double scale) {
+  Lines lines(path);
+  require_sites(lines, read_crystal(lines), crystal);
+  auto const atoms = static_cast<std::int64_t>(crystal.basis.size());
+  auto const head = lines.required(1, "the number of interactions");
+  auto const tensors = one_way(lines, read_interactions(lines, head, atoms));
+  std::map<Key, Coupling> couplings;
+  auto const coupling = [&](Key const& key) -> Coupling& {
+    auto& found = couplings[key];
+    std::tie(found.between, found.offset) = key;
+    return found;
+  };
+  for (auto const& [key, tensor] : tensors)
+    std::ranges::transform(tensor, coupling(key).tensor.begin(),
+                           [&](double number) { return scale * number; });
+  if (auto const more = lines.next()) {
+    if (more->size() != 2) lines.fail(fmt::format("is more than the {} interactions", head[0]));
+    if (numbers_of(lines, (*more)[1]) != 1)
+      lines.fail("biquadratic interactions that are not isotropic are not known");
+    for (auto const& [key, tensor] : one_way(lines, read_interactions(lines, *more, atoms)))
+      coupling(key).biquadratic = scale * tensor[0];
+    if (lines.next()) lines.fail(fmt::format("is more than the {} interactions", (*more)[0]));
+  }
+  std::vector<Coupling> all;
+  for (auto const& [key, made] : couplings) all.push_back(made);
+  return all;
+}
+
+}  // namespace cayspin::inline v0_1::io::detail

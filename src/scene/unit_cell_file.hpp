@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/coupling.hpp>
+#include <cayspin/crystal.hpp>
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+// Unit-cell files of Vampire, which other programs write, too. Both functions throw
+// std::runtime_error with one line that names the file's line.
+namespace cayspin::inline v0_1::io::detail {
+
+constexpr std::string_view accepted_unit_cell_file = "the name of a unit-cell file of Vampire";
+
+/// The cell, its first vector of length 1, and its atoms.
+Crystal read_unit_cell(std::filesystem::path const& path);
+
+/// The bonds, each once, times `scale`. The atoms have to be the sites of `crystal`, and each bond
+/// has to stand there from both ends.
+std::vector<Coupling> read_unit_cell_couplings(std::filesystem::path const& path,
+                                               Crystal const& crystal, double scale);
+
+}  // namespace cayspin::inline v0_1::io::detail

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "field_in_pass.hpp"
+
+#include "applied_field.hpp"
+#include "pass_terms.hpp"
+#include "space.hpp"
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/scalars.hpp>
+
+#include <Kokkos_Profiling_ScopedRegion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cayspin::simulation {
+namespace {
+
+/// Writes H and E of every site.
+template <class Real>
+struct EvaluateInPass {
+  PassTerms<Real> terms;
+  cayspin::detail::SiteArray<Real, 3> spins;
+  cayspin::detail::SiteArray<Real, 1> moves, dampings;  // without data: all do, and none
+  bool precession;
+  cayspin::detail::OutputArray<Real, 3> field;
+  cayspin::detail::OutputArray<Real, 1> energies;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    auto found = terms(Stencil<Site, Real>(site, spins));
+    if (dampings.data) {
+      auto const turned = site.load(dampings) * cross(site.load(spins), found.field);
+      found.field = precession ? found.field + turned : turned;
+    }
+    if (moves.data) found.field = site.load(moves) * found.field;
+    site.store(found.field, field);
+    site.store(found.energy, energies);
+  }
+};
+
+template <class Element, class Memory>
+Kokkos::View<Element*, Memory> table_of(char const* name, std::vector<Element> const& from) {
+  Kokkos::View<Element*, Memory> table(
+      Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string("cayspin::FieldInPass::") + name),
+      from.size());
+  Kokkos::deep_copy(table, Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                               from.data(), from.size()));
+  return table;
+}
+
+Vec3<double> vector(io::Triple const& v) { return {v[0], v[1], v[2]}; }
+
+// That of all sites alike.
+double bulk_constant(io::Scene const& scene) {
+  auto const& field = scene.field;
+  return field.bulk_dmi && !field.dmi_factors.there() ? field.bulk_dmi->constant : 0;
+}
+
+// A number per site of the cell; none are all 1.
+double of_site(std::vector<double> const& numbers, std::size_t site) {
+  return numbers.empty() ? 1 : numbers[site];
+}
+
+struct Sites {
+  std::vector<CellSite> sites;
+  std::vector<CubicAnisotropy> cubics;
+};
+
+Sites sites_of(io::Scene const& scene) {
+  Sites all;
+  auto const& field = scene.field;
+  for (std::size_t number = 0; number < scene.lattice.basis.size(); ++number) {
+    auto const is_here = [&](int site) { return site < 0 || site == static_cast<int>(number); };
+    auto& site = all.sites.emplace_back();
+    site.moment = of_site(scene.lattice.moments, number);
+    site.gyromagnetic = of_site(scene.lattice.gyromagnetic, number);
+    for (auto const& term : field.anisotropies)
+      if (is_here(term.site) && !term.factors.there()) site.quadratic.add(term.constant, term.axis);
+    site.first_cubic = static_cast<std::int32_t>(all.cubics.size());
+    for (auto const& term : field.cubic_anisotropies)
+      if (is_here(term.site))
+        all.cubics.emplace_back(term.constant, vector(term.axes[0]), vector(term.axes[1]));
+    site.last_cubic = static_cast<std::int32_t>(all.cubics.size());
+  }
+  return all;
+}
+
+template <class Real, class Memory>
+ScalarField<Real, Memory> field_of(char const* name, Lattice const& lattice,
+                                   std::vector<double> const& numbers) {
+  ScalarField<Real, Memory> made(std::string("FieldInPass::") + name, lattice);
+  copy_from_host(numbers, made);
+  return made;
+}
+
+}  // namespace
+
+template <class Spins>
+class FieldInPass<Spins>::Terms {
+ public:
+  Terms(io::Scene const& scene, Lattice const& lattice);
+
+  template <class Exec>
+  void evaluate(Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
+                bool damped) const;
+
+ private:
+  friend FieldInPass;
+
+  void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box);
+
+  template <class Element>
+  using Table = Kokkos::View<Element*, Memory>;
+
+  struct Torques {
+    std::optional<AppliedField> velocity, strengths;  // strengths: damping-like, field-like
+    double nonadiabaticity = 0;
+    Vec3<double> polarization{0, 0, 1};
+  };
+
+  Lattice lattice_;
+  SceneLatticeTerms none_;
+  PairCouplings<Memory> pairs_;
+  cayspin::detail::UniformBulkDmi bulk_dmi_;
+  Torques torques_;
+  Table<CellSite> sites_;
+  Table<CubicAnisotropy> cubics_;
+  bool has_pairs_, has_bulk_dmi_, has_vacancies_;
+  std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
+  std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
+  Vec3<double> dmi_vectors_[3] = {};
+  std::vector<ScalarField<Real, Memory>> constants_of_axes_;
+  Table<AnisotropyOfSites<Real>> anisotropies_;
+  bool precession_;
+  std::vector<double> noise_of_sites_;
+  Spins field_;
+  ScalarField<Real, Memory> energies_, moments_;
+};
+
+template <class Spins>
+FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
+    : lattice_(lattice),
+      none_(lattice_terms_of({}, lattice)),
+      pairs_(lattice, io::couplings(scene)),
+      bulk_dmi_(lattice, bulk_constant(scene)),
+      has_pairs_(std::ranges::max(pairs_.field_bounds()) > 0),
+      has_bulk_dmi_(bulk_constant(scene) != 0),
+      has_vacancies_(!scene.lattice.occupied.empty()),
+      precession_(scene.system.precession),
+      field_("FieldInPass::field", lattice),
+      energies_("FieldInPass::energies", lattice) {
+  auto const& torque = scene.field.torque;
+  if (auto const& of = torque.zhang_li) {
+    torques_.velocity.emplace(of->velocity, "torque.zhang_li.velocity");
+    torques_.nonadiabaticity = of->nonadiabaticity;
+  }
+  if (auto const& of = torque.slonczewski) {
+    torques_.strengths.emplace(
+        std::array<io::AppliedComponent, 3>{of->damping_like, of->field_like, 0.0},
+        "torque.slonczewski");
+    torques_.polarization = vector(of->polarization);
+  }
+  auto const [sites, cubics] = sites_of(scene);
+  for (auto const& site : sites) noise_of_sites_.push_back(site.gyromagnetic / site.moment);
+  sites_ = table_of<CellSite, Memory>("sites", sites);
+  cubics_ = table_of<CubicAnisotropy, Memory>("cubics", cubics);
+
+  io::SiteBox const box{{0, 0, 0}, lattice.shape};
+  auto const occupied = io::occupied(scene, box), frozen = io::frozen(scene, box);
+  std::vector<double> moves(static_cast<std::size_t>(lattice.sites()), 1), moments = moves;
+  auto const in_plane = static_cast<std::size_t>(lattice.shape[0] * lattice.shape[1]);
+  for (std::size_t site = 0; site < moves.size(); ++site) {
+    moves[site] = !frozen.empty() && frozen[site] ? 0 : 1;
+    auto const of_cell = site / in_plane % sites.size();
+    moments[site] = !occupied.empty() && !occupied[site] ? 0 : sites[of_cell].moment;
+  }
+  if (!frozen.empty()) moves_ = field_of<Real, Memory>("moves", lattice, moves);
+  moments_ = field_of<Real, Memory>("moments", lattice, moments);
+
+  add_numbers_of_sites(scene, box);
+
+  // Of the energy of a site, to which its round-off is proportional.
+  auto const uniform = io::without_numbers_of_sites(scene.field);
+  io::for_each_lattice_term(uniform, [&](auto const& term) {
+    if (term) none_.magnitude += term->energy_magnitude(lattice);
+  });
+  none_.magnitude +=
+      0.5 * std::ranges::max(pairs_.field_bounds()) + 3 * std::abs(bulk_constant(scene));
+  for (auto const& term : scene.field.anisotropies)
+    none_.magnitude += 0.5 * std::abs(term.constant);
+  for (auto const& term : scene.field.cubic_anisotropies)
+    none_.magnitude += std::abs(term.constant);
+}
+
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
+                                                     io::SiteBox const& box) {
+  auto const& field = scene.field;
+  auto const read = [&](char const* name, io::SiteNumbers const& numbers, std::string_view key,
+                        double bond_energies) {
+    auto const values = io::numbers_of_sites(scene, numbers, key, box);
+    double largest = 0;
+    for (double const value : values) largest = std::max(largest, std::abs(value));
+    none_.magnitude += bond_energies * largest;
+    return field_of<Real, Memory>(name, lattice_, values);
+  };
+  auto const& spacing = lattice_.spacing;
+  if (field.exchange_factors.there()) {
+    double const bonds = field.exchange->energy_magnitude(lattice_);
+    auto const constants = read("exchange", field.exchange_factors, "field.exchange", bonds);
+    try {
+      exchange_of_sites_.emplace(constants);
+    } catch (std::invalid_argument const& error) {
+      std::string_view const message = error.what();
+      throw io::scene_error(scene, "field.exchange", message.substr(message.find(": ") + 2));
+    }
+  }
+  if (field.dmi_factors.there()) {
+    dmi_of_sites_ = read("dmi", field.dmi_factors, "field.dmi", 6);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!lattice_.has_neighbors(axis)) continue;
+      Vec3<double> const e{axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
+      dmi_vectors_[axis] = (1 / spacing[static_cast<std::size_t>(axis)]) *
+                           (field.bulk_dmi ? -1.0 * e : cross(vector(field.dmi->normal), e));
+    }
+  }
+  if (scene.system.dampings.there()) {
+    auto const dampings = io::numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
+    if (std::ranges::min(dampings) < 0)
+      throw io::scene_error(scene, "system.damping",
+                            "is negative at a site; accepted: numbers >= 0");
+    dampings_ = field_of<Real, Memory>("dampings", lattice_, dampings);
+  }
+  std::vector<AnisotropyOfSites<Real>> axes;
+  auto const cell_sites = static_cast<std::size_t>(lattice_.cell_sites);
+  auto const in_plane = static_cast<std::size_t>(lattice_.shape[0] * lattice_.shape[1]);
+  for (auto const& term : field.anisotropies) {
+    if (!term.factors.there()) continue;
+    auto values = io::numbers_of_sites(scene, term.factors, "field.anisotropy", box);
+    double largest = 0;
+    for (std::size_t site = 0; site < values.size(); ++site) {
+      if (term.site >= 0 && site / in_plane % cell_sites != static_cast<std::size_t>(term.site))
+        values[site] = 0;
+      largest = std::max(largest, std::abs(values[site]));
+    }
+    none_.magnitude += 0.5 * largest;
+    constants_of_axes_.push_back(field_of<Real, Memory>("anisotropy", lattice_, values));
+    axes.push_back({constants_of_axes_.back().array(), vector(term.axis)});
+  }
+  anisotropies_ = table_of<AnisotropyOfSites<Real>, Memory>("anisotropies", axes);
+}
+
+template <class Spins>
+template <class Exec>
+void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
+                                         Spins const& spins, double t, bool damped) const {
+  Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
+  auto others = usual;
+  others.zeeman = {};
+  others.has_applied = false;
+  auto const velocity = torques_.velocity ? (*torques_.velocity)(t) : Vec3<double>{0, 0, 0};
+  auto const strengths = torques_.strengths ? (*torques_.strengths)(t) : Vec3<double>{0, 0, 0};
+  EvaluateInPass<Real> kernel{{others,
+                               pairs_.prepare(exec, spins, t),
+                               bulk_dmi_,
+                               {lattice_, velocity, torques_.nonadiabaticity},
+                               {strengths.x, strengths.y, torques_.polarization},
+                               usual.zeeman,
+                               sites_.data(),
+                               cubics_.data(),
+                               {},
+                               {},
+                               anisotropies_.data(),
+                               static_cast<std::int32_t>(sites_.size()),
+                               static_cast<std::int32_t>(anisotropies_.size()),
+                               has_pairs_,
+                               has_bulk_dmi_,
+                               torques_.velocity.has_value(),
+                               torques_.strengths.has_value(),
+                               has_vacancies_},
+                              spins.array(),
+                              {},
+                              {},
+                              precession_,
+                              field_.output(false),
+                              energies_.output(false)};
+  if (exchange_of_sites_)
+    kernel.terms.exchange_of_sites = exchange_of_sites_->prepare(exec, spins, t);
+  if (dmi_of_sites_) {
+    kernel.terms.dmi_of_sites.constants = dmi_of_sites_->array();
+    std::copy_n(dmi_vectors_, 3, kernel.terms.dmi_of_sites.vectors);
+  }
+  if (moves_) kernel.moves = moves_->array();
+  if (dampings_ && damped) kernel.dampings = dampings_->array();
+  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel);
+}
+
+template <class Spins>
+FieldInPass<Spins>::FieldInPass(io::Scene const& scene, Lattice const& lattice)
+    : terms_(std::make_shared<Terms const>(scene, lattice)) {}
+
+template <class Spins>
+template <class Exec>
+SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate(
+    Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
+    bool damped) const {
+  terms_->evaluate(exec, usual, spins, t, damped);
+  auto now = nothing();
+  now.stored = {terms_->field_.array(), -0.5};
+  now.has_stored = true;
+  now.energies = terms_->energies_.array();
+  now.lattice_terms.magnitude += std::sqrt(dot(usual.zeeman.applied, usual.zeeman.applied));
+  return now;
+}
+
+template <class Spins>
+SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::nothing() const {
+  return {terms_->none_, {}, {}, {}, {}, false, false, false};
+}
+
+template <class Spins>
+template <class Exec>
+Vec3<double> FieldInPass<Spins>::magnetization(Exec const& exec, Spins const& spins) const {
+  return cayspin::magnetization(exec, spins, terms_->moments_);
+}
+
+template <class Spins>
+std::vector<double> const& FieldInPass<Spins>::noise_of_sites() const {
+  return terms_->noise_of_sites_;
+}
+
+template <class Spins>
+auto FieldInPass<Spins>::moves() const -> std::optional<ScalarField<Real, Memory>> const& {
+  return terms_->moves_;
+}
+
+#define CAYSPIN_INSTANTIATE(Space, Real)                                                     \
+  template class FieldInPass<SpinField<Real, Space::memory_space>>;                          \
+  template SceneFieldNow<Real> FieldInPass<SpinField<Real, Space::memory_space>>::evaluate(  \
+      Space const&, SceneFieldNow<Real> const&, SpinField<Real, Space::memory_space> const&, \
+      double, bool) const;                                                                   \
+  template Vec3<double> FieldInPass<SpinField<Real, Space::memory_space>>::magnetization(    \
+      Space const&, SpinField<Real, Space::memory_space> const&) const;
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
+CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
+#undef CAYSPIN_INSTANTIATE
+
+}  // namespace cayspin::simulation

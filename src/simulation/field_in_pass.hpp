@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "scene_field_now.hpp"
+
+#include <cayspin/spin_field.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace cayspin::inline v0_1::io {
+struct Scene;
+}
+
+namespace cayspin::simulation {
+
+/// The field of a scene whose terms are those of few scenes: couplings, sublattices, currents,
+/// vacancies. One pass evaluates all terms into memory before each stage, and the kernels of the
+/// methods load what it wrote; so there is one such kernel, and not one for each method.
+/// Compiled in field_in_pass.cpp, for the spaces of space.hpp. A handle.
+template <class Spins>
+class FieldInPass {
+  using Real = typename Spins::value_type;
+  using Memory = typename Spins::memory_space;
+
+ public:
+  FieldInPass(io::Scene const& scene, Lattice const& lattice);
+
+  /// `usual`: the scene's other terms. `damped`: where the damping differs from site to site, with
+  /// it: H + damping m x H, or the second part alone without precession.
+  template <class Exec>
+  SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
+                               Spins const& spins, double t, bool damped) const;
+
+  /// Without any term.
+  SceneFieldNow<Real> nothing() const;
+
+  /// The mean of m weighted by moments, over the sites that have a spin.
+  template <class Exec>
+  Vec3<double> magnetization(Exec const& exec, Spins const& spins) const;
+
+  /// Of each site of a cell: its gyromagnetic ratio over its moment.
+  std::vector<double> const& noise_of_sites() const;
+  /// 0 where a spin is frozen; none where all move.
+  std::optional<ScalarField<Real, Memory>> const& moves() const;
+
+ private:
+  class Terms;
+  std::shared_ptr<Terms const> terms_;
+};
+
+}  // namespace cayspin::simulation

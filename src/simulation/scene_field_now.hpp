@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "lattice_terms.hpp"
+
+#include <cayspin/field/host_field.hpp>
+#include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/field/zeeman.hpp>
+#include <cayspin/io/field.hpp>
+
+namespace cayspin::simulation {
+
+/// All terms quadratic in one spin, as one symmetric matrix M: H = M m, E = -m.M m / 2. Any number
+/// of anisotropy axes, and a slab's demagnetising field spin by spin.
+class QuadraticTerms {
+ public:
+  void add(double constant, io::Triple const& axis) {
+    sum_.add(constant, axis);
+    magnitude_.add(std::abs(constant), axis);
+    bool const along_z = axis[0] == 0 && axis[1] == 0;
+    form_ = along_z && form_ != Form::any ? Form::along_z : Form::any;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION bool present() const { return form_ != Form::none; }
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> add_field(Vec3<Value> const& m,
+                                                    Vec3<Value> const& h) const {
+    if (form_ == Form::along_z) [[likely]]
+      return {h.x, h.y, cayspin::detail::multiply_add(as_value<Value>(sum_.zz), m.z, h.z)};
+    return present() ? h + field(m) : h;
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m) const {
+    return Value(-0.5) * dot(m, field(m));
+  }
+  /// Sum of |energy| over the terms.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value magnitude(Vec3<Value> const& m) const {
+    return Value(0.5) * dot(m, magnitude_.template matrix<Value>() * m);
+  }
+
+ private:
+  struct Sum {
+    double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+    void add(double c, io::Triple const& e) {
+      xx += c * e[0] * e[0], yy += c * e[1] * e[1], zz += c * e[2] * e[2];
+      xy += c * e[0] * e[1], xz += c * e[0] * e[2], yz += c * e[1] * e[2];
+    }
+    template <class Value>
+    KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::SymmetricMatrix<Value> matrix() const {
+      using Scalar = cayspin::detail::scalar_t<Value>;
+      return {Value(static_cast<Scalar>(xx)), Value(static_cast<Scalar>(yy)),
+              Value(static_cast<Scalar>(zz)), Value(static_cast<Scalar>(xy)),
+              Value(static_cast<Scalar>(xz)), Value(static_cast<Scalar>(yz))};
+    }
+  };
+
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field(Vec3<Value> const& m) const {
+    return sum_.template matrix<Value>() * m;
+  }
+
+  enum class Form { none, along_z, any };
+
+  Sum sum_, magnitude_;
+  Form form_ = Form::none;
+};
+
+/// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
+/// once per pack of spins, so that a kernel is compiled once for all scenes.
+template <class Real>
+struct SceneFieldNow {
+  SceneLatticeTerms lattice_terms;
+  QuadraticTerms quadratic;
+  Zeeman zeeman;  // zero without an applied field
+  cayspin::detail::LayerField layers;
+  cayspin::detail::StoredField<Real> stored;
+  bool has_applied, has_layers, has_stored;
+  cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    return add_demagnetization(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
+  }
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
+      Stencil const& stencil) const {
+    return add_demagnetization(stencil,
+                               lattice_terms.add_turning_field(stencil, local_field(stencil)));
+  }
+
+  /// Does the part of the spin itself depend on the spin?
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
+
+  /// The linear part alone: without the applied field.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
+      Stencil const& stencil) const {
+    auto const none = zero<typename Stencil::value_type>();
+    return add_demagnetization(
+        stencil, lattice_terms.add_field(stencil, quadratic.add_field(stencil.center(), none)));
+  }
+  /// The part that comes from other spins, and the rest.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
+      Stencil const& stencil) const {
+    return add_demagnetization(stencil, lattice_terms.neighbor_field(stencil));
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+    return quadratic.add_field(spin.center(), zeeman.field(spin));
+  }
+  /// dH/dt along rates, of what prepare_rate returns.
+  template <class Value, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&,
+                                                     Stencil const& rates) const {
+    return field(rates);
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    if (energies.data) return stencil.site().load(energies);
+    auto e = lattice_terms.energy_density(stencil);
+    if (quadratic.present()) e = e + quadratic.energy(stencil.center());
+    if (has_applied) e = e + zeeman.energy_density(stencil);
+    if (has_layers) e = e + layers.energy_density(stencil);
+    if (has_stored) e = e + stored.energy_density(stencil);
+    return e;
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
+      Stencil const& stencil) const {
+    using Value = typename Stencil::value_type;
+    Value e(static_cast<cayspin::detail::scalar_t<Value>>(lattice_terms.magnitude));
+    if (energies.data) return e;
+    if (quadratic.present()) e = e + quadratic.magnitude(stencil.center());
+    if (has_applied) e = e + Kokkos::abs(zeeman.energy_density(stencil));
+    if (has_layers) e = e + Kokkos::abs(layers.energy_density(stencil));
+    if (has_stored) e = e + Kokkos::abs(stored.energy_density(stencil));
+    return e;
+  }
+
+ private:
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_demagnetization(Stencil const& stencil, Vector h) const {
+    if (has_layers || has_stored) [[unlikely]] {
+      if (has_layers) h = h + layers.field(stencil);
+      if (has_stored) h = h + stored.field(stencil);
+    }
+    return h;
+  }
+};
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Cells, sites and bonds as scenes say them.
+#include "hdf5_file.hpp"
+#include "scene_file.hpp"
+
+#include <cayspin/io/ovf.hpp>
+#include <cayspin/shells.hpp>
+
+#include <cmath>
+
+namespace cayspin::inline v0_1::io::test {
+namespace {
+
+constexpr std::string_view crystal_scene = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [4, 3, 2]
+crystal = "bcc"
+[field]
+couplings = { shells = [1.0] }
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "rkmk4"
+dt = 0.01
+steps = 10
+)toml";
+
+Scene crystal_with(std::vector<std::string> const& overrides) {
+  return parse_scene(std::string(crystal_scene), "crystal.toml", overrides);
+}
+
+TEST(Crystals, EveryKeyArrives) {
+  auto const scene = crystal_with(
+      {"lattice={shape=[4,3],spacing=0.5,boundary='periodic',cell=[[1,0,0],[0.5,1,0],[0,0,2]],"
+       "basis=[[0,0,0],[0.5,0.25,0]],moments=[1,0.5],gyromagnetic=1.5,occupied='i<2',frozen='s'}",
+       "field={couplings=[{between=[0,1],J=2,D=[1,2,3]},{offset=[-1,0,0],"
+       "tensor=[[1,2,3],[4,5,6],[7,8,9]]},{between=[1,1],offset=[0,1,0],biquadratic=0.5}],"
+       "anisotropy=[{constant=1,axis=[0,0,2],site=1},{cubic=0.2,axes=[[1,1,0],[1,-1,0]]}]}",
+       "torque={slonczewski={damping_like='0.1*t',polarization=[0,2,0]}}"});
+  auto const& [lattice, field] = std::tie(scene.lattice, scene.field);
+  EXPECT_EQ(lattice.shape, (std::array<std::int64_t, 3>{4, 3, 2}));
+  EXPECT_EQ(lattice.cell, (std::array<Triple, 3>{{{1, 0, 0}, {0.5, 1, 0}, {0, 0, 2}}}));
+  EXPECT_EQ(lattice.basis, (std::vector<Triple>{{0, 0, 0}, {0.5, 0.25, 0}}));
+  EXPECT_EQ(lattice.moments, (std::vector<double>{1, 0.5}));
+  EXPECT_EQ(lattice.gyromagnetic, (std::vector<double>{1.5, 1.5}));
+  EXPECT_EQ(lattice.occupied, "i<2");
+  EXPECT_EQ(lattice.frozen, "s");
+  EXPECT_EQ(sites(scene), 24);
+  EXPECT_EQ(couplings(scene), (std::vector<Coupling>{
+                                  {{0, 1}, {0, 0, 0}, {2, 3, -2, -3, 2, 1, 2, -1, 2}, 0},
+                                  {{0, 0}, {-1, 0, 0}, {1, 2, 3, 4, 5, 6, 7, 8, 9}, 0},
+                                  {{1, 1}, {0, 1, 0}, {}, 0.5},
+                              }));
+  ASSERT_EQ(field.anisotropies.size(), 1U);
+  EXPECT_EQ(field.anisotropies[0].axis, (Triple{0, 0, 1}));
+  EXPECT_EQ(field.anisotropies[0].site, 1);
+  ASSERT_EQ(field.cubic_anisotropies.size(), 1U);
+  EXPECT_EQ(field.cubic_anisotropies[0].constant, 0.2);
+  EXPECT_NEAR(field.cubic_anisotropies[0].axes[1][1], -std::sqrt(0.5), 1e-15);
+  EXPECT_EQ(field.cubic_anisotropies[0].site, -1);
+  ASSERT_TRUE(field.torque.slonczewski);
+  EXPECT_EQ(std::get<std::string>(field.torque.slonczewski->damping_like), "0.1*t");
+  EXPECT_EQ(std::get<double>(field.torque.slonczewski->field_like), 0);
+  EXPECT_EQ(field.torque.slonczewski->polarization, (Triple{0, 1, 0}));
+  EXPECT_TRUE(depends_on_time(field));
+  EXPECT_TRUE(needs_pass(scene));
+}
+
+TEST(Crystals, TermsOfOneSiteArrive) {
+  auto const scene =
+      crystal_with({"lattice={shape=[4,3,2],spacing=0.5}", "field={exchange=1,dmi={bulk=0.3}}",
+                    "torque={zhang_li={velocity=[1,'2*t',0],nonadiabaticity=-0.5}}"});
+  EXPECT_EQ(scene.field.bulk_dmi.value().constant, 0.3);
+  EXPECT_FALSE(scene.field.dmi);
+  auto const& zhang_li = scene.field.torque.zhang_li.value();
+  EXPECT_EQ(std::get<double>(zhang_li.velocity[0]), 1);
+  EXPECT_EQ(std::get<std::string>(zhang_li.velocity[1]), "2*t");
+  EXPECT_EQ(zhang_li.nonadiabaticity, -0.5);
+  EXPECT_TRUE(depends_on_time(scene.field));
+  EXPECT_TRUE(has_torque(scene.field));
+}
+
+TEST(Crystals, AnyNewKeyNeedsAPass) {
+  std::string const plain = "field={exchange=1,anisotropy={constant=1,axis=[0,0,1]}}";
+  EXPECT_FALSE(needs_pass(crystal_with({"lattice={shape=[4]}", plain})));
+  for (std::string const key : {"moments=2", "gyromagnetic=1", "occupied='1'", "frozen='0'"})
+    EXPECT_TRUE(needs_pass(crystal_with({"lattice={shape=[4]," + key + "}", plain}))) << key;
+  for (std::string const key :
+       {"couplings=[{offset=[1,0,0],J=1}]", "anisotropy={constant=1,axis=[0,0,1],site=0}",
+        "anisotropy={cubic=1,axes=[[1,0,0],[0,0,1]]}", "dmi={bulk=1}"})
+    EXPECT_TRUE(needs_pass(crystal_with({"lattice={shape=[4]}", "field={" + key + "}"}))) << key;
+  EXPECT_TRUE(needs_pass(
+      crystal_with({"lattice={shape=[4]}", plain, "torque={zhang_li={velocity=[1,0,0]}}"})));
+}
+
+TEST(Crystals, WordsAreCells) {
+  for (auto const& [word, made] : {std::pair{"bcc", Crystal::bcc()},
+                                   {"fcc", Crystal::fcc()},
+                                   {"hcp", Crystal::hcp()},
+                                   {"honeycomb", Crystal::honeycomb()},
+                                   {"kagome", Crystal::kagome()},
+                                   {"pyrochlore", Crystal::pyrochlore()}}) {
+    auto const scene = crystal_with({std::string("lattice.crystal='") + word + "'"});
+    auto const read = crystal(scene.lattice);
+    ASSERT_EQ(read.basis.size(), made.basis.size()) << word;
+    EXPECT_EQ(scene.lattice.shape[2], 2 * static_cast<std::int64_t>(made.basis.size())) << word;
+    for (std::size_t site = 0; site < made.basis.size(); ++site) {
+      EXPECT_EQ(read.position({1, 2, 3}, site), made.position({1, 2, 3}, site)) << word;
+    }
+    EXPECT_NO_THROW(made.validate()) << word;
+  }
+}
+
+// Neighbours of each site at the first distances.
+TEST(Crystals, ShellsHoldTheNeighboursOfTextbooks) {
+  struct Case {
+    Crystal crystal;
+    std::vector<int> neighbours;
+    std::array<bool, 3> repeats = {true, true, true};
+  };
+  std::array<bool, 3> const film{true, true, false};
+  for (auto const& [crystal, neighbours, repeats] :
+       {Case{Crystal::simple_cubic(), {6, 12, 8, 6, 24, 24, 12}},
+        Case{Crystal::bcc(), {8, 6, 12, 24, 8}}, Case{Crystal::fcc(), {12, 6, 24, 12, 24}},
+        Case{Crystal::hcp(), {12, 6, 2, 18, 12}}, Case{Crystal::pyrochlore(), {6, 12, 12}},
+        Case{Crystal::honeycomb(), {3, 6, 3, 6, 6}, film}, Case{Crystal::kagome(), {4, 4, 6}, film},
+        Case{Crystal::simple_cubic(), {2, 2, 2, 2, 2}, {false, true, false}},
+        // A skew cell of the simple cubic crystal.
+        Case{{{{{1, 0, 0}, {3, 1, 0}, {-5, 2, 1}}}, {{0, 0, 0}}}, {6, 12, 8, 6}}}) {
+    std::vector<double> exchange;
+    for (std::size_t shell = 0; shell < neighbours.size(); ++shell)
+      exchange.push_back(std::ldexp(1.0, static_cast<int>(shell)));
+    std::vector<std::vector<int>> found(crystal.basis.size(), std::vector<int>(neighbours.size()));
+    for (auto const& coupling : couplings_of_shells(crystal, exchange, repeats)) {
+      auto const shell = static_cast<std::size_t>(std::ilogb(coupling.tensor[0]));
+      for (int const site : coupling.between) ++found[static_cast<std::size_t>(site)][shell];
+    }
+    for (auto const& of_site : found) EXPECT_EQ(of_site, neighbours);
+  }
+}
+
+TEST(Crystals, ShellsKnowTheSpacingAndTheAxes) {
+  auto const chain =
+      crystal_with({"lattice={shape=[9],boundary='periodic'}", "field={couplings={shells=[1,2]}}"});
+  EXPECT_EQ(couplings(chain), (std::vector<Coupling>{Coupling::of({0, 0}, {1, 0, 0}, 1),
+                                                     Coupling::of({0, 0}, {2, 0, 0}, 2)}));
+  auto const rows =
+      crystal_with({"lattice={shape=[9,9],spacing=[1,0.25]}", "field={couplings={shells=[1]}}"});
+  EXPECT_EQ(couplings(rows), (std::vector<Coupling>{Coupling::of({0, 0}, {0, 1, 0}, 1)}));
+}
+
+TEST(Crystals, BondsThatCannotBeListedAreRefused) {
+  EXPECT_THROW(couplings_of_shells({{}, {{0, 0, 0}}}, {1}), std::invalid_argument);
+  EXPECT_THROW(couplings_of_shells({Crystal{}.cell, {}}, {1}), std::invalid_argument);
+  EXPECT_THROW(couplings_of_shells({Crystal{}.cell, {{0, 0, 0}, {1, 0, 0}}}, {1}),
+               std::invalid_argument);
+  EXPECT_THROW(couplings_of_shells(Crystal::bcc(), {1, 2}, {false, false, false}),
+               std::invalid_argument);
+  EXPECT_EQ(couplings_of_shells(Crystal::bcc(), {1}, {false, false, false}).size(), 1U);
+  Crystal const flat{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1e-9}}}, {{0, 0, 0}}};
+  EXPECT_THROW(couplings_of_shells(flat, std::vector<double>(300, 1.0)), std::invalid_argument);
+  Crystal const skew{{{{1, 0, 0}, {1e10, 1, 0}, {0, 0, 1}}}, {{0, 0, 0}}};
+  EXPECT_THROW(couplings_of_shells(skew, {1}), std::invalid_argument);
+}
+
+TEST(Crystals, ExpressionsSeeTheSite) {
+  auto const scene = crystal_with({"lattice.occupied='x+y+z<1.2'", "lattice.frozen='k==1 && s==1'",
+                                   R"(initial={expression=["1+i+10*x","2+j+10*y","3+k+s+10*z"]})"});
+  SiteBox const all{{0, 0, 0}, scene.lattice.shape};
+  auto const there = occupied(scene, all), still = frozen(scene, all);
+  auto const spins = initial_spins(scene);
+  ASSERT_EQ(there.size(), 48U);
+  ASSERT_EQ(still.size(), 48U);
+  std::size_t at = 0;
+  for (int k = 0; k < 2; ++k)
+    for (int s = 0; s < 2; ++s)
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 4; ++i, ++at) {
+          double const x = (i + 0.5 * s) / 4, y = (j + 0.5 * s) / 3, z = (k + 0.5 * s) / 2;
+          EXPECT_EQ(there[at], x + y + z < 1.2) << at;
+          EXPECT_EQ(still[at], k == 1 && s == 1) << at;
+          Triple const m{1 + i + 10 * x, 2 + j + 10 * y, 3 + k + s + 10 * z};
+          double const norm = std::hypot(m[0], m[1], m[2]);
+          for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(spins[3 * at + c], there[at] ? m[c] / norm : 0, 1e-15) << at;
+        }
+  SiteBox const part{{1, 0, 1}, {2, 3, 2}};
+  EXPECT_EQ(occupied(scene, part), numbers_in(part, scene.lattice.shape, 1, there));
+  EXPECT_EQ(frozen(scene, part), numbers_in(part, scene.lattice.shape, 1, still));
+  EXPECT_EQ(initial_spins(scene, part), numbers_in(part, scene.lattice.shape, 3, spins));
+  EXPECT_TRUE(occupied(crystal_with({}), all).empty());
+}
+
+std::string later_refusal(std::vector<std::string> const& overrides) {
+  auto const scene = crystal_with(overrides);
+  try {
+    check_files(scene);
+    occupied(scene, {{0, 0, 0}, scene.lattice.shape});
+    frozen(scene, {{0, 0, 0}, scene.lattice.shape});
+    initial_spins(scene);
+    return "accepted";
+  } catch (SceneError const& error) {
+    return error.what();
+  }
+}
+
+TEST(Crystals, ExpressionsThatFailAreNamed) {
+  EXPECT_NE(later_refusal({"lattice.frozen='1/(s-1)'"})
+                .find(": lattice.frozen: expression \"1/(s-1)\" is not finite at x = "),
+            std::string::npos);
+  EXPECT_NE(later_refusal({"lattice.occupied='x>2'"})
+                .find(": lattice.occupied: leaves no spin; accepted: "),
+            std::string::npos);
+  EXPECT_NE(later_refusal({R"(initial={expression=["0","0","k-1+s"]})"})
+                .find("the spin of site 1 of cell (0, 0, 0) is (0, 0, 0)"),
+            std::string::npos)
+      << later_refusal({R"(initial={expression=["0","0","k-1+s"]})"});
+  // Where there is no spin, it may be zero.
+  EXPECT_EQ(later_refusal({"lattice.occupied='k==1'", R"(initial={expression=["0","0","k"]})"}),
+            "accepted");
+}
+
+// A number for each component, from which its site can be told.
+std::vector<double> numbered(std::size_t frames) {
+  std::vector<double> numbers(frames * 144);
+  for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = 1 + static_cast<double>(n * n % 89);
+  return numbers;
+}
+
+TEST(Crystals, StartsFromFilesHaveSitesBeforePlanes) {
+  Folder const folder;
+  write_dataset(folder / "state.h5", "/spins", {2, 2, 3, 4, 3}, numbered(1));
+  write_dataset(folder / "frames.h5", "/spins", {3, 2, 2, 3, 4, 3}, numbered(3));
+  for (auto const& [file, frame] : {std::pair{"state.h5", 0}, {"frames.h5", 2}}) {
+    auto const scene = read_text(folder, replaced(crystal_scene, "uniform = [0, 0, 1]",
+                                                  "file = \"" + std::string(file) + '"'));
+    check_files(scene);
+    auto const spins = initial_spins(scene);
+    auto const numbers = numbered(3);
+    for (std::size_t site = 0; site < 2; ++site)
+      for (std::size_t k = 0; k < 2; ++k)
+        for (std::size_t n = 0; n < 12; ++n) {
+          auto const* const m =
+              numbers.data() +
+              3 * (((static_cast<std::size_t>(frame) * 2 + site) * 2 + k) * 12 + n);
+          double const norm = std::hypot(m[0], m[1], m[2]);
+          for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(spins[3 * ((2 * k + site) * 12 + n) + c], m[c] / norm, 1e-15);
+        }
+    for (SiteBox const part : {SiteBox{{1, 1, 1}, {2, 2, 2}}, SiteBox{{0, 0, 3}, {4, 3, 1}},
+                               SiteBox{{3, 0, 0}, {1, 1, 3}}, SiteBox{{0, 0, 2}, {4, 3, 0}}})
+      EXPECT_EQ(initial_spins(scene, part), numbers_in(part, scene.lattice.shape, 3, spins));
+  }
+}
+
+TEST(Crystals, StartsFromOtherFilesAreRefused) {
+  Folder const folder;
+  write_dataset(folder / "planes.h5", "/spins", {4, 3, 4, 3}, numbered(1));
+  write_dataset(folder / "empty.h5", "/spins", {0, 2, 2, 3, 4, 3}, {});
+  OvfField field;
+  field.mesh.nodes = {4, 3, 4};
+  field.values = numbered(1);
+  write_ovf(folder / "state.ovf", field, OvfFormat::binary8, false);
+  for (auto const& [file, what] :
+       {std::pair{"planes.h5",
+                  "its extents are (4, 3, 4, 3); accepted: (2, 2, 3, 4, 3) or (frame, "
+                  "2, 2, 3, 4, 3)"},
+        {"empty.h5", "it holds no frame"},
+        {"state.ovf", "OVF has one spin in a cell, and lattice.basis 2; accepted: HDF5"}}) {
+    auto const scene = read_text(folder, replaced(crystal_scene, "uniform = [0, 0, 1]",
+                                                  "file = \"" + std::string(file) + '"'));
+    for (bool const check : {false, true}) try {
+        check ? check_files(scene) : void(initial_spins(scene));
+        ADD_FAILURE() << file << " was accepted";
+      } catch (SceneError const& error) {
+        EXPECT_NE(std::string(error.what()).find(std::string(": initial.file: ")),
+                  std::string::npos);
+        EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+      }
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::inline v0_1::io::test

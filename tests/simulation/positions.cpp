@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Where a file says that the sites of a crystal are.
+#include "simulation/run_files.hpp"
+#include "simulation/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace cayspin::simulation::test {
+namespace {
+
+TEST(Positions, AreOfCrystalsAlone) {
+  io::Scene scene;
+  scene.lattice.shape = {3, 2, 2};
+  EXPECT_TRUE(run_output_options(scene, false).positions.empty());
+  scene.lattice.cell[0] = {2, 0, 0};
+  EXPECT_EQ(run_output_options(scene, false).positions.size(), 36u);
+}
+
+TEST(Positions, AreThoseOfCellsAndBasisInTheUnitsOfTheScene) {
+  io::Scene scene;
+  scene.units.length = 0.5;
+  scene.lattice.shape = {2, 3, 4};  // two planes of cells
+  scene.lattice.spacing = {2, 4, 8};
+  scene.lattice.cell = {{{1, 0, 0}, {0.5, 1, 0}, {0, 0.25, 1}}};
+  scene.lattice.basis = {{0, 0, 0}, {0.5, 0.25, 0.75}};
+  auto const options = run_output_options(scene, false);
+  EXPECT_EQ(run_header(scene, Precision::double_precision, "", 1, "").cell_sites, 2);
+  std::vector<double> expected;
+  for (double const site : {0, 1})
+    for (double const k : {0, 1})
+      for (double const j : {0, 1, 2})
+        for (double const i : {0, 1}) {
+          double const a = i + 0.5 * site, b = j + 0.25 * site, c = k + 0.75 * site;
+          expected.insert(expected.end(), {a + 0.5 * b, 2 * (b + 0.25 * c), 4 * c});
+        }
+  EXPECT_EQ(options.positions, expected);
+}
+
+TEST(Positions, CellsAreCountedByTheirSites) {
+  EXPECT_EQ(sites_text({4, 3, 2}, 1), "4 x 3 x 2 sites");
+  EXPECT_EQ(cells_text({4, 3, 2}, 1), "4 x 3 x 2");
+  EXPECT_EQ(sites_text({4, 3, 6}, 3), "4 x 3 x 2 cells of 3 sites");
+}
+
+}  // namespace
+}  // namespace cayspin::simulation::test
