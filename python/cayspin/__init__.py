@@ -6,15 +6,18 @@
     sim.run()
     sim.spins  # (nz, ny, nx, 3)
 
-Arrays of vectors have the shape (nz, ny, nx, 3). All numbers are in the units of the scene.
+Arrays of vectors have the shape (nz, ny, nx, 3), of crystals with several sites in a cell
+(site, nz, ny, nx, 3). All numbers are in the units of the scene.
 """
 
 from cayspin._cayspin import CayspinError, NumbersFailed, SceneError
 from cayspin._cayspin import version as __version__
+from cayspin.observables import Average, Dispersion, average, dispersion, topological_charge
 from cayspin.scene import Scene
 from cayspin.simulation import Minimum, Simulation
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
 
-__all__ = ["Advice", "CayspinError", "Minimum", "NumbersFailed", "Scene", "SceneError",
-           "Simulation", "Trade", "Trajectory", "__version__", "advise", "open", "trade"]
+__all__ = ["Advice", "Average", "CayspinError", "Dispersion", "Minimum", "NumbersFailed", "Scene",
+           "SceneError", "Simulation", "Trade", "Trajectory", "__version__", "advise", "average",
+           "dispersion", "open", "topological_charge", "trade"]

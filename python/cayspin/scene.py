@@ -6,7 +6,9 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from cayspin import _cayspin, arguments, toml_text
+import numpy as np
+
+from cayspin import _cayspin, arguments, sites, toml_text
 
 _OWN = ("applied", "nonlocal")
 
@@ -18,14 +20,33 @@ def _split(tables):
     initial = tables.get("initial")
     if initial is not None and not isinstance(initial, dict):
         spins = arguments.numbers(initial, "initial")
-        if spins.ndim != 4 or spins.shape[-1] != 3:
+        if spins.ndim not in (4, 5) or spins.shape[-1] != 3:
             raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
-                                      "(nz, ny, nx, 3)")
+                                      "(nz, ny, nx, 3), of a crystal (site, nz, ny, nx, 3)")
         tables["initial"] = {"given": True}
     if isinstance(tables.get("field"), dict):
         own = {key: f for key, f in tables["field"].items() if key in _OWN and callable(f)}
         tables["field"] = {key: f for key, f in tables["field"].items() if key not in own}
     return tables, spins, own
+
+
+def _as_planes(spins):
+    """An array for the start as the library has it."""
+    if spins is None or spins.ndim == 4:
+        return spins
+    return spins[0] if len(spins) == 1 else sites.by_plane(spins, len(spins))
+
+
+def _nonlocal_by_planes(function, shape, cell_sites):
+    """A function of the field of crystals, to be called with arrays as the library has them."""
+    def called(spins, t):
+        field = np.asarray(function(sites.by_site(spins, cell_sites), t))
+        if field.shape != (*shape, 3):
+            raise _cayspin.CayspinError(
+                f"field.nonlocal: the function returned an array of shape {field.shape}; "
+                f"accepted: {(*shape, 3)}")
+        return np.ascontiguousarray(sites.by_plane(field, cell_sites))
+    return called
 
 
 class Scene:
@@ -38,7 +59,8 @@ class Scene:
     `initial` may also be an array (nz, ny, nx, 3) of vectors, which are copied and normalised.
     `field["applied"]` may be a function of t that returns three numbers: the uniform field.
     `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites as an array
-    (nz, ny, nx, 3). It is called before each stage with a copy of the spins, and H has to be linear
+    (nz, ny, nx, 3). Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3).
+    The function is called before each stage with a copy of the spins, and H has to be linear
     in them and symmetric: its energy is -sum m.H / 2.
     Without `end` and `steps` in `integrator` the scene has no end. Without `integrator` it is for
     Simulation.relax() alone.
@@ -53,7 +75,7 @@ class Scene:
             integrator = {**integrator, "steps": 0}
         typed, spins, own = _split({**tables, "system": system, "lattice": lattice, "field": field,
                                     "initial": initial, "integrator": integrator, "output": output})
-        scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], spins)
+        scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], _as_planes(spins))
         self._finish(scene, own, None, spins)
 
     @classmethod
@@ -64,18 +86,23 @@ class Scene:
         self = cls.__new__(cls)
         changed = toml_text.overrides(typed)
         try:
-            scene = _cayspin.Scene.read(arguments.file_name(path, "from_file"), changed, spins)
+            scene = _cayspin.Scene.read(arguments.file_name(path, "from_file"), changed,
+                                        _as_planes(spins))
         except _cayspin.SceneError as error:
             raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
         self._finish(scene, own, changed, spins)
         return self
 
     def _finish(self, scene, own, overrides, spins):
-        if spins is not None and spins.shape[:3] != scene.shape:
+        shape = sites.shape_by_site(scene.shape, scene.cell_sites)
+        if spins is not None and spins.shape[:-1] != shape:
             raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
-                                      f"{(*scene.shape, 3)}")
+                                      f"{(*shape, 3)}")
         if own:
-            scene.set_own_field(own.get("applied"), own.get("nonlocal"))
+            nonlocal_ = own.get("nonlocal")
+            if nonlocal_ is not None and scene.cell_sites > 1:
+                nonlocal_ = _nonlocal_by_planes(nonlocal_, shape, scene.cell_sites)
+            scene.set_own_field(own.get("applied"), nonlocal_)
         self._scene, self._overrides = scene, overrides
         self._only_here = ["a function in field"] * bool(own)
         if scene.given_start:
@@ -94,9 +121,9 @@ class Scene:
         return self._scene.text
 
     @property
-    def shape(self) -> tuple[int, int, int]:
-        """(nz, ny, nx)"""
-        return self._scene.shape
+    def shape(self) -> tuple[int, ...]:
+        """(nz, ny, nx), of a crystal with several sites in a cell (site, nz, ny, nx)"""
+        return sites.shape_by_site(self._scene.shape, self._scene.cell_sites)
 
     @property
     def method(self) -> str | None:
@@ -114,6 +141,7 @@ class Scene:
         return self._scene.steps
 
     def __repr__(self):
-        nz, ny, nx = self.shape
+        *of_cell, nz, ny, nx = self.shape
+        crystal = f" cells of {of_cell[0]} sites" if of_cell else ""
         steps = "to relax" if self.method is None else f"{self.method}, dt {self.dt:g}"
-        return f"<cayspin.Scene {nx} x {ny} x {nz}, {steps}>"
+        return f"<cayspin.Scene {nx} x {ny} x {nz}{crystal}, {steps}>"

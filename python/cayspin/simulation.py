@@ -9,7 +9,7 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
-from cayspin import _cayspin, arguments
+from cayspin import _cayspin, arguments, sites
 from cayspin.scene import Scene
 
 _GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
@@ -160,13 +160,14 @@ class Simulation:
 
     @property
     def spins(self) -> np.ndarray:
-        """The spins now, (nz, ny, nx, 3): a read-only view of the library's memory, no copy.
+        """The spins now, (nz, ny, nx, 3), of a crystal with several sites in a cell
+        (site, nz, ny, nx, 3): a read-only view of the library's memory, no copy.
 
         A view never changes. When the simulation goes on while someone holds one, it moves to
         other memory. Assigning to `spins` sets them: any array that broadcasts to the shape,
         normalised. Methods that remember earlier steps begin again.
         """
-        return self._run.spins()
+        return sites.by_site(self._run.spins(), self._scene._scene.cell_sites)
 
     @spins.setter
     def spins(self, values) -> None:
@@ -177,11 +178,11 @@ class Simulation:
         except ValueError:
             raise _cayspin.CayspinError(f"spins: an array of shape {values.shape}; accepted: one "
                                         f"that broadcasts to {shape}") from None
-        self._run.set_spins(values)
+        self._run.set_spins(sites.by_plane(values, self._scene._scene.cell_sites))
 
     def field(self) -> np.ndarray:
-        """The effective field H of every site now, (nz, ny, nx, 3), read-only."""
-        return self._run.field()
+        """The effective field H of every site now, in the shape of the spins, read-only."""
+        return sites.by_site(self._run.field(), self._scene._scene.cell_sites)
 
     def energy(self) -> float:
         """The energy, summed over sites; of rigid bodies that of their rotation."""

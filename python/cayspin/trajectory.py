@@ -5,10 +5,23 @@ from __future__ import annotations
 
 import builtins
 import os
-from typing import Any
+from typing import Any, Sequence
 
-from cayspin import arguments
+import numpy as np
+
+from cayspin import arguments, observables
 from cayspin._cayspin import CayspinError, complete_file
+
+
+class _Frames:
+    """Some of the frames of a dataset, read one by one."""
+
+    def __init__(self, dataset, frames):
+        self.dataset, self.frames = dataset, frames
+        self.shape = (len(frames), *dataset.shape[1:])
+
+    def __getitem__(self, frame):
+        return self.dataset[self.frames[frame]]
 
 
 class Trajectory:
@@ -16,9 +29,15 @@ class Trajectory:
 
     spins (frame, nz, ny, nx, 3); time, step, energy, norm_defect (frame); magnetization (frame, 3);
     scalars: the same names at the samples. Use it in a `with`, or call close().
+
+    Of crystals with several sites in a cell: spins (frame, site, nz, ny, nx, 3),
+    sublattice_magnetization (frame, site, 3). Where the sites are on no rectangular grid:
+    positions, in the shape of a frame of the spins.
     """
 
     _names = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
+    _of_crystals = {"sublattice_magnetization": "a crystal with several sites in a cell",
+                    "positions": "a crystal"}
 
     def __init__(self, path: str | os.PathLike):
         import h5py
@@ -30,7 +49,10 @@ class Trajectory:
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise CayspinError(f"{self.path}: cannot be opened: {reason}") from None
-        missing = [name for name in (*self._names, "scalars") if name not in self.file]
+        names = (*self._names, "scalars")
+        if "spins" in self.file and self.file["spins"].ndim == 6:
+            names += ("sublattice_magnetization",)
+        missing = [name for name in names if name not in self.file]
         if missing:
             self.file.close()
             raise CayspinError(f"{self.path}: no trajectory, it has no {missing[0]}; accepted: a "
@@ -40,6 +62,11 @@ class Trajectory:
     def __getattr__(self, name: str) -> Any:
         if name in self._names:
             return self.file[name]
+        if name in self._of_crystals:
+            if name in self.file:
+                return self.file[name]
+            raise AttributeError(f"{self.path}: it has no {name}; accepted: the file of "
+                                 f"{self._of_crystals[name]}")
         raise AttributeError(name)
 
     @property
@@ -51,6 +78,50 @@ class Trajectory:
     def complete(self) -> bool:
         """Whether the run ended as planned."""
         return bool(self.file.attrs["complete"])
+
+    def _lattice(self, key: str, otherwise: Any, argument: str) -> list:
+        """What the scene says of x, y and z: lattice.KEY, one for all axes or one for each."""
+        try:
+            import tomllib
+        except ImportError:  # before Python 3.11
+            raise CayspinError(f"{self.path}: to read lattice.{key} of its scene takes Python "
+                               f"3.11; accepted: the argument {argument}") from None
+        given = tomllib.loads(self.scene).get("lattice", {}).get(key, otherwise)
+        given = given if isinstance(given, list) else [given] * 3
+        return given + [otherwise] * (3 - len(given))
+
+    def topological_charge(self, boundary: Sequence[str] | None = None) -> np.ndarray:
+        """The topological charge of each plane, (frame, nz), of a crystal (frame, site, nz), as
+        cayspin.topological_charge says; `boundary` is that of the scene."""
+        if boundary is None:
+            boundary = self._lattice("boundary", "open", "boundary")[:2]
+        return np.stack([observables.topological_charge(self.file["spins"][frame], boundary)
+                         for frame in range(len(self))])
+
+    def dispersion(self, path: Any, frames: slice = slice(None),
+                   **options: Any) -> observables.Dispersion:
+        """S(k, w) along a path of wave vectors, of these frames, as cayspin.dispersion says.
+        Boundaries and spacings are those of the scene; a crystal takes `cell` and `positions`.
+        Raises CayspinError also for frames that are not at equal steps of time."""
+        if not isinstance(frames, slice):
+            raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
+        spins, chosen = self.file["spins"], range(len(self))[frames]
+        if len(chosen) < 4:
+            raise CayspinError(f"dispersion: {len(chosen)} frames; accepted: at least 4")
+        time = self.file["time"][:][chosen]
+        dt = (time[-1] - time[0]) / (len(time) - 1)
+        if not (np.abs(np.diff(time) - dt) < 1e-6 * dt).all():
+            raise CayspinError(f"{self.path}: frames at unequal steps of time; accepted: equal "
+                               "ones, as in frames=slice(0, -1)")
+        if "periodic" not in options:
+            words = self._lattice("boundary", "open", "periodic")
+            options["periodic"] = [word == "periodic" for word in words]
+        if "cell" not in options:
+            if spins.ndim == 6:
+                raise CayspinError("dispersion: a crystal, and no cell; accepted: cell, its three "
+                                   "vectors")
+            options["cell"] = np.diag(self._lattice("spacing", 1.0, "cell")).astype(float)
+        return observables.dispersion(_Frames(spins, chosen), dt, path, **options)
 
     def to_xarray(self):
         """An xarray.Dataset of the frames, whose variables are read when they are used."""
@@ -66,11 +137,15 @@ class Trajectory:
                 return indexing.explicit_indexing_adapter(
                     key, self.shape, indexing.IndexingSupport.BASIC, self.dataset.__getitem__)
 
-        axes = ("frame", "z", "y", "x", "component")
-        dimensions = {"spins": axes, "magnetization": ("frame", "component")}
+        of_cell = ("site",) if self.file["spins"].ndim == 6 else ()
+        axes = (*of_cell, "z", "y", "x", "component")
+        dimensions = {"spins": ("frame", *axes), "magnetization": ("frame", "component"),
+                      "sublattice_magnetization": ("frame", "site", "component"),
+                      "positions": axes}
+        names = (*self._names, *(name for name in self._of_crystals if name in self.file))
         variables = {name: (dimensions.get(name, ("frame",)),
                             indexing.LazilyIndexedArray(Lazy(self.file[name])))
-                     for name in self._names}
+                     for name in names}
         coordinates = {"component": ["x", "y", "z"], "time": ("frame", self.time[:])}
         variables.pop("time")
         attributes = {key: value for key, value in self.file.attrs.items()}
@@ -90,8 +165,10 @@ class Trajectory:
         return builtins.min(len(self.file["spins"]), len(self.file["time"]))
 
     def __repr__(self):
-        nz, ny, nx = self.file["spins"].shape[1:4]
-        return f"<cayspin.Trajectory {self.path}: {len(self)} frames of {nx} x {ny} x {nz}>"
+        *of_cell, nz, ny, nx = self.file["spins"].shape[1:-1]
+        crystal = f" cells of {of_cell[0]} sites" if of_cell else ""
+        return (f"<cayspin.Trajectory {self.path}: {len(self)} frames of "
+                f"{nx} x {ny} x {nz}{crystal}>")
 
 
 def open(path: str | os.PathLike) -> Trajectory:

@@ -27,10 +27,12 @@ def _mixed(total, checksum):
     return total ^ total >> 32
 
 
-def of_frame(step, numbers, spins):
+def of_frame(step, numbers, spins, sublattices=None):
     """The 64 bits that stand for a frame. `numbers`: time, energy, norm_defect, magnetization."""
     row = np.array([step], "<i8").tobytes() + np.array(numbers, "<f8").tobytes()
     of_row = _mixed(0, fletcher32(row))
     of_spins = _mixed(of_row, fletcher32(spins.tobytes()))
+    if sublattices is not None:
+        of_row = _mixed(of_row, fletcher32(np.asarray(sublattices, "<f8").tobytes()))
     halves = [max(1, total & 0xFFFFFFFF) for total in (of_row, of_spins)]
     return halves[0] << 32 | halves[1]

@@ -24,7 +24,7 @@ class Series:
 class Trajectory:
     path: str
     time: np.ndarray  # (frame,)
-    spins: np.ndarray  # (frame, nz, ny, nx, 3)
+    spins: np.ndarray  # (frame, nz, ny, nx, 3); planes of crystals site by site of the cell
     scalars: Series
     precision: str
     complete: bool
@@ -61,10 +61,14 @@ def _require_undamaged(file, frames, spins):
     if "checksum" not in file:
         return
     stored, steps = _dataset(file, "checksum", 1), _dataset(file, "step", 1)
+    sublattices = None
+    if spins.ndim == 6:
+        sublattices = _dataset(file, "sublattice_magnetization", 3, (spins.shape[1], 3))
     for i, frame in enumerate(spins):
         numbers = (frames.time[i], frames.energy[i], frames.norm_defect[i],
                    *frames.magnetization[i])
-        if checksum.of_frame(steps[i], numbers, frame) != int(stored[i]):
+        of_sites = None if sublattices is None else sublattices[i]
+        if checksum.of_frame(steps[i], numbers, frame, of_sites) != int(stored[i]):
             raise ValueError(f"frame {i} is damaged: its checksum differs")
 
 
@@ -75,13 +79,15 @@ def read_trajectory(path):
     try:
         with h5py.File(path, "r") as file:
             frames = _series(file)
-            spins = _dataset(file, "spins", 5, (3,))
+            rank = 6 if np.ndim(file["spins"]) == 6 else 5
+            spins = _dataset(file, "spins", rank, (3,))
             count = min(len(spins), len(frames.time))
             if count == 0:
                 raise SystemExit(f"{path}: it holds no frame")
             samples = _series(file, "scalars/")
             spins = spins[:count]
             _require_undamaged(file, frames, spins)
+            spins = spins.reshape(count, -1, *spins.shape[-3:])
             return Trajectory(
                 path=str(path),
                 time=frames.time[:count],

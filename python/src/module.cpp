@@ -17,6 +17,8 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <iterator>
+
 namespace cayspin::python {
 namespace {
 
@@ -123,6 +125,8 @@ void define_scene(nb::module_& module) {
                      auto const& [nx, ny, nz] = scene.lattice.shape;
                      return nb::make_tuple(nz, ny, nx);
                    })
+      .def_prop_ro("cell_sites",
+                   [](io::Scene const& scene) { return std::ssize(scene.lattice.basis); })
       .def_prop_ro("has_integrator", io::has_integrator)
       .def_prop_ro(
           "method",

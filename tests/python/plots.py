@@ -25,8 +25,8 @@ BLUE, RED = (0x1B, 0x5F, 0xA7), (0xCF, 0x3F, 0x2B)
 PIXELS_PER_INCH = 160
 
 
-def write(path, sites=5, length=1.0):
-    subprocess.run([WRITER, path, str(sites), str(length)], check=True)
+def write(path, sites=5, length=1.0, cell_sites=1):
+    subprocess.run([WRITER, path, str(sites), str(length), str(cell_sites)], check=True)
     return path
 
 
@@ -78,6 +78,19 @@ class PlotTrajectory(ScriptTest):
     def test_everything(self):
         file = write(self.folder / "chain.h5")
         self.assert_drawn(file.with_suffix(".png"), (11, 14), (BLUE, RED), self.plot(file))
+
+    def test_crystal(self):
+        file = write(self.folder / "crystal.h5", cell_sites=2)
+        self.assert_drawn(file.with_suffix(".png"), (11, 14), (BLUE, RED), self.plot(file))
+        trajectory = read_trajectory(file)
+        self.assertEqual(trajectory.spins.shape, (20, 2, 1, 5, 3))
+        with h5py.File(file, "r+") as data:
+            means = data["sublattice_magnetization"]
+            self.assertEqual(means.shape, (20, 2, 3))
+            np.testing.assert_allclose(means, trajectory.spins.mean(axis=(2, 3)), rtol=1e-14)
+            means[3, 1, 0] += 1
+        with self.assertRaisesRegex(SystemExit, "frame 3 is damaged"):
+            read_trajectory(file)
 
     def test_single_spin_has_no_components_along_x(self):
         file = write(self.folder / "spin.h5", sites=1)

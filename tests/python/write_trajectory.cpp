@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// A small trajectory for the scripts to draw: write_trajectory FILE.h5 SITES LENGTH. All spins have
-// that length and turn about z, each with its own phase.
+// A small trajectory for the scripts to draw: write_trajectory FILE.h5 SITES LENGTH CELL_SITES. All
+// spins have that length and turn about z, each with its own phase.
 #include <cayspin/io/trajectory.hpp>
 
 #include <cmath>
 #include <cstdlib>
 
 int main(int count, char** words) {
-  if (count != 4) return 2;
-  int const sites = std::atoi(words[2]);
+  if (count != 5) return 2;
+  int const cell_sites = std::atoi(words[4]), along_x = std::atoi(words[2]);
+  int const sites = along_x * cell_sites;
   double const length = std::atof(words[3]);
   using namespace cayspin::io;
   TrajectoryHeader header;
   header.precision = "double";
-  header.shape = {sites, 1, 1};
+  header.shape = {along_x, 1, cell_sites};
+  header.cell_sites = cell_sites;
   TrajectoryFile file(words[1], header, true);
   std::vector<double> spins(3 * static_cast<std::size_t>(sites));
   for (int frame = 0; frame < 20; ++frame) {

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Vectors of crystals with several sites in a cell. The library has (nz * sites, ny, nx, 3), where
+plane k * sites + s has the sites s of the cells k; programs have (site, nz, ny, nx, 3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def by_site(vectors: np.ndarray, sites: int) -> np.ndarray:
+    """What the library has as programs have it: a view."""
+    if sites == 1:
+        return vectors
+    planes, *rest = vectors.shape
+    return vectors.reshape(planes // sites, sites, *rest).swapaxes(0, 1)
+
+
+def by_plane(vectors: np.ndarray, sites: int) -> np.ndarray:
+    """What programs have as the library has it: a copy."""
+    if sites == 1:
+        return vectors
+    vectors = vectors.swapaxes(0, 1)
+    return vectors.reshape(vectors.shape[0] * sites, *vectors.shape[2:])
+
+
+def shape_by_site(shape: tuple[int, ...], sites: int) -> tuple[int, ...]:
+    """(nz, ny, nx) of the library as programs have it, with the sites first."""
+    planes, *rest = shape
+    return shape if sites == 1 else (sites, planes // sites, *rest)
