@@ -48,7 +48,8 @@ class Relaxation {
     for (auto const& field : fields) {
       auto in_field = scene_;
       in_field.field = field;
-      auto const found = relax_in(field_of<Spins>(in_field, spins_.lattice(), false).undamped());
+      auto const found =
+          relax_in(field_of<Spins>(in_field, spins_.lattice(), false).made_for(FieldFor::energy));
       cost_.evaluations += found.evaluations;
       cost_.relaxed->torque = std::max(cost_.relaxed->torque, found.torque * scene_.units.field);
       bool const interrupted = found.end == MinimizeEnd::interrupted;

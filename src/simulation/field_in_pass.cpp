@@ -107,7 +107,7 @@ class FieldInPass<Spins>::Terms {
 
   template <class Exec>
   void evaluate(Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
-                bool damped) const;
+                FieldFor purpose) const;
 
  private:
   friend FieldInPass;
@@ -130,7 +130,7 @@ class FieldInPass<Spins>::Terms {
   Torques torques_;
   Table<CellSite> sites_;
   Table<CubicAnisotropy> cubics_;
-  bool has_pairs_, has_bulk_dmi_, has_vacancies_;
+  bool has_pairs_, has_bulk_dmi_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
   Vec3<double> dmi_vectors_[3] = {};
@@ -151,6 +151,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
       has_pairs_(std::ranges::max(pairs_.field_bounds()) > 0),
       has_bulk_dmi_(bulk_constant(scene) != 0),
       has_vacancies_(!scene.lattice.occupied.empty()),
+      is_affine_(scene.field.cubic_anisotropies.empty() && !pairs_.has_biquadratic()),
       precession_(scene.system.precession),
       field_("FieldInPass::field", lattice),
       energies_("FieldInPass::energies", lattice) {
@@ -258,7 +259,7 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
 template <class Spins>
 template <class Exec>
 void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
-                                         Spins const& spins, double t, bool damped) const {
+                                         Spins const& spins, double t, FieldFor purpose) const {
   Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
   auto others = usual;
   others.zeeman = {};
@@ -282,7 +283,8 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
                                has_bulk_dmi_,
                                torques_.velocity.has_value(),
                                torques_.strengths.has_value(),
-                               has_vacancies_},
+                               has_vacancies_,
+                               purpose != FieldFor::energy},
                               spins.array(),
                               {},
                               {},
@@ -296,7 +298,7 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
     std::copy_n(dmi_vectors_, 3, kernel.terms.dmi_of_sites.vectors);
   }
   if (moves_) kernel.moves = moves_->array();
-  if (dampings_ && damped) kernel.dampings = dampings_->array();
+  if (dampings_ && purpose == FieldFor::generator) kernel.dampings = dampings_->array();
   cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel);
 }
 
@@ -308,8 +310,8 @@ template <class Spins>
 template <class Exec>
 SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
-    bool damped) const {
-  terms_->evaluate(exec, usual, spins, t, damped);
+    FieldFor purpose) const {
+  terms_->evaluate(exec, usual, spins, t, purpose);
   auto now = nothing();
   now.stored = {terms_->field_.array(), -0.5};
   now.has_stored = true;
@@ -330,6 +332,11 @@ Vec3<double> FieldInPass<Spins>::magnetization(Exec const& exec, Spins const& sp
 }
 
 template <class Spins>
+bool FieldInPass<Spins>::is_affine() const {
+  return terms_->is_affine_;
+}
+
+template <class Spins>
 std::vector<double> const& FieldInPass<Spins>::noise_of_sites() const {
   return terms_->noise_of_sites_;
 }
@@ -343,7 +350,7 @@ auto FieldInPass<Spins>::moves() const -> std::optional<ScalarField<Real, Memory
   template class FieldInPass<SpinField<Real, Space::memory_space>>;                          \
   template SceneFieldNow<Real> FieldInPass<SpinField<Real, Space::memory_space>>::evaluate(  \
       Space const&, SceneFieldNow<Real> const&, SpinField<Real, Space::memory_space> const&, \
-      double, bool) const;                                                                   \
+      double, FieldFor) const;                                                               \
   template Vec3<double> FieldInPass<SpinField<Real, Space::memory_space>>::magnetization(    \
       Space const&, SpinField<Real, Space::memory_space> const&) const;
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)

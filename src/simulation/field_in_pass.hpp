@@ -15,6 +15,10 @@ struct Scene;
 
 namespace cayspin::simulation {
 
+/// What a field is evaluated for: to turn spins, with the damping of each site in it, as
+/// H + damping m x H or its second part alone; for itself; or as -dE/dm, for an energy that falls.
+enum class FieldFor { generator, itself, energy };
+
 /// The field of a scene whose terms are those of few scenes: couplings, sublattices, currents,
 /// vacancies. One pass evaluates all terms into memory before each stage, and the kernels of the
 /// methods load what it wrote; so there is one such kernel, and not one for each method.
@@ -27,11 +31,13 @@ class FieldInPass {
  public:
   FieldInPass(io::Scene const& scene, Lattice const& lattice);
 
-  /// `usual`: the scene's other terms. `damped`: where the damping differs from site to site, with
-  /// it: H + damping m x H, or the second part alone without precession.
+  /// `usual`: the scene's other terms.
   template <class Exec>
   SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
-                               Spins const& spins, double t, bool damped) const;
+                               Spins const& spins, double t, FieldFor purpose) const;
+
+  /// Is H affine in the spins?
+  bool is_affine() const;
 
   /// Without any term.
   SceneFieldNow<Real> nothing() const;

@@ -121,7 +121,7 @@ struct PassTerms {
   DmiOfSites<Real> dmi_of_sites;                             // the same
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   std::int32_t cell_sites, anisotropies;
-  bool has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies;
+  bool has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies, has_moments;
 
   template <class Value>
   struct Result {
@@ -183,8 +183,9 @@ struct PassTerms {
       e = e + cubics[i].energy_density(stencil);
     }
     auto const moment = as_value<Value>(mine.moment);
-    h = multiply_add(as_value<Value>(1 / mine.moment), h, applied.field(stencil));
     e = e + moment * applied.energy_density(stencil);
+    if (!has_moments) return {multiply_add(moment, applied.field(stencil), h), e};
+    h = multiply_add(as_value<Value>(1 / mine.moment), h, applied.field(stencil));
     h = as_value<Value>(mine.gyromagnetic) * h;
     // Torques are no derivatives of an energy.
     if (has_zhang_li) h = h + zhang_li.field(stencil);

@@ -40,12 +40,13 @@ class SceneField {
     }
   }
 
-  /// H alone where a pass has the damping of each site in it.
-  SceneField undamped() const {
+  /// For another purpose than to turn spins.
+  SceneField made_for(FieldFor purpose) const {
     auto other = *this;
-    other.is_damped_ = false;
+    other.purpose_ = purpose;
     return other;
   }
+  bool is_affine() const { return !pass_ || pass_->is_affine(); }
 
   /// None where methods' kernels evaluate the terms themselves.
   std::optional<FieldInPass<Spins>> const& pass() const { return pass_; }
@@ -61,7 +62,7 @@ class SceneField {
     if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
-    return pass_ ? pass_->evaluate(exec, now, spins, t, is_damped_) : now;
+    return pass_ ? pass_->evaluate(exec, now, spins, t, purpose_) : now;
   }
   /// Looks at no spin: without the terms that do.
   template <class Exec>
@@ -117,7 +118,7 @@ class SceneField {
   std::optional<OnHost> stored_;
   std::optional<DearTerm> dear_;
   std::optional<FieldInPass<Spins>> pass_;
-  bool is_damped_ = true;
+  FieldFor purpose_ = FieldFor::generator;
 };
 
 /// That of a scene. Compiled in scene_generator.cpp.

@@ -36,7 +36,7 @@ SceneGenerator<Spins>::SceneGenerator(io::Scene const& scene, Lattice const& lat
 template <class Spins>
 SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {
   SceneGenerator other = *this;
-  other.llg_ = LandauLifshitz(llg_.field().undamped(), 0, true);
+  other.llg_ = LandauLifshitz(llg_.field().made_for(FieldFor::itself), 0, true);
   other.orthogonal_ = false;
   return other;
 }

@@ -155,9 +155,10 @@ class SceneRunInSpace final
     }
     auto in_field = scene_;
     in_field.field = field;
-    return minimizer_->minimize(simulation_.exec, scene_,
-                                field_of<Spins>(in_field, plan_.lattice, false).undamped(),
-                                simulation_.spins, options);
+    return minimizer_->minimize(
+        simulation_.exec, scene_,
+        field_of<Spins>(in_field, plan_.lattice, false).made_for(FieldFor::energy),
+        simulation_.spins, options);
   }
 
   // With other spins.
@@ -201,7 +202,8 @@ class SceneRunInSpace final
 
   LentVectors evaluated_field() override {
     Vectors const field("field", plan_.lattice);
-    evaluate_field(simulation_.exec, simulation_.generator.landau_lifshitz().field().undamped(),
+    evaluate_field(simulation_.exec,
+                   simulation_.generator.landau_lifshitz().field().made_for(FieldFor::itself),
                    simulation_.spins, reduced_time(), field);
     simulation_.exec.fence("cayspin::SceneRun: field evaluated");
     if constexpr (on_host)

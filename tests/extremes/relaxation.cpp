@@ -26,7 +26,8 @@ Outcome relax(Setting const& setting, Against against, io::Scene const& scene, P
   auto const start = copy_to_host(spins);
   Minimum found;
   try {
-    found = minimize(HostSpace(), field_of<Spins>(scene, plan.lattice, false).undamped(), spins,
+    found = minimize(HostSpace(),
+                     field_of<Spins>(scene, plan.lattice, false).made_for(FieldFor::energy), spins,
                      {.torque = setting.torque});
   } catch (std::invalid_argument const& error) {
     bool const by_bound = setting.torque < Minimizer<Spins>::least_bound;

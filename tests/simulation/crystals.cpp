@@ -534,5 +534,31 @@ steps = 1
   EXPECT_NEAR(found.energy.value, 120 * -8.0 - 240 * 0.25, 1e-6);
 }
 
+// Moments do not bend the way down: the energy of a ferrimagnet along its field, and that of a
+// cubic crystal, whose field is not linear.
+TEST(CrystalScenes, RelaxMomentsAndCubicAxes) {
+  auto const relaxed = [](std::string const& lattice, std::string const& field) {
+    auto const run = SceneRun::open(scene_of(fmt::format("[system]\nkind = 'llg'\ndamping = 0.5\n"
+                                                         "[lattice]\nshape = [6, 5, 4]\n{}\n"
+                                                         "[field]\n{}\n[initial]\nrandom = {{ "
+                                                         "seed = 4 }}\n[integrator]\nmethod = "
+                                                         "'heun'\ndt = 0.02\nsteps = 1\n",
+                                                         lattice, field)),
+                                    {});
+    auto const found = run->relax({.torque = 1e-7});
+    EXPECT_EQ(found.end, MinimizeEnd::converged);
+    return found.energy.value;
+  };
+  EXPECT_NEAR(relaxed("crystal = 'bcc'\nboundary = 'periodic'\nmoments = [3, 0.4]\n"
+                      "gyromagnetic = [1, 2]",
+                      "couplings = { shells = [-1] }\napplied = [0, 0, 0.1]\n"
+                      "anisotropy = { constant = 0.1, axis = [0, 0, 1] }"),
+              120 * (-8.0 - 0.1 - 0.1 * (3 - 0.4)), 1e-6);
+  EXPECT_NEAR(relaxed("boundary = 'periodic'",
+                      "exchange = 1\nanisotropy = { cubic = -0.3, axes = [[1, 0, 0], [0, 1, 0]] }\n"
+                      "applied = [0.001, 0.001, 0.001]"),
+              120 * (-0.1 - 0.001 * std::sqrt(3.0)), 1e-5);
+}
+
 }  // namespace
 }  // namespace cayspin::simulation::test

@@ -130,6 +130,9 @@ class PairCouplings {
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 
+  /// Is H more than linear in the spins?
+  bool has_biquadratic() const { return bonds_.table().has_biquadratic; }
+
  private:
   PairCouplings(Lattice const& lattice, detail::BondLists const& lists)
       : lattice_(lattice), bonds_(lists), field_bounds_(lists.field_bounds) {

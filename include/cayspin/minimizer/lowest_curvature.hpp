@@ -138,14 +138,14 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
 
   evaluate_field(exec, field, spins, time, at_rest);
   ++found.evaluations;
+  bool affine = is_affine<decltype(prepare_term(field, exec, spins, time)),
+                          Stencil<Site<Pack<double>>, Real>>;
+  if constexpr (requires { field.is_affine(); }) affine = affine && field.is_affine();
   // v.Hv and v.v
   auto const product = [&](Spins const& v, Spins const& hv) {
-    using Prepared = decltype(prepare_term(field, exec, shifted, time));
-    using AtSite = Stencil<Site<Pack<double>>, Real>;
-    constexpr bool affine = is_affine<Prepared, AtSite>;
     combine(exec, 0, v, 0, v, shifted);
     double const shift = (affine ? 0.5 : 0.02) / largest_difference(exec, v, shifted);
-    if constexpr (!affine) {
+    if (!affine) {
       combine(exec, -shift, v, 1, spins, shifted);
       evaluate_field(exec, field, shifted, time, before);
       ++found.evaluations;
