@@ -39,6 +39,7 @@ std::string all_of(TrajectoryInfo const& info) {
                   header.precision, info.cost.evaluations);
   text += fmt::format(" {} {}", info.cost.wall_seconds, info.cost.step_seconds);
   for (auto const extent : header.shape) text += fmt::format(" {}", extent);
+  text += fmt::format(" {}", header.cell_sites);
   text += fmt::format(" {} {} {} {} {}", header.units.si, header.units.time, header.units.length,
                       header.units.field, header.units.energy);
   for (std::size_t i = 0; i < info.frame_steps.size(); ++i) {
@@ -46,6 +47,8 @@ std::string all_of(TrajectoryInfo const& info) {
     text += fmt::format("\n{} {} {} {} {} {} {}", info.frame_steps[i], info.frame_times[i], energy,
                         defect, m[0], m[1], m[2]);
   }
+  for (auto const& mean : info.frame_sublattices)
+    text += fmt::format("\n{} {} {}", mean[0], mean[1], mean[2]);
   return text;
 }
 
@@ -140,9 +143,11 @@ class Damage : public TrajectoryTest {
 
   // Files like those of `run`, in several layouts.
   std::filesystem::path trajectory(std::string const& name, std::string const& precision,
-                                   TrajectoryStorage const& storage, int frames) {
+                                   TrajectoryStorage const& storage, int frames,
+                                   std::int64_t cell_sites = 1) {
     auto const path = folder_ / name;
-    auto const header = small_header(precision);
+    auto header = small_header(precision);
+    header.cell_sites = cell_sites;
     TrajectoryFile file(path, header, false, storage);
     for (int frame = 0; frame < frames; ++frame) {
       for (int sample = 0; sample < 3; ++sample)
@@ -178,6 +183,7 @@ TEST_F(Damage, TrajectoriesAreRefusedOrReadAsTheyWere) {
   damage(trajectory("packed.h5", "double", {.compression = 6}, 20), of_trajectories, true,
          files_ / 5);
   damage(trajectory("planes.h5", "double", {.chunk = 1}, 5), of_trajectories, true, files_ / 5);
+  damage(trajectory("crystal.h5", "double", {}, 5, 2), of_trajectories, true, files_ / 5);
   print_counts();
 }
 

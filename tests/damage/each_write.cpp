@@ -42,6 +42,7 @@ struct Reported {
 // Samples before the first frame, and frames and samples before the kill becomes possible.
 struct Course {
   int first_frames = 0, frames = 0;
+  std::int64_t cell_sites = 1;
   std::int64_t samples(int frames_written) const { return 2 * frames_written + 3; }
 };
 
@@ -67,7 +68,8 @@ class Killed : public TrajectoryTest {
   }
 
   [[noreturn]] void perform(Course const& course, long moment) {
-    auto const header = small_header();
+    auto header = small_header();
+    header.cell_sites = course.cell_sites;
     if (course.first_frames == 0) moments_left = moment;
     TrajectoryFile file(path(), header, false);
     reported_->created = true;
@@ -97,6 +99,7 @@ class Killed : public TrajectoryTest {
     auto const info = read_info(path());
     EXPECT_GE(info.frames, reported_->frames);
     EXPECT_LE(info.frames, course.frames);
+    EXPECT_EQ(info.header.cell_sites, course.cell_sites);
     for (std::int64_t frame = 0; frame < info.frames; ++frame) expect_frame(info, frame);
     if (info.frames > 0) {
       EXPECT_EQ(read_spins(path(), info.header.shape), spins(static_cast<int>(info.frames) - 1));
@@ -144,6 +147,8 @@ class Killed : public TrajectoryTest {
 int stride(int ordinary) { return std::getenv("CAYSPIN_ALL_KILLS") ? 1 : ordinary; }
 
 TEST_F(Killed, FromTheCreationToTheEnd) { kill_at_every_write({0, 4}, stride(3)); }
+
+TEST_F(Killed, InACrystal) { kill_at_every_write({0, 4, 2}, stride(5)); }
 
 // Index blocks are added here, and by other layouts nodes are split.
 TEST_F(Killed, AfterSomeFrames) { kill_at_every_write({60, 70}, stride(15)); }

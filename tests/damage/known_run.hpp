@@ -100,13 +100,14 @@ inline void require_known(std::filesystem::path const& path, KnownRun const& run
     require(info.complete && info.frames == 1, "wrong", "the older file is another");
     return;
   }
+  require(info.header.cell_sites == run.header.cell_sites, "wrong", "the sites of a cell");
   require(info.frames >= told.frames, "lost", "frames");
   require(info.samples >= told.samples, "lost", "samples");
   require(info.complete || !told.finished, "lost", "the end");
   require(info.frames <= run.frames, "wrong", "frames that were not written");
   require_known_samples(path, run, info.samples);
   if (info.frames == 0) return;
-  StoredSpins const stored(path, info.header.shape);
+  StoredSpins const stored(path, info.header.shape, info.header.cell_sites);
   for (std::int64_t frame = 0; frame < info.frames; ++frame) {
     auto const at = static_cast<std::size_t>(frame);
     auto const step = run.first_step + frame;

@@ -140,9 +140,11 @@ class PowerCuts : public testing::Test {
   std::int64_t lost_ = 0, wrong_ = 0, completed_ = 0, cut_twice_ = 0, frames_ = 0, kept_ = 0;
 };
 
-TrajectoryHeader header_of(std::array<std::int64_t, 3> const& shape, char const* precision) {
+TrajectoryHeader header_of(std::array<std::int64_t, 3> const& shape, char const* precision,
+                           std::int64_t cell_sites = 1) {
   auto header = small_header(precision);
   header.shape = shape;
+  header.cell_sites = cell_sites;
   return header;
 }
 
@@ -156,6 +158,7 @@ TEST_F(PowerCuts, LoseAtMostTheFrameBeingWritten) {
       {.header = header_of({16, 8, 2}, "single"), .storage = {.compression = 1}, .frames = 40},
       {.header = header_of({5, 1, 1}, "double"), .frames = 4, .samples = 300},
       {.header = header_of({4, 4, 1}, "double"), .frames = 3, .samples = 1, .replaces = true},
+      {.header = header_of({16, 16, 6}, "double", 2), .storage = {.chunk = 2}, .frames = 6},
   };
   auto const histories = number_from("CAYSPIN_POWER_CUTS", 1000);
   auto const count = static_cast<long>(runs.size());

@@ -68,6 +68,8 @@ class RandomKills : public testing::Test {
     course.header.scene_text += "# " + std::to_string(kill) + "\n";
     course.header.shape = one_of<std::array<std::int64_t, 3>>(
         {{1, 1, 1}, {10, 3, 1}, {4, 3, 2}, {57, 1, 1}, {16, 16, 2}, {31, 17, 5}, {64, 32, 3}});
+    if (course.header.shape[2] == 1 && chance_.below(2) == 0)
+      course.header.cell_sites = course.header.shape[2] = one_of<std::int64_t>({2, 3});
     course.storage = {.compression = one_of({0, 0, 1}),
                       .chunk = one_of<std::int64_t>({0, 0, 1}),
                       .frames = one_of<std::int64_t>({0, 100, 50'000}),
@@ -87,6 +89,7 @@ class RandomKills : public testing::Test {
     if (info.frames == 0) return;
     course.first_step = info.frame_steps.back();
     course.header.shape = info.header.shape;
+    course.header.cell_sites = info.header.cell_sites;
     course.header.precision = info.header.precision;
     course.quick_frames = 0;
     ++counts_["restarts"];

@@ -18,10 +18,13 @@ int main(int, char** arguments) {
   io::TrajectoryHeader header;
   header.scene_text = "[system]\n";
   header.precision = "double";
-  header.shape = {2, 1, 1};
   std::vector<double> const spins{0, 0, 1, 0, 1, 0};
-  for (int compression : {0, 6}) {
+  for (int compression : {0, 6, 1}) {
     auto const name = "level_" + std::to_string(compression) + ".h5";
+    bool const crystal = compression == 1;
+    header.shape =
+        crystal ? std::array<std::int64_t, 3>{1, 1, 2} : std::array<std::int64_t, 3>{2, 1, 1};
+    header.cell_sites = crystal ? 2 : 1;
     io::TrajectoryFile file(folder / "trajectory" / name, header, true,
                             {.compression = compression});
     for (int frame = 0; frame < 2; ++frame) file.write_frame(frame, frame, {}, spins.data());
