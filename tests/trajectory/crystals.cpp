@@ -4,6 +4,7 @@
 #include "hdf5/handle.hpp"
 #include "trajectory_test.hpp"
 
+#include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/follow.hpp>
 #include <cayspin/io/run_output.hpp>
 
@@ -272,6 +273,28 @@ TEST_F(TrajectoryTest, SyncedCrystalsAreWholeAndFollowed) {
   run.look();
   EXPECT_EQ(run.header().cell_sites, sites);
   EXPECT_EQ(run.steps(), (std::vector<std::int64_t>{0, 1, 2}));
+}
+
+TEST_F(TrajectoryTest, CheckpointsSayHowManySitesACellHas) {
+  auto const path = folder_ / "a.checkpoint.h5";
+  for (std::int64_t const of_cell : {std::int64_t{1}, sites}) {
+    CheckpointHeader header;
+    header.shape = {4, 3, 6};
+    header.cell_sites = of_cell;
+    auto spins = spins_of<double>(crystal_header(), 1);
+    {
+      CheckpointWriter writer(path, header);
+      writer.field("spins", spins);
+      writer.commit();
+    }
+    CheckpointReader const reader(path);
+    EXPECT_EQ(reader.header().shape, header.shape);
+    EXPECT_EQ(reader.header().cell_sites, of_cell);
+    EXPECT_EQ(reader.field("spins", {{0, 0, 0}, header.shape}), spins);
+    EXPECT_EQ(read_spins(path, header.shape), spins);
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    EXPECT_EQ(H5Aexists(file.get(), "cell_sites"), of_cell > 1);
+  }
 }
 
 TEST_F(TrajectoryTest, CrystalsAreWrittenWholeAndOfWholeCells) {
