@@ -192,7 +192,7 @@ std::pair<double, double> crossing(double temperature, double dt, std::int64_t s
 }
 
 // ctest -C long -L long
-// A step heats the crystal by the square of its length: the crossing is lower by 21 dt^2.
+// A step heats the crystal by the square of its length: the crossing is lower by about 22 dt^2.
 TEST(HeisenbergCrystal, DISABLED_BinderCumulantsCrossAtTheCriticalTemperature) {
   auto const [fine, its_error] = crossing(2.036, 0.03, 40, 2000, 100);
   auto const [coarse, error_of_coarse] = crossing(1.979, 0.06, 20, 600, 200);
