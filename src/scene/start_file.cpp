@@ -115,14 +115,14 @@ void check_start_file(std::filesystem::path const& path, Lattice const& lattice)
   } else if (lattice.basis.size() > 1) {
     try_in_child(path, [&] { SpinsOfCrystal(path, lattice); });
   } else {
-    try_in_child(path, [&] { StoredSpins(path, lattice.shape); });
+    try_in_child(path, [&] { StoredSpins(path, lattice.shape, 1); });
   }
 }
 
 std::vector<double> read_start_file(std::filesystem::path const& path, Lattice const& lattice,
                                     SiteBox const& box) {
   if (!is_ovf(path)) {
-    if (lattice.basis.size() == 1) return read_spins(path, lattice.shape, box);
+    if (lattice.basis.size() == 1) return read_spins(path, lattice.shape, box, 1);
     return read_guarded(path, [&] { return SpinsOfCrystal(path, lattice).in(box); });
   }
   refuse_crystals(lattice, path);
