@@ -59,12 +59,12 @@ struct TermEnergiesOfSites {
 };
 
 /// How far m.m is above and below 1: of the largest of these over sites, one root gives the largest
-/// | |m| - 1 |. The zero vector is that of a site without a spin.
+/// | |m| - 1 |.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION void off_the_sphere(Vec3<Value> const& m, Value* values) {
-  Value const square = dot(m, m), none(0.0);
-  values[0] = select<Value>(square == none, none, square - Value(1.0));
-  values[1] = select<Value>(square == none, none, Value(1.0) - square);
+  Value const square = dot(m, m);
+  values[0] = square - Value(1.0);
+  values[1] = Value(1.0) - square;
 }
 inline double norm_defect_of(double above, double below) {
   return Maximum::combine(std::sqrt(1 + above) - 1, 1 - std::sqrt(1 - below));

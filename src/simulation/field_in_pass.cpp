@@ -5,6 +5,7 @@
 #include "pass_terms.hpp"
 #include "space.hpp"
 
+#include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/scalars.hpp>
 
@@ -40,6 +41,21 @@ struct EvaluateInPass {
     if (moves.data) found.field = site.load(moves) * found.field;
     site.store(found.field, field);
     site.store(found.energy, energies);
+  }
+};
+
+/// NormDefectOfSites where there is a moment.
+template <class Real>
+struct NormDefectOfMoments {
+  cayspin::detail::SiteArray<Real, 3> spins;
+  cayspin::detail::SiteArray<Real, 1> moments;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    using cayspin::detail::select;
+    cayspin::detail::off_the_sphere(Vec3<Value>(site.load(spins)), values);
+    Value const none(0.0), moment = site.load(moments);
+    for (int i = 0; i < 2; ++i) values[i] = select<Value>(moment == none, none, values[i]);
   }
 };
 
@@ -332,6 +348,16 @@ Vec3<double> FieldInPass<Spins>::magnetization(Exec const& exec, Spins const& sp
 }
 
 template <class Spins>
+template <class Exec>
+double FieldInPass<Spins>::norm_defect(Exec const& exec, Spins const& spins) const {
+  using cayspin::detail::Maximum;
+  auto const largest = cayspin::detail::reduce_sites<Maximum, 2>(
+      exec, "cayspin::FieldInPass::norm_defect", spins.layout(),
+      NormDefectOfMoments<Real>{spins.array(), terms_->moments_.array()});
+  return cayspin::detail::norm_defect_of(largest[0], largest[1]);
+}
+
+template <class Spins>
 bool FieldInPass<Spins>::is_affine() const {
   return terms_->is_affine_;
 }
@@ -352,6 +378,8 @@ auto FieldInPass<Spins>::moves() const -> std::optional<ScalarField<Real, Memory
       Space const&, SceneFieldNow<Real> const&, SpinField<Real, Space::memory_space> const&, \
       double, FieldFor) const;                                                               \
   template Vec3<double> FieldInPass<SpinField<Real, Space::memory_space>>::magnetization(    \
+      Space const&, SpinField<Real, Space::memory_space> const&) const;                      \
+  template double FieldInPass<SpinField<Real, Space::memory_space>>::norm_defect(            \
       Space const&, SpinField<Real, Space::memory_space> const&) const;
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)

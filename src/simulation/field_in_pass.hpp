@@ -46,6 +46,10 @@ class FieldInPass {
   template <class Exec>
   Vec3<double> magnetization(Exec const& exec, Spins const& spins) const;
 
+  /// max | |m| - 1 | over these sites.
+  template <class Exec>
+  double norm_defect(Exec const& exec, Spins const& spins) const;
+
   /// Of each site of a cell: its gyromagnetic ratio over its moment.
   std::vector<double> const& noise_of_sites() const;
   /// 0 where a spin is frozen; none where all move.

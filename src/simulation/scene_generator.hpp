@@ -134,8 +134,8 @@ class SceneGenerator {
   SceneBodies<Spins> bodies_;
 };
 
-/// cayspin::sample, with the magnetization of a scene's own moments. `of_scene`: its generator or
-/// its field, of which the energy is taken.
+/// cayspin::sample, with the magnetization of a scene's own moments, of sites that have a spin.
+/// `of_scene`: its generator or its field, of which the energy is taken.
 template <class Exec, class OfScene, class Spins, class... Generators>
 Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step, Spins const& spins,
                     Generators const&... generators) {
@@ -146,7 +146,10 @@ Sample sample_scene(Exec const& exec, OfScene const& of_scene, Step const& step,
     else
       return of_scene.pass();
   }();
-  if (pass) found.magnetization = pass->magnetization(exec, spins);
+  if (pass) {
+    found.magnetization = pass->magnetization(exec, spins);
+    found.norm_defect = pass->norm_defect(exec, spins);
+  }
   return found;
 }
 
