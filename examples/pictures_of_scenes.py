@@ -8,8 +8,11 @@ import pathlib
 import tempfile
 
 import cayspin
+import matplotlib
 import numpy as np
-from cayspin_plots import style
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen before
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
 HEXAGON = np.array([[1, 0, 0], [0.5, np.sqrt(0.75), 0], [0, 0, 1]])
@@ -39,7 +42,7 @@ def draw_wall(axis, folder):
     with run(scene, folder, "wall.h5") as file:
         time, spins = file.time[:], file.spins[:, 0, 0]
         x = 0.25 * (np.arange(spins.shape[1]) + 0.5)
-        for frame, color in zip((0, len(time) // 2, -1), (style.GREY, style.BLUE, style.RED)):
+        for frame, color in zip((0, len(time) // 2, -1), ("#8b9199", "#1b5fa7", "#cf3f2b")):
             axis.plot(x, spins[frame, :, 2], color=color)
             place = np.interp(0, -spins[frame, :, 2], x)
             axis.annotate(f"t = {time[frame]:g}", (place, 0), (5, 12), color=color,
@@ -75,9 +78,9 @@ def main():
     with tempfile.TemporaryDirectory() as runs:
         for name, draw in (("crystal", draw_crystal), ("wall", draw_wall),
                            ("dispersion", draw_dispersion)):
-            figure, axis = style.plt.subplots(figsize=(6, 4.2), constrained_layout=True)
+            figure, axis = plt.subplots(figsize=(6, 4.2), constrained_layout=True)
             draw(axis, pathlib.Path(runs))
-            style.save(figure, folder / f"{name}.png")
+            figure.savefig(folder / f"scene_{name}.png", dpi=120)
 
 
 if __name__ == "__main__":
