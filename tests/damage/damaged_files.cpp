@@ -76,9 +76,12 @@ struct Reading {
 };
 
 std::string spins_of_start(std::filesystem::path const& path) {
+  std::vector<std::string> overrides;
+  if (read_info(path).header.cell_sites == 2)
+    overrides = {"lattice.shape=[4, 3, 1]", "lattice.crystal='bcc'"};
   auto const scene = parse_scene("[system]\nkind = \"llg\"\ndamping = 0.1\n" + scene_head +
                                      "[initial]\nfile = \"" + path.string() + "\"\n",
-                                 "scene.toml");
+                                 "scene.toml", overrides);
   check_files(scene);
   return all_of(initial_spins(scene));
 }
