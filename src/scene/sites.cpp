@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
+#include <tuple>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -53,6 +53,15 @@ std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box) {
 }
 std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box) {
   return sites_where(scene, scene.lattice.frozen, "lattice.frozen", box);
+}
+
+double largest_noise(Scene const& scene) {
+  auto const& [moments, gyromagnetic] = std::tie(scene.lattice.moments, scene.lattice.gyromagnetic);
+  double largest = 0;
+  for (std::size_t site = 0; site < scene.lattice.basis.size(); ++site)
+    largest = std::max(largest, (gyromagnetic.empty() ? 1 : gyromagnetic[site]) /
+                                    (moments.empty() ? 1 : moments[site]));
+  return largest;
 }
 
 bool needs_pass(Scene const& scene) {

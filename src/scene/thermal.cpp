@@ -38,12 +38,13 @@ void check_thermal(Scene const& scene) {
            "no such key");
   if (integrator.until_torque)
     refuse("integrator.until_torque", "spins at a temperature do not come to rest", "no such key");
-  double const half = system.damping * scene.thermal->temperature * integrator.dt;
+  double const half =
+      largest_noise(scene) * system.damping * scene.thermal->temperature * integrator.dt;
   if (!(half <= 1))
     refuse("integrator.dt",
-           fmt::format("damping times temperature times dt is {:.3g}: the noise of a step would "
+           fmt::format("damping times temperature times dt{} is {:.3g}: the noise of a step would "
                        "lose all memory of a direction",
-                       half),
+                       scene.lattice.moments.empty() ? "" : " over the least moment", half),
            fmt::format("a dt up to {:.6g}, better a tenth of it",
                        integrator.dt / half * scene.units.time));
 }

@@ -255,7 +255,8 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
                             "spins; accepted: a one-step method, such as \"heun\", \"rkmk4\", "
                             "\"red_black2\"");
     // Of each component in half a step; two of three move the spin.
-    double const variance = scene.system.damping * scene.thermal->temperature * integrator.dt;
+    double const variance = io::largest_noise(scene) * scene.system.damping *
+                            scene.thermal->temperature * integrator.dt;
     plan.noise_turn = 2 * std::sqrt(variance);
   }
   if (integrator.tolerance) {

@@ -242,6 +242,9 @@ std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numb
 /// Is the field evaluated in a pass of its own, for terms that few scenes have?
 bool needs_pass(Scene const& scene);
 
+/// The largest gyromagnetic ratio over moment of a cell's sites, by which noise turns them faster.
+double largest_noise(Scene const& scene);
+
 /// A lattice's cell.
 Crystal crystal(Lattice const& lattice);
 

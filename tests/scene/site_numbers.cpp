@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Constants that differ from site to site: by expressions, and from files.
+#include "hdf5_file.hpp"
+#include "scene_file.hpp"
+
+#include <limits>
+
+namespace cayspin::inline v0_1::io::test {
+namespace {
+
+constexpr std::string_view film = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [4, 3, 2]
+[field]
+exchange = 1
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "rkmk4"
+dt = 0.01
+steps = 10
+)toml";
+
+SiteBox whole(Scene const& scene) { return {{0, 0, 0}, scene.lattice.shape}; }
+
+// What reading a scene, its files or its numbers says, after the name of its key.
+std::string refusal_of(Folder const& folder, std::string const& text) {
+  try {
+    auto const scene = read_text(folder, text);
+    check_files(scene);
+    if (auto const& numbers = scene.field.exchange_factors; numbers.there())
+      numbers_of_sites(scene, numbers, "field.exchange", whole(scene));
+    return "accepted";
+  } catch (SceneError const& error) {
+    return error.what();
+  }
+}
+
+TEST(SiteNumbers, ComeFromExpressionsAndFiles) {
+  Folder const folder;
+  std::vector<double> stored;
+  for (int n = 0; n < 24; ++n) stored.push_back(1 + n * n % 17);
+  write_dataset(folder / "film.h5", "/values", {2, 3, 4}, stored);
+  write_dataset(folder / "crystal.h5", "/values", {2, 2, 3, 4}, [&] {
+    auto both = stored;
+    for (double const value : stored) both.push_back(-value);
+    return both;
+  }());
+  auto const expression =
+      read_text(folder, replaced(film, "exchange = 1", "exchange = '1+i+10*k'"));
+  auto const by_expression = numbers_of_sites(expression, expression.field.exchange_factors,
+                                              "field.exchange", whole(expression));
+  for (std::size_t site = 0; site < 24; ++site)
+    EXPECT_EQ(by_expression[site], 1. + static_cast<double>(site % 4 + 10 * (site / 12)));
+  auto const file =
+      read_text(folder, replaced(film, "exchange = 1", "exchange = { file = 'film.h5' }"));
+  check_files(file);
+  EXPECT_TRUE(needs_pass(file));
+  EXPECT_EQ(file.field.exchange->constant, 1);
+  EXPECT_EQ(numbers_of_sites(file, file.field.exchange_factors, "field.exchange", whole(file)),
+            stored);
+  // Plane k * 2 + s of a crystal has the sites s of the cells k.
+  auto const crystal = read_text(
+      folder, replaced(replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\ncrystal = 'bcc'"),
+                       "exchange = 1",
+                       "anisotropy = { constant = { file = 'crystal.h5' }, axis = [0, 0, 1] }"));
+  check_files(crystal);
+  auto const& numbers = crystal.field.anisotropies.at(0).factors;
+  auto const all = numbers_of_sites(crystal, numbers, "field.anisotropy", whole(crystal));
+  for (std::size_t site = 0; site < 48; ++site) {
+    auto const plane = site / 12;
+    double const value = stored[plane / 2 * 12 + site % 12];
+    EXPECT_EQ(all[site], plane % 2 == 0 ? value : -value) << site;
+  }
+  SiteBox const part{{1, 1, 1}, {2, 2, 3}};
+  EXPECT_EQ(numbers_of_sites(crystal, numbers, "field.anisotropy", part),
+            numbers_in(part, crystal.lattice.shape, 1, all));
+}
+
+TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
+  Folder const folder;
+  write_dataset(folder / "short.h5", "/values", {3, 4}, std::vector<double>(12, 1));
+  write_dataset(folder / "other.h5", "/exchange", {2, 3, 4}, std::vector<double>(24, 1));
+  write_dataset(folder / "nan.h5", "/values", {2, 3, 4},
+                std::vector<double>(24, std::numeric_limits<double>::quiet_NaN()));
+  for (auto const& [typed, what] :
+       {std::pair{"exchange = '1 +'", ": field.exchange: "},
+        {"exchange = 'q'", ": field.exchange: "},
+        {"exchange = '1/i'", ": field.exchange: expression \"1/i\" is not finite at x = "},
+        {"exchange = true", ": field.exchange: true is a boolean"},
+        {"exchange = { fil = 'a.h5' }", ": field.exchange.fil: unknown key"},
+        {"exchange = { file = 3 }", ": field.exchange.file: 3 is an integer"},
+        {"exchange = { file = 'none.h5' }", "none.h5"},
+        {"exchange = { file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
+        {"exchange = { file = 'other.h5' }", "/values"},
+        {"exchange = { file = 'nan.h5' }", "a value is not finite"},
+        {"dmi = { bulk = 'z+' }", ": field.dmi.bulk: "},
+        {"dmi = { interfacial = 'x' }", ": field.dmi.normal: is missing"},
+        {"anisotropy = { constant = 'y*', axis = [0, 0, 1] }", ": field.anisotropy.constant: "}}) {
+    auto const message = refusal_of(folder, replaced(film, "exchange = 1", typed));
+    EXPECT_NE(message.find(what), std::string::npos) << typed << ": " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  auto const message = refusal_of(folder, replaced(film, "damping = 0.1", "damping = 'x/'"));
+  EXPECT_NE(message.find(": system.damping: "), std::string::npos) << message;
+}
+
+// Noise turns the smallest moment most.
+TEST(SiteNumbers, ATemperatureIsHeldAgainstTheLeastMoment) {
+  Folder const folder;
+  auto const hot = [&](std::string const& moments) {
+    return refusal_of(folder, replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\n" + moments) +
+                                  "[thermal]\ntemperature = 1\n");
+  };
+  EXPECT_EQ(hot("moments = 0.01").find(": integrator.dt:"), std::string::npos);
+  EXPECT_NE(hot("moments = 0.0001").find("over the least moment is 10"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cayspin::inline v0_1::io::test
