@@ -153,6 +153,7 @@ class FieldInPass<Spins>::Terms {
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
   Table<AnisotropyOfSites<Real>> anisotropies_;
   bool precession_;
+  double largest_moment_ = 0;
   std::vector<double> noise_of_sites_;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
@@ -183,7 +184,10 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     torques_.polarization = vector(of->polarization);
   }
   auto const [sites, cubics] = sites_of(scene);
-  for (auto const& site : sites) noise_of_sites_.push_back(site.gyromagnetic / site.moment);
+  for (auto const& site : sites) {
+    noise_of_sites_.push_back(site.gyromagnetic / site.moment);
+    largest_moment_ = std::max(largest_moment_, site.moment);
+  }
   sites_ = table_of<CellSite, Memory>("sites", sites);
   cubics_ = table_of<CubicAnisotropy, Memory>("cubics", cubics);
 
@@ -300,7 +304,7 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
                                torques_.velocity.has_value(),
                                torques_.strengths.has_value(),
                                has_vacancies_,
-                               purpose != FieldFor::energy},
+                               purpose == FieldFor::energy},
                               spins.array(),
                               {},
                               {},
@@ -332,7 +336,8 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate(
   now.stored = {terms_->field_.array(), -0.5};
   now.has_stored = true;
   now.energies = terms_->energies_.array();
-  now.lattice_terms.magnitude += std::sqrt(dot(usual.zeeman.applied, usual.zeeman.applied));
+  now.lattice_terms.magnitude +=
+      terms_->largest_moment_ * std::sqrt(dot(usual.zeeman.applied, usual.zeeman.applied));
   return now;
 }
 

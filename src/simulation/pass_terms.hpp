@@ -7,6 +7,7 @@
 #include <cayspin/field/cubic_anisotropy.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/field/site_dependent_exchange.hpp>
+#include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slonczewski.hpp>
 #include <cayspin/field/zhang_li.hpp>
 
@@ -58,21 +59,10 @@ class StencilAmongSpins {
   Inner const& inner_;
 };
 
-/// An anisotropy whose constant differs from site to site: H = K (m.e) e.
+/// An anisotropy whose constant differs from site to site.
 template <class Real>
-struct AnisotropyOfSites {
-  cayspin::detail::SiteArray<Real, 1> constants;
-  Vec3<double> axis;
-
-  /// H, and E = -m.H / 2.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    auto const e = as_value<Value>(axis);
-    return Value(stencil.site().load(constants) * dot(stencil.center(), e)) * e;
-  }
-};
+using AnisotropyOfSites =
+    cayspin::detail::UniaxialAnisotropyOfSites<cayspin::detail::SiteArray<Real, 1>, Vec3<double>>;
 
 /// Dzyaloshinskii-Moriya interaction whose constant differs from site to site. That of a bond along
 /// the axis e is the mean of its ends': H = sum of D v x m' over next and -D v x m' over previous
@@ -85,8 +75,7 @@ struct DmiOfSites {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    return along<0>(stencil) + along<1>(stencil) + along<2>(stencil) + zero<Value>();
+    return along<0>(stencil) + along<1>(stencil) + along<2>(stencil);
   }
 
  private:
@@ -109,7 +98,7 @@ struct DmiOfSites {
 /// All terms of a scene at one instant, for one kernel. Which are there is asked at run time.
 template <class Real>
 struct PassTerms {
-  SceneFieldNow<Real> usual;  // without those of single spins
+  SceneFieldNow<Real> usual;  // without the applied field
   cayspin::detail::PairField<Real> pairs;
   cayspin::detail::UniformBulkDmi bulk_dmi;
   cayspin::detail::UniformZhangLi zhang_li;
@@ -121,7 +110,8 @@ struct PassTerms {
   DmiOfSites<Real> dmi_of_sites;                             // the same
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   std::int32_t cell_sites, anisotropies;
-  bool has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies, has_moments;
+  bool has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies;
+  bool is_gradient;  // -dE/dm, without moments, gyromagnetic ratios and torques
 
   template <class Value>
   struct Result {
@@ -184,7 +174,7 @@ struct PassTerms {
     }
     auto const moment = as_value<Value>(mine.moment);
     e = e + moment * applied.energy_density(stencil);
-    if (!has_moments) return {multiply_add(moment, applied.field(stencil), h), e};
+    if (is_gradient) return {multiply_add(moment, applied.field(stencil), h), e};
     h = multiply_add(as_value<Value>(1 / mine.moment), h, applied.field(stencil));
     h = as_value<Value>(mine.gyromagnetic) * h;
     // Torques are no derivatives of an energy.

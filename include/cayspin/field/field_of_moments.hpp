@@ -124,9 +124,14 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
   /// for each site of a cell.
   FieldOfMoments(Lattice const& lattice, Field field, std::vector<double> const& moments,
                  std::vector<double> const& gyromagnetic = {})
-      : field_(std::move(field)),
+      : lattice_(lattice),
+        field_(std::move(field)),
         factors_("cayspin::FieldOfMoments", lattice, factors(moments, gyromagnetic)) {}
 
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    require_lattice("cayspin::FieldOfMoments", lattice_, spins.lattice());
+  }
   // For Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
@@ -141,15 +146,16 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
  private:
   static std::vector<double> factors(std::vector<double> const& moments,
                                      std::vector<double> const& gyromagnetic) {
+    if (!gyromagnetic.empty() && gyromagnetic.size() != moments.size())
+      throw std::invalid_argument(
+          "cayspin::FieldOfMoments: there is not a gyromagnetic ratio for each moment");
     auto made = moments;
     for (std::size_t site = 0; site < made.size(); ++site)
-      made[site] = (gyromagnetic.empty()         ? 1
-                    : site < gyromagnetic.size() ? gyromagnetic[site]
-                                                 : 0) /
-                   moments[site];
+      made[site] = (gyromagnetic.empty() ? 1 : gyromagnetic[site]) / moments[site];
     return made;
   }
 
+  Lattice lattice_;
   Field field_;
   detail::CellNumbers<MemorySpace> factors_;
 };
