@@ -16,11 +16,17 @@ std::string vector_text(io::Triple const& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v[0], v[1], v[2]);
 }
 
+std::string text_of(io::SiteNumbers const& numbers) {
+  return numbers.file.empty() ? numbers.expression : numbers.file.string();
+}
+
 std::string system_text(io::Scene const& scene) {
   auto const& system = scene.system;
   if (system.kind == io::SystemKind::llg)
-    return fmt::format("spins, Landau-Lifshitz with damping {:.6g}{}", system.damping,
-                       system.precession ? "" : ", overdamped (no precession)");
+    return fmt::format(
+        "spins, Landau-Lifshitz with damping {}{}",
+        system.dampings.there() ? text_of(system.dampings) : fmt::format("{:.6g}", system.damping),
+        system.precession ? "" : ", overdamped (no precession)");
   auto const count = io::sites(scene);
   auto const who = count == 1 ? "a free rigid body" : fmt::format("{} free rigid bodies", count);
   if (auto const* moments = std::get_if<io::PrincipalMoments>(&system.inertia))
@@ -120,6 +126,10 @@ std::string material_text(io::Material const& material) {
   return text;
 }
 
+std::string factors_text(io::SiteNumbers const& numbers) {
+  return numbers.there() ? ", times " + text_of(numbers) : std::string();
+}
+
 std::string of_site_text(int site) {
   return site < 0 ? std::string() : fmt::format(", site {}", site);
 }
@@ -184,14 +194,18 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     auto const& field = scene.field;
     lines.emplace_back("lattice", lattice_text(scene));
     io::for_each_lattice_term(field, [&]<class Term>(std::optional<Term> const& term) {
-      if (term) lines.emplace_back(Term::key, term_text(*term));
+      constexpr bool is_exchange = std::is_same_v<Term, io::Exchange>;
+      auto const& factors = is_exchange ? field.exchange_factors : field.dmi_factors;
+      if (term) lines.emplace_back(Term::key, term_text(*term) + factors_text(factors));
     });
     if (field.bulk_dmi)
-      lines.emplace_back("dmi", fmt::format("E = {:.6g} m.curl m", field.bulk_dmi->constant));
+      lines.emplace_back("dmi", fmt::format("E = {:.6g} m.curl m{}", field.bulk_dmi->constant,
+                                            factors_text(field.dmi_factors)));
     if (auto const bonds = io::couplings(scene).size())
       lines.emplace_back("couplings", fmt::format("{} bonds of a cell", bonds));
     for (auto const& term : field.anisotropies)
-      lines.emplace_back("anisotropy", term_text(term) + of_site_text(term.site));
+      lines.emplace_back("anisotropy",
+                         term_text(term) + factors_text(term.factors) + of_site_text(term.site));
     for (auto const& term : field.cubic_anisotropies)
       lines.emplace_back("anisotropy",
                          fmt::format("E = {:.6g} (a^2 b^2 + b^2 c^2 + c^2 a^2), axes {} and {}{}",

@@ -1,53 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes of crystals, sublattices, currents and vacancies: closed forms, and the same physics said
-// in two ways, by every method that takes it.
-#include "simulation/scene_run.hpp"
+// Scenes of crystals, sublattices and currents against closed forms.
+#include "scenes_of_text.hpp"
 
 #include <cayspin/io/method.hpp>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::simulation::test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr Precision precisions[] = {Precision::double_precision, Precision::single_precision};
-
-double epsilon(Precision precision) {
-  return precision == Precision::double_precision ? std::numeric_limits<double>::epsilon()
-                                                  : std::numeric_limits<float>::epsilon();
-}
-
-io::Scene scene_of(std::string const& text) { return io::parse_scene(text, "scene.toml"); }
-
-std::vector<double> spins_of(SceneRun& run) {
-  auto const spins = run.spins();
-  if (run.precision() == Precision::double_precision) return packed<double>(spins.vectors);
-  auto const single = packed<float>(spins.vectors);
-  return {single.begin(), single.end()};
-}
-
-std::vector<double> end_of(io::Scene const& scene, Precision precision) {
-  auto const run = SceneRun::open(scene, {.precision = precision});
-  run->advance(scene.integrator.steps);
-  return spins_of(*run);
-}
-
-double largest_distance(std::vector<double> const& a, std::vector<double> const& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
 
 /// A cone of spins that turns rigidly: phase(t) is the phase of each spin in i, j, k, s.
 struct Cone {
@@ -111,126 +81,6 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
           precision == Precision::double_precision ? 1e-10 : 100 * 100 * epsilon(precision);
       EXPECT_LT(largest_distance(found, spins_of(*expected)), allowed);
     }
-}
-
-// Every term of plain scenes, evaluated in a pass: moments of 1 ask for that and change nothing.
-TEST(CrystalScenes, APassIsTheFieldThatKernelsEvaluate) {
-  constexpr auto plain = R"toml(
-[system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [19, 4, 3]
-spacing = [0.8, 1, 1.25]
-boundary = ["open", "periodic", "open"]
-{}
-[field]
-exchange = 0.5
-dmi = {{ interfacial = 0.2, normal = [0, 0, 1] }}
-anisotropy = [ {{ constant = 0.4, axis = [1, 2, 3] }}, {{ constant = -0.1, axis = [0, 0, 1] }} ]
-applied = ["0.3*cos(2*t)", 0, 0.2]
-slab_demag = {{ normal = [0, 0, 1], strength = 0.3 }}
-[initial]
-random = {{ seed = 5 }}
-[integrator]
-method = "{}"
-dt = 0.01
-steps = 40
-{}
-)toml";
-  int compared = 0, refused = 0;
-  for (auto const* const method : io::methods())
-    for (auto const precision : precisions) {
-      if (method->automatic) continue;
-      SCOPED_TRACE(fmt::format("{}, {} precision", method->word, to_string(precision)));
-      std::string const more = method->adaptive ? "tolerance = 1e-4" : "";
-      std::optional<io::Scene> usual;
-      try {
-        usual = scene_of(fmt::format(plain, "", method->word, more));
-      } catch (io::SceneError const&) {
-        continue;  // such as one that takes no field in t
-      }
-      try {
-        auto const in_pass = scene_of(fmt::format(plain, "moments = [1]", method->word, more));
-        // Some move each spin in its own anisotropy, and extrapolate the rest.
-        bool const extrapolates = method->word.starts_with("fx");
-        double const allowed =
-            extrapolates ? 1e-4 : (method->adaptive ? 1e4 : 1e3) * epsilon(precision);
-        EXPECT_LT(largest_distance(end_of(*usual, precision), end_of(in_pass, precision)), allowed);
-        auto const energy =
-            SceneRun::open(in_pass, {.precision = precision})->sample().energy.value;
-        EXPECT_NEAR(energy, SceneRun::open(*usual, {.precision = precision})->sample().energy.value,
-                    1e3 * epsilon(precision));
-        ++compared;
-      } catch (io::SceneError const& error) {
-        EXPECT_NE(std::string(error.what()).find("another method"), std::string::npos)
-            << error.what();
-        ++refused;
-      }
-    }
-  EXPECT_GT(compared, 40);
-  EXPECT_LT(refused, 20);
-}
-
-// Half a film without spins is half a film, and what is frozen stays.
-TEST(CrystalScenes, SitesWithoutSpinsAreNone) {
-  auto const film = [](std::string const& lattice, std::string const& method) {
-    return scene_of(fmt::format(R"toml(
-[system]
-kind = "llg"
-damping = 0.1
-[lattice]
-{}
-[field]
-exchange = 0.5
-dmi = {{ bulk = 0.2 }}
-anisotropy = {{ cubic = 0.4, axes = [[1, 2, 0], [0, 0, 1]] }}
-applied = ["0.3*cos(2*t)", 0, 0.2]
-[torque]
-zhang_li = {{ velocity = [0.1, 0.05, 0], nonadiabaticity = 0.2 }}
-slonczewski = {{ damping_like = "0.1*t", field_like = 0.2, polarization = [0, 1, 1] }}
-[initial]
-expression = ["cos(i)", "sin(2*i+j)", "j-1.5"]
-[integrator]
-method = "{}"
-dt = 0.02
-steps = 50
-{}
-)toml",
-                                lattice, method,
-                                io::find_method(method)->adaptive ? "tolerance = 1e-8" : ""));
-  };
-  int compared = 0;
-  for (auto const* const method : io::methods()) {
-    if (method->automatic) continue;
-    std::optional<io::Scene> half, whole;
-    try {
-      half = film("shape = [9, 4]", std::string(method->word));
-      whole = film("shape = [19, 4]\noccupied = 'i < 9'", std::string(method->word));
-    } catch (io::SceneError const&) {
-      continue;
-    }
-    SCOPED_TRACE(method->word);
-    auto const small = end_of(*half, Precision::double_precision);
-    auto const run = SceneRun::open(*whole, {});
-    run->advance(50);
-    auto const large = spins_of(*run);
-    double largest = 0;
-    for (std::size_t j = 0; j < 4; ++j)
-      for (std::size_t i = 0; i < 19; ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-          double const there = large[3 * (19 * j + i) + c];
-          largest = std::max(largest, std::abs(there - (i < 9 ? small[3 * (9 * j + i) + c] : 0)));
-        }
-    EXPECT_LT(largest, method->adaptive ? 1e-6 : 1e-13);
-    auto const of_half = SceneRun::open(*half, {})->sample();
-    auto const of_whole = SceneRun::open(*whole, {})->sample();
-    EXPECT_NEAR(of_whole.energy.value, of_half.energy.value, 1e-12);
-    EXPECT_NEAR(of_whole.magnetization.y, of_half.magnetization.y, 1e-14);
-    EXPECT_LT(of_whole.norm_defect, 1e-15);
-    ++compared;
-  }
-  EXPECT_GE(compared, 19);
 }
 
 TEST(CrystalScenes, FrozenSpinsStay) {
@@ -411,62 +261,6 @@ steps = 2000
     EXPECT_GT(errors[0] / errors[1], 3.6);
     EXPECT_LT(errors[0] / errors[1], 4.4);
     EXPECT_LT(std::abs((4 * errors[1] - errors[0]) / 3), 1e-3 * expected);
-  }
-}
-
-// Constants by expressions that do not differ are constants, and a jump of the exchange is that of
-// the library.
-TEST(CrystalScenes, NumbersOfSites) {
-  auto const scene = [](std::string const& damping, std::string const& field) {
-    return scene_of(fmt::format(R"toml(
-[system]
-kind = "llg"
-damping = {}
-[lattice]
-shape = [19, 4, 2]
-spacing = [0.8, 1, 1.25]
-boundary = ["open", "periodic", "open"]
-[field]
-{}
-[initial]
-random = {{ seed = 5 }}
-[integrator]
-method = "rkmk4"
-dt = 0.02
-steps = 50
-)toml",
-                                damping, field));
-  };
-  std::pair<io::Scene, io::Scene> const same[] = {
-      {scene("0.1",
-             "exchange = 0.5\ndmi = { bulk = 0.2 }\n"
-             "anisotropy = { constant = 0.4, axis = [1, 2, 3] }"),
-       scene("'0.1+0*x'",
-             "exchange = '0.5+0*i'\ndmi = { bulk = '0.2+0*j' }\n"
-             "anisotropy = { constant = '0.4+0*k', axis = [1, 2, 3] }")},
-      {scene("0.1", "exchange = 0.5\ndmi = { interfacial = 0.2, normal = [0, 1, 1] }"),
-       scene("'0.1+0*x'",
-             "exchange = '0.5+0*i'\ndmi = { interfacial = '0.2', normal = [0, 1, 1] }")},
-      {scene("'0.2*(i<9)'", "applied = [0, 0, 1]"), scene("'(i<9)/5'", "applied = [0, 0, 1]")}};
-  for (auto const& [uniform, by_site] : same)
-    for (auto const precision : precisions) {
-      EXPECT_LT(largest_distance(end_of(uniform, precision), end_of(by_site, precision)),
-                1e3 * epsilon(precision));
-      EXPECT_NEAR(SceneRun::open(uniform, {.precision = precision})->sample().energy.value,
-                  SceneRun::open(by_site, {.precision = precision})->sample().energy.value,
-                  1e4 * epsilon(precision));
-    }
-  // Spins without damping keep their height in a field, the others do not.
-  auto const run = SceneRun::open(scene("'0.2*(i<9)'", "applied = [0, 0, 1]"), {});
-  auto const before = spins_of(*run);
-  run->advance(50);
-  auto const after = spins_of(*run);
-  for (std::size_t site = 0; site < before.size() / 3; ++site) {
-    double const rise = after[3 * site + 2] - before[3 * site + 2];
-    if (site % 19 < 9)
-      EXPECT_GT(rise, 0) << site;
-    else
-      EXPECT_NEAR(rise, 0, 1e-14) << site;
   }
 }
 
