@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Spin waves of crystals whose frequencies are known. Cones of any opening turn rigidly where all
 // sublattices have the same amplitude, so these are exact beyond small amplitudes.
+#include "../support/antiferromagnet.hpp"
 #include "../support/evaluate.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -44,10 +45,11 @@ class Magnons : public ::testing::Test {
   }
 
   /// Starts with the transverse part wave(cell, site) of each spin, and looks for it turned by
-  /// frequency * end.
+  /// frequency * end. Spins of the site `down` of a cell have m_z < 0.
   template <class Field>
   void expect_turns(Crystal const& crystal, Cells const& cells, Field const& field,
-                    std::function<Complex(Cells const&, int)> const& wave, double frequency) {
+                    std::function<Complex(Cells const&, int)> const& wave, double frequency,
+                    int down = -1) {
     auto const lattice = crystal.lattice(cells, closed);
     auto const sites = static_cast<int>(crystal.basis.size());
     std::vector<double> start;
@@ -55,9 +57,11 @@ class Magnons : public ::testing::Test {
     for (std::int64_t plane = 0; plane < lattice.shape[2]; ++plane)
       for (std::int64_t j = 0; j < cells[1]; ++j)
         for (std::int64_t i = 0; i < cells[0]; ++i) {
-          auto const a = wave({i, j, plane / sites}, static_cast<int>(plane % sites));
+          auto const site = static_cast<int>(plane % sites);
+          auto const a = wave({i, j, plane / sites}, site);
+          double const z = std::sqrt(1 - std::norm(a));
           amplitude.push_back(a);
-          start.insert(start.end(), {a.real(), a.imag(), std::sqrt(1 - std::norm(a))});
+          start.insert(start.end(), {a.real(), a.imag(), site == down ? -z : z});
         }
     // A quarter of a radian a step in the largest field, and a turn that shows the wave.
     double const end = std::min(2.3 / std::abs(frequency), 20.0);
@@ -187,6 +191,36 @@ TYPED_TEST(Magnons, OfAKagome) {
       crystal, cells, field,
       [&](Cells const&, int site) { return std::polar(std::sin(opening), -2 * pi / 3 * site); },
       6 * 0.75 * std::cos(opening));
+}
+
+// omega = sqrt((h + K)^2 - (h gamma)^2) at small openings, with h = 8 |J| and gamma = cos(kx / 2)
+// cos(ky / 2) cos(kz / 2): to the right about the spins up, to the left about those down.
+TYPED_TEST(Magnons, OfAnAntiferromagnet) {
+  Cells const cells{24, 6, 5};
+  constexpr double J = -0.75, h = 8 * -J, K = 0.5;
+  auto const crystal = Crystal::bcc();
+  using Couplings = PairCouplings<typename TestFixture::Memory>;
+  EffectiveField const field{Couplings(crystal.lattice(cells, closed), bcc_bonds(J)),
+                             UniaxialAnisotropy(K, {0, 0, 1})};
+  for (Cells const& mode : {Cells{1, 0, 0}, {5, 2, 1}, {11, 1, 2}}) {
+    double k[3], gamma = 1;
+    for (int a = 0; a < 3; ++a) {
+      k[a] = 2 * pi * static_cast<double>(mode[a]) / static_cast<double>(cells[a]);
+      gamma *= std::cos(k[a] / 2);
+    }
+    auto const cone = AntiferromagneticCone::of(h, K, gamma, opening);
+    EXPECT_NEAR(AntiferromagneticCone::of(h, K, gamma, 1e-6).frequency,
+                AntiferromagneticCone::of_small_opening(h, K, gamma), 1e-11);
+    for (int const moving : {0, 1})  // more than the other
+      this->expect_turns(
+          crystal, cells, field,
+          [&](Cells const& cell, int site) {
+            auto const r = crystal.position(cell, static_cast<std::size_t>(site));
+            return std::polar(site == moving ? std::sin(opening) : cone.smaller,
+                              k[0] * r[0] + k[1] * r[1] + k[2] * r[2] + (site == moving ? 0 : pi));
+          },
+          moving == 0 ? cone.frequency : -cone.frequency, 1);
+  }
 }
 
 // Two sublattices turn about L = sum of (mu / g) m, which stays, at 8 J g g' |L| / (mu mu').
