@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Scenes of crystals, sublattices and currents against closed forms.
+#include "../support/antiferromagnet.hpp"
 #include "scenes_of_text.hpp"
 
 #include <cayspin/io/method.hpp>
@@ -80,6 +81,49 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
       double const allowed =
           precision == Precision::double_precision ? 1e-10 : 100 * 100 * epsilon(precision);
       EXPECT_LT(largest_distance(found, spins_of(*expected)), allowed);
+    }
+}
+
+// Neel's state of a simple cubic lattice: omega = sqrt((h + K)^2 - (h gamma)^2) at small openings,
+// to the right about the spins up, to the left about those down.
+TEST(CrystalScenes, ConesOfAnAntiferromagnetTurnAtTheFrequencyOfTheirMagnon) {
+  constexpr double h = 6 * 0.6, K = 0.3, opening = 0.7, end = 2;
+  double const gamma = (std::cos(2 * pi / 8) + std::cos(2 * pi / 6) + std::cos(2 * pi / 4)) / 3;
+  auto const cone = cayspin::test::AntiferromagneticCone::of(h, K, gamma, opening);
+  std::string const up = "cos(pi*(i + j + k))";
+  for (bool const up_opens_more : {true, false})
+    for (auto const precision : precisions) {
+      SCOPED_TRACE(fmt::format("{}, {} precision", up_opens_more, to_string(precision)));
+      auto const scene = [&](double turned) {
+        auto const phase =
+            fmt::format("(2*pi*(i/8 + j/6 + k/4) + ({} > 0 ? 0 : pi) + {:.17g})", up, turned);
+        auto const sine = fmt::format("({} {} 0 ? {:.17g} : {:.17g})", up,
+                                      up_opens_more ? '>' : '<', std::sin(opening), cone.smaller);
+        return scene_of(fmt::format(
+            R"toml(
+[system]
+kind = "llg"
+damping = 0
+[lattice]
+shape = [8, 6, 4]
+boundary = "periodic"
+[field]
+couplings = {{ shells = [-0.6] }}
+anisotropy = {{ constant = {0}, axis = [0, 0, 1] }}
+[initial]
+expression = ["{2}*cos{1}", "{2}*sin{1}", "{3}*sqrt(1 - {2}^2)"]
+[integrator]
+method = "rkmk8"
+dt = 0.02
+steps = 100
+)toml",
+            K, phase, sine, up));
+      };
+      double const rate = up_opens_more ? cone.frequency : -cone.frequency;
+      auto const expected = SceneRun::open(scene(rate * end), {});
+      double const allowed =
+          precision == Precision::double_precision ? 1e-11 : 100 * 100 * epsilon(precision);
+      EXPECT_LT(largest_distance(end_of(scene(0), precision), spins_of(*expected)), allowed);
     }
 }
 
