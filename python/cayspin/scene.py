@@ -13,8 +13,21 @@ from cayspin import _cayspin, arguments, sites, toml_text
 _OWN = ("applied", "nonlocal")
 
 
+def _without_arrays(thing, key, arrays):
+    """A value of a scene, whose arrays of numbers of sites go into `arrays` by their keys."""
+    if isinstance(thing, np.ndarray) and thing.ndim in (3, 4):
+        arrays[key] = arguments.numbers(thing, key)
+        return {"given": True}
+    if isinstance(thing, dict):
+        return {name: _without_arrays(one, f"{key}.{name}", arrays) for name, one in thing.items()}
+    if isinstance(thing, (list, tuple)):
+        return [_without_arrays(one, f"{key}[{n}]", arrays) for n, one in enumerate(thing)]
+    return thing
+
+
 def _split(tables):
-    """The tables without what no text holds: the spins of the start, and functions of the field."""
+    """The tables without what no text holds: the spins of the start, functions of the field, and
+    arrays of numbers of sites."""
     tables = {name: table for name, table in tables.items() if table is not None}
     spins, own = None, {}
     initial = tables.get("initial")
@@ -27,7 +40,9 @@ def _split(tables):
     if isinstance(tables.get("field"), dict):
         own = {key: f for key, f in tables["field"].items() if key in _OWN and callable(f)}
         tables["field"] = {key: f for key, f in tables["field"].items() if key not in own}
-    return tables, spins, own
+    arrays = {}
+    tables = {name: _without_arrays(table, name, arrays) for name, table in tables.items()}
+    return tables, spins, own, arrays
 
 
 def _as_planes(spins):
@@ -35,6 +50,12 @@ def _as_planes(spins):
     if spins is None or spins.ndim == 4:
         return spins
     return spins[0] if len(spins) == 1 else sites.by_plane(spins, len(spins))
+
+
+def _flat(arrays):
+    """Numbers of sites as the library has them."""
+    return {key: np.ascontiguousarray(_as_planes(array[..., None]), np.float64).ravel()
+            for key, array in arrays.items()}
 
 
 def _nonlocal_by_planes(function, shape, cell_sites):
@@ -60,6 +81,8 @@ class Scene:
     `field["applied"]` may be a function of t that returns three numbers: the uniform field.
     `field["nonlocal"]` may be a function of (spins, t) that returns H of all sites as an array
     (nz, ny, nx, 3). Arrays of a crystal with several sites in a cell are (site, nz, ny, nx, 3).
+    Numbers of sites may be arrays (nz, ny, nx), of a crystal (site, nz, ny, nx):
+    lattice={"shape": [20, 20], "occupied": mask}.
     The function is called before each stage with a copy of the spins, and H has to be linear
     in them and symmetric: its energy is -sum m.H / 2.
     Without `end` and `steps` in `integrator` the scene has no end. Without `integrator` it is for
@@ -73,31 +96,36 @@ class Scene:
                  output: dict | None = None, **tables: Any):
         if isinstance(integrator, dict) and not {"end", "steps"} & set(integrator):
             integrator = {**integrator, "steps": 0}
-        typed, spins, own = _split({**tables, "system": system, "lattice": lattice, "field": field,
+        typed, spins, own, arrays = _split({**tables, "system": system, "lattice": lattice, "field": field,
                                     "initial": initial, "integrator": integrator, "output": output})
-        scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], _as_planes(spins))
-        self._finish(scene, own, None, spins)
+        scene = _cayspin.Scene.parse(toml_text.document(typed), "Scene", [], _as_planes(spins),
+                                     _flat(arrays))
+        self._finish(scene, own, None, spins, arrays)
 
     @classmethod
     def from_file(cls, path: str | os.PathLike, **overrides: Any) -> Scene:
         """The scene of a TOML file, with keys changed: from_file("film.toml",
         integrator={"dt": 0.1}). `initial` replaces the whole table; it may be an array."""
-        typed, spins, own = _split(overrides)
+        typed, spins, own, arrays = _split(overrides)
         self = cls.__new__(cls)
         changed = toml_text.overrides(typed)
         try:
             scene = _cayspin.Scene.read(arguments.file_name(path, "from_file"), changed,
-                                        _as_planes(spins))
+                                        _as_planes(spins), _flat(arrays))
         except _cayspin.SceneError as error:
             raise _cayspin.SceneError(str(error).removeprefix("--set ")) from None
-        self._finish(scene, own, changed, spins)
+        self._finish(scene, own, changed, spins, arrays)
         return self
 
-    def _finish(self, scene, own, overrides, spins):
+    def _finish(self, scene, own, overrides, spins, arrays):
         shape = sites.shape_by_site(scene.shape, scene.cell_sites)
         if spins is not None and spins.shape[:-1] != shape:
             raise _cayspin.SceneError(f"initial: an array of shape {spins.shape}; accepted: "
                                       f"{(*shape, 3)}")
+        for key, array in arrays.items():
+            if array.shape != shape:
+                raise _cayspin.SceneError(f"{key}: an array of shape {array.shape}; accepted: "
+                                          f"{shape}")
         if own:
             nonlocal_ = own.get("nonlocal")
             if nonlocal_ is not None and scene.cell_sites > 1:
@@ -107,6 +135,13 @@ class Scene:
         self._only_here = ["a function in field"] * bool(own)
         if scene.given_start:
             self._only_here.append("an array as initial")
+        self._only_here += [f"an array as {key}" for key in arrays]
+
+    def at_sites(self, expression: str) -> np.ndarray:
+        """The values of an expression at the sites, (nz, ny, nx), of a crystal with several sites
+        in a cell (site, nz, ny, nx): at_sites("grain(20, 1)") numbers the grains."""
+        values = self._scene.at_sites(arguments.word(expression, "at_sites"))
+        return sites.by_site(values, self._scene.cell_sites)
 
     def _with(self, overrides):
         changed = Scene.__new__(Scene)
@@ -124,6 +159,16 @@ class Scene:
     def shape(self) -> tuple[int, ...]:
         """(nz, ny, nx), of a crystal with several sites in a cell (site, nz, ny, nx)"""
         return sites.shape_by_site(self._scene.shape, self._scene.cell_sites)
+
+    @property
+    def cell(self) -> np.ndarray:
+        """The three vectors of the cell, (3, 3), in the scene's unit of length"""
+        return np.array(self._scene.cell)
+
+    @property
+    def basis(self) -> np.ndarray:
+        """The sites of the cell, (site, 3), in fractions of its vectors"""
+        return np.array(self._scene.basis)
 
     @property
     def method(self) -> str | None:

@@ -67,6 +67,15 @@ io::HostVectors vectors_of(NumbersIn const& array) {
   return vectors;
 }
 
+SiteNumbersOut array_of(std::vector<double> numbers, std::array<std::int64_t, 3> const& shape) {
+  auto kept = std::make_unique<std::vector<double>>(std::move(numbers));
+  nb::capsule const owner(
+      kept.get(), [](void* held) noexcept { delete static_cast<std::vector<double>*>(held); });
+  auto* const data = kept.release()->data();
+  auto const extent = [&](std::size_t axis) { return static_cast<std::size_t>(shape[axis]); };
+  return {data, {extent(0), extent(1), extent(2)}, owner};
+}
+
 NumbersOut array_of(simulation::LentVectors const& lent) {
   using Owner = std::shared_ptr<void const>;
   auto const& vectors = lent.vectors;

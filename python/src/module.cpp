@@ -12,12 +12,15 @@
 #include <fmt/format.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <iterator>
+#include <map>
+#include <stdexcept>
 
 namespace cayspin::python {
 namespace {
@@ -27,9 +30,27 @@ using namespace nb::literals;
 
 using Overrides = std::vector<std::string>;
 
-std::shared_ptr<std::vector<double> const> given(std::optional<NumbersIn> const& spins) {
-  if (!spins) return nullptr;
-  return std::make_shared<std::vector<double> const>(packed<double>(vectors_of(*spins)));
+using ArraysIn = std::map<std::string, SiteNumbersIn>;
+
+io::Given given(std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
+  io::Given given;
+  if (spins)
+    given.spins = std::make_shared<std::vector<double> const>(packed<double>(vectors_of(*spins)));
+  for (auto const& [key, array] : numbers)
+    given.numbers[key] =
+        std::make_shared<std::vector<double> const>(array.data(), array.data() + array.size());
+  return given;
+}
+
+SiteNumbersOut at_sites(io::Scene const& scene, std::string const& expression) {
+  auto const& [nx, ny, nz] = scene.lattice.shape;
+  try {
+    auto values = io::numbers_of_sites(scene, {expression, {}, {}}, "at_sites",
+                                       {{0, 0, 0}, scene.lattice.shape});
+    return array_of(std::move(values), {nz, ny, nx});
+  } catch (std::invalid_argument const& error) {
+    throw UsageError(std::string("at_sites: ") + error.what());
+  }
 }
 
 Precision precision_of(std::string const& name) {
@@ -85,18 +106,19 @@ void define_scene(nb::module_& module) {
       .def_static(
           "read",
           [](std::filesystem::path const& path, Overrides const& overrides,
-             std::optional<NumbersIn> const& spins) {
-            return with_one_field(io::read_scene_to_run_or_relax(path, overrides, given(spins)));
+             std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
+            return with_one_field(
+                io::read_scene_to_run_or_relax(path, overrides, given(spins, numbers)));
           },
-          "path"_a, "overrides"_a, "spins"_a.none())
+          "path"_a, "overrides"_a, "spins"_a.none(), "numbers"_a)
       .def_static(
           "parse",
           [](std::string const& text, std::filesystem::path const& name, Overrides const& overrides,
-             std::optional<NumbersIn> const& spins) {
+             std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
             return with_one_field(
-                io::parse_scene_to_run_or_relax(text, name, overrides, given(spins)));
+                io::parse_scene_to_run_or_relax(text, name, overrides, given(spins, numbers)));
           },
-          "text"_a, "name"_a, "overrides"_a, "spins"_a.none())
+          "text"_a, "name"_a, "overrides"_a, "spins"_a.none(), "numbers"_a)
       .def("with_overrides",
            [](io::Scene const& scene, Overrides const& overrides) {
              return io::with_overrides(scene, overrides);
@@ -114,6 +136,7 @@ void define_scene(nb::module_& module) {
             io::check_combination(scene);
           },
           "uniform"_a.none(), "nonlocal_"_a.none())
+      .def("at_sites", at_sites)
       .def_prop_ro("given_start",
                    [](io::Scene const& scene) {
                      return std::holds_alternative<io::GivenStart>(scene.initial);
@@ -127,6 +150,15 @@ void define_scene(nb::module_& module) {
                    })
       .def_prop_ro("cell_sites",
                    [](io::Scene const& scene) { return std::ssize(scene.lattice.basis); })
+      .def_prop_ro("cell",
+                   [](io::Scene const& scene) {
+                     auto cell = scene.lattice.cell;
+                     for (auto& vector : cell)
+                       for (std::size_t c = 0; c < 3; ++c)
+                         vector[c] *= scene.lattice.spacing[c] * scene.units.length;
+                     return cell;
+                   })
+      .def_prop_ro("basis", [](io::Scene const& scene) { return scene.lattice.basis; })
       .def_prop_ro("has_integrator", io::has_integrator)
       .def_prop_ro(
           "method",

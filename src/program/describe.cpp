@@ -17,6 +17,7 @@ std::string vector_text(io::Triple const& v) {
 }
 
 std::string text_of(io::SiteNumbers const& numbers) {
+  if (numbers.given) return "numbers of the program";
   return numbers.file.empty() ? numbers.expression : numbers.file.string();
 }
 
@@ -57,8 +58,8 @@ std::string lattice_text(io::Scene const& scene) {
                           io::to_string(lattice.boundary[axis]));
   if (!lattice.moments.empty()) more += "; moments " + numbers_text(lattice.moments);
   if (!lattice.gyromagnetic.empty()) more += "; gyromagnetic " + numbers_text(lattice.gyromagnetic);
-  if (!lattice.occupied.empty()) more += "; occupied where " + lattice.occupied;
-  if (!lattice.frozen.empty()) more += "; frozen where " + lattice.frozen;
+  if (lattice.occupied.there()) more += "; occupied where " + text_of(lattice.occupied);
+  if (lattice.frozen.there()) more += "; frozen where " + text_of(lattice.frozen);
   return fmt::format("{} = {} sites{}", cells_text(lattice.shape, cell_sites), io::sites(scene),
                      more);
 }

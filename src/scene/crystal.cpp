@@ -74,12 +74,6 @@ std::vector<double> read_numbers_of_sites(Item const& item, std::size_t sites) {
 
 }  // namespace
 
-std::vector<std::string> site_variables(Lattice const& lattice) {
-  std::vector<std::string> variables{"x", "y", "z", "i", "j", "k"};
-  if (lattice.basis.size() > 1) variables.emplace_back("s");
-  return variables;
-}
-
 void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
   auto const use = [&](Crystal const& crystal) {
     lattice.cell = crystal.cell;
@@ -100,19 +94,6 @@ void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
     lattice.moments = read_numbers_of_sites(*item, sites);
   if (auto const item = table.find("gyromagnetic"))
     lattice.gyromagnetic = read_numbers_of_sites(*item, sites);
-  for (auto const& [name, member] :
-       {std::pair{"occupied", &Lattice::occupied}, {"frozen", &Lattice::frozen}}) {
-    auto const item = table.find(name);
-    if (!item) continue;
-    auto const variables = site_variables(lattice);
-    lattice.*member =
-        string(*item, fmt::format("a string with an expression in {}", fmt::join(variables, ", ")));
-    try {
-      Expression(lattice.*member, variables);
-    } catch (std::invalid_argument const& error) {
-      item->fail(error.what());
-    }
-  }
 }
 
 void check_crystal(Scene const& scene) {

@@ -38,14 +38,28 @@ struct Expression::Compiled {
   std::string text;
   std::vector<std::string> variables;
   std::vector<double> values;
+  struct Function {
+    ExpressionFunction function;
+    Compiled const* compiled;
+  };
+  std::vector<Function> functions;
+  bool is_ready = false;  // while the text is compiled, functions have no value yet
   mu::Parser parser;
+
+  static double call(void* called, double a, double b) {
+    auto const& [function, compiled] = *static_cast<Function const*>(called);
+    return compiled->is_ready ? function.value(a, b, compiled->values.data()) : 0;
+  }
 };
 
-Expression::Expression(std::string text, std::vector<std::string> variables)
+Expression::Expression(std::string text, std::vector<std::string> variables,
+                       std::vector<ExpressionFunction> functions)
     : compiled_(std::make_unique<Compiled>()) {
   compiled_->text = std::move(text);
   compiled_->variables = std::move(variables);
   compiled_->values.resize(compiled_->variables.size());
+  for (auto& function : functions)
+    compiled_->functions.push_back({std::move(function), compiled_.get()});
   auto const refuse = [&](std::string_view reason) {
     return std::invalid_argument(
         in_one_line(fmt::format("expression \"{}\": {}; accepted: a formula in {}", compiled_->text,
@@ -57,6 +71,8 @@ Expression::Expression(std::string text, std::vector<std::string> variables)
     for (std::size_t n = 0; n < compiled_->variables.size(); ++n) {
       parser.DefineVar(compiled_->variables[n], &compiled_->values[n]);
     }
+    for (auto& function : compiled_->functions)
+      parser.DefineFunUserData(function.function.name, &Compiled::call, &function, false);
     parser.SetExpr(compiled_->text);
     parser.Eval();
   } catch (mu::ParserError const& error) {
@@ -64,10 +80,16 @@ Expression::Expression(std::string text, std::vector<std::string> variables)
   }
   if (parser.GetNumResults() != 1) throw refuse("gives several values");
   if (assigns(compiled_->text)) throw refuse("assignment has no meaning here");
+  compiled_->is_ready = true;
 }
 
 Expression::Expression(Expression const& other)
-    : Expression(other.compiled_->text, other.compiled_->variables) {}
+    : Expression(other.compiled_->text, other.compiled_->variables, [&] {
+        std::vector<ExpressionFunction> functions;
+        for (auto const& [function, unused] : other.compiled_->functions)
+          functions.push_back(function);
+        return functions;
+      }()) {}
 Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression other) noexcept {
   compiled_ = std::move(other.compiled_);
@@ -77,7 +99,13 @@ Expression::~Expression() = default;
 
 double Expression::operator()(double const* values) const {
   std::copy_n(values, compiled_->values.size(), compiled_->values.begin());
-  double const result = compiled_->parser.Eval();
+  double result = 0;
+  try {
+    result = compiled_->parser.Eval();
+  } catch (std::runtime_error const& error) {
+    throw std::runtime_error(
+        in_one_line(fmt::format("expression \"{}\": {}", compiled_->text, error.what())));
+  }
   if (std::isfinite(result)) return result;
   std::string at;
   for (std::size_t n = 0; n < compiled_->values.size(); ++n) {

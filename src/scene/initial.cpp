@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
 #include "sections.hpp"
+#include "site_expression.hpp"
 #include "start.hpp"
-
-#include <cayspin/io/expression.hpp>
 
 #include <fmt/format.h>
 
@@ -19,7 +17,7 @@ ExpressionStart read_expressions(Item const& item, Lattice const& lattice) {
   for (std::size_t component = 0; component < 3; ++component) {
     auto text = string(three[component], accepted);
     try {
-      Expression(text, site_variables(lattice));
+      site_expression(text, lattice);
     } catch (std::invalid_argument const& error) {
       three[component].fail(error.what());
     }
@@ -39,9 +37,9 @@ GivenStart read_given(Item const& item, Scene const& scene) {
   constexpr std::string_view accepted =
       "uniform, expression, random or file; a run of such a scene has its start in its file";
   if (!boolean(item)) item.fail("false has no meaning", "true, or another key");
-  if (!scene.given_spins)
+  if (!scene.given.spins)
     item.fail("stands for spins that a program gives, and none did", accepted);
-  return {scene.given_spins};
+  return {scene.given.spins};
 }
 
 }  // namespace

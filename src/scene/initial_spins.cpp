@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
+#include "random_bits.hpp"
+#include "site_expression.hpp"
 #include "start.hpp"
 #include "start_file.hpp"
 
-#include <cayspin/io/expression.hpp>
 #include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
@@ -21,16 +21,6 @@ Site site_at(SiteBox const& box, std::size_t number) {
   auto const n = static_cast<std::int64_t>(number);
   auto const& [nx, ny, nz] = box.extent;
   return {box.begin[0] + n % nx, box.begin[1] + n / nx % ny, box.begin[2] + n / nx / ny};
-}
-
-// Value number `counter` of the SplitMix64 sequence (Steele, Lea, Flood 2014, doi
-// 10.1145/2660193.2660195), reached directly, as a number in [0, 1).
-double random_number(std::uint64_t start, std::uint64_t counter) {
-  std::uint64_t z = start + (counter + 1) * 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-  z ^= z >> 31U;
-  return std::ldexp(static_cast<double>(z >> 11U), -53);
 }
 
 struct Start {
@@ -72,7 +62,7 @@ struct Start {
   void operator()(ExpressionStart const& start) const {
     std::vector<Expression> components;
     for (auto const& text : start.components) {
-      components.emplace_back(text, detail::site_variables(scene.lattice));
+      components.push_back(detail::site_expression(text, scene));
     }
     for (std::size_t site = 0; site < size(); ++site) {
       auto const variables = detail::site_values(scene.lattice, site_at(box, site));
@@ -93,8 +83,8 @@ struct Start {
     for (std::size_t site = 0; site < size(); ++site) {
       auto const [i, j, k] = site_at(box, site);
       auto const counter = static_cast<std::uint64_t>((k * shape[1] + j) * shape[0] + i);
-      double const z = 2 * random_number(seed, 2 * counter) - 1;
-      double const azimuth = 2 * std::numbers::pi * random_number(seed, 2 * counter + 1);
+      double const z = 2 * detail::random_number(seed, 2 * counter) - 1;
+      double const azimuth = 2 * std::numbers::pi * detail::random_number(seed, 2 * counter + 1);
       double const radius = std::sqrt((1 - z) * (1 + z));
       set_normalised(site, {radius * std::cos(azimuth), radius * std::sin(azimuth), z},
                      "initial.random");

@@ -101,11 +101,10 @@ bool write_cell(toml::table& document, Scene const& scene) {
 }
 
 Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path const& path,
-                      std::vector<std::string> const& overrides,
-                      std::shared_ptr<std::vector<double> const> given_spins) {
+                      std::vector<std::string> const& overrides, Given given) {
   Scene scene;
   scene.path = path;
-  scene.given_spins = std::move(given_spins);
+  scene.given = std::move(given);
   scene.text = std::move(text);
   auto document = parse(scene.text, path);
   for (auto const& assignment : overrides) detail::apply_override(document, assignment);
@@ -116,6 +115,7 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   scene.units.si = detail::read_is_si(root);
   scene.system = detail::read_system(root);
   scene.lattice = detail::read_lattice(root, scene.system.kind);
+  detail::read_occupied(root, scene);
   detail::read_dampings(root, scene);
   scene.field = detail::read_field(root, scene.system.kind);
   scene.field.torque = detail::read_torque(root, scene.system.kind);
@@ -139,9 +139,8 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
 }  // namespace
 
 Scene parse_scene(std::string text, std::filesystem::path const& path,
-                  std::vector<std::string> const& overrides,
-                  std::shared_ptr<std::vector<double> const> given_spins) {
-  return parse_scene_for(Purpose::run, std::move(text), path, overrides, std::move(given_spins));
+                  std::vector<std::string> const& overrides, Given given) {
+  return parse_scene_for(Purpose::run, std::move(text), path, overrides, std::move(given));
 }
 
 Scene read_scene_to_relax(std::filesystem::path const& path,
@@ -150,15 +149,13 @@ Scene read_scene_to_relax(std::filesystem::path const& path,
 }
 
 Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const& name,
-                                  std::vector<std::string> const& overrides,
-                                  std::shared_ptr<std::vector<double> const> given_spins) {
-  return parse_scene_for(Purpose::any, std::move(text), name, overrides, std::move(given_spins));
+                                  std::vector<std::string> const& overrides, Given given) {
+  return parse_scene_for(Purpose::any, std::move(text), name, overrides, std::move(given));
 }
 
 Scene read_scene_to_run_or_relax(std::filesystem::path const& path,
-                                 std::vector<std::string> const& overrides,
-                                 std::shared_ptr<std::vector<double> const> given_spins) {
-  return parse_scene_to_run_or_relax(read_text(path), path, overrides, std::move(given_spins));
+                                 std::vector<std::string> const& overrides, Given given) {
+  return parse_scene_to_run_or_relax(read_text(path), path, overrides, std::move(given));
 }
 
 bool has_integrator(Scene const& scene) { return scene.places.contains("integrator"); }
@@ -178,12 +175,12 @@ std::vector<Field> fields_in_turn(Scene const& scene) {
 }
 
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides,
-                 std::shared_ptr<std::vector<double> const> given_spins) {
-  return parse_scene(read_text(path), path, overrides, std::move(given_spins));
+                 Given given) {
+  return parse_scene(read_text(path), path, overrides, std::move(given));
 }
 
 Scene with_overrides(Scene const& scene, std::vector<std::string> const& overrides) {
-  auto changed = parse_scene(scene.text, scene.path, overrides, scene.given_spins);
+  auto changed = parse_scene(scene.text, scene.path, overrides, scene.given);
   changed.places = scene.places;
   changed.field.own = scene.field.own;
   return changed;

@@ -13,6 +13,8 @@ void convert_to_reduced(Table const& root);
 std::string scaled_expression(std::string_view text, double time, double field);
 
 System read_system(Table const& root);
+/// Where spins are, and where they do not move: after the lattice.
+void read_occupied(Table const& root, Scene& scene);
 /// Those that differ from site to site: after the lattice.
 void read_dampings(Table const& root, Scene& scene);
 /// A rigid body takes neither spacing nor boundary, and one extent.

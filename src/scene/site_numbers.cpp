@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "site_numbers.hpp"
 
-#include "crystal.hpp"
 #include "hdf5/real_dataset.hpp"
 #include "hdf5/survives.hpp"
+#include "site_expression.hpp"
 
 #include <cayspin/io/scene.hpp>
 
@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace cayspin::inline v0_1::io {
@@ -52,21 +53,21 @@ class ValuesOfSites {
   RealDataset dataset_;
 };
 
-}  // namespace
-
-namespace detail {
+bool are_finite(std::vector<double> const& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
 
 std::vector<double> values_at_sites(Scene const& scene, std::string const& text,
                                     std::string_view key, SiteBox const& box) {
-  Expression const expression(text, site_variables(scene.lattice));
+  auto const expression = detail::site_expression(text, scene);
   auto const& [nx, ny, nz] = box.extent;
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(nx * ny * nz));
   for (std::int64_t k = 0; k < nz; ++k)
     for (std::int64_t j = 0; j < ny; ++j)
       for (std::int64_t i = 0; i < nx; ++i) {
-        auto const variables =
-            site_values(scene.lattice, {box.begin[0] + i, box.begin[1] + j, box.begin[2] + k});
+        auto const variables = detail::site_values(
+            scene.lattice, {box.begin[0] + i, box.begin[1] + j, box.begin[2] + k});
         try {
           values.push_back(expression(variables.data()));
         } catch (std::runtime_error const& error) {
@@ -76,17 +77,35 @@ std::vector<double> values_at_sites(Scene const& scene, std::string const& text,
   return values;
 }
 
+}  // namespace
+
+namespace detail {
+
+std::string accepted_site_numbers(Lattice const& lattice) {
+  return fmt::format("an expression in {}, or {{ file = \"NAME.h5\" }}",
+                     fmt::join(site_variables(lattice), ", "));
+}
+
 bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (item.node->is_table()) {
     Table const table(item, scene);
-    table.accept_only({"file"});
-    numbers.file = input_file(table, "file");
+    auto const given = table.find("given");
+    table.accept_only({given ? "given" : "file"});
+    if (given) {
+      if (!boolean(*given)) given->fail("false has no meaning", "file");
+      auto const found = scene.given.numbers.find(item.key);
+      if (found == scene.given.numbers.end())
+        given->fail("stands for numbers that a program gives, and none did", "file");
+      numbers.given = found->second;
+    } else {
+      numbers.file = input_file(table, "file");
+    }
     return true;
   }
   if (!item.node->is_string()) return false;
-  numbers.expression = string(item, "an expression in x, y, z, i, j, k");
+  numbers.expression = string(item, accepted_site_numbers(scene.lattice));
   try {
-    Expression(numbers.expression, site_variables(scene.lattice));
+    site_expression(numbers.expression, scene.lattice);
   } catch (std::invalid_argument const& error) {
     item.fail(error.what());
   }
@@ -95,8 +114,7 @@ bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
 
 double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (read_site_numbers(item, scene, numbers)) return 1;
-  return number(item,
-                "a finite number, an expression in x, y, z, i, j, k, or { file = \"NAME.h5\" }");
+  return number(item, "a finite number, " + accepted_site_numbers(scene.lattice));
 }
 
 void check_site_numbers(Scene const& scene) {
@@ -109,6 +127,8 @@ void check_site_numbers(Scene const& scene) {
     }
   };
   auto const& field = scene.field;
+  check(scene.lattice.occupied, "lattice.occupied");
+  check(scene.lattice.frozen, "lattice.frozen");
   check(scene.system.dampings, "system.damping");
   check(field.exchange_factors, "field.exchange");
   check(field.dmi_factors, "field.dmi");
@@ -119,11 +139,20 @@ void check_site_numbers(Scene const& scene) {
 
 std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numbers,
                                      std::string_view key, SiteBox const& box) {
-  if (numbers.file.empty()) return detail::values_at_sites(scene, numbers.expression, key, box);
+  if (numbers.given) {
+    if (std::ssize(*numbers.given) != sites(scene))
+      throw scene_error(scene, key,
+                        fmt::format("{} numbers were given; accepted: {}, one for each site",
+                                    numbers.given->size(), sites(scene)));
+    if (!are_finite(*numbers.given))
+      throw scene_error(scene, key, "a number that was given is not finite");
+    return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
+  }
+  if (numbers.file.empty()) return values_at_sites(scene, numbers.expression, key, box);
   try {
     auto const values = read_guarded(
         numbers.file, [&] { return ValuesOfSites(numbers.file, scene.lattice).in(box); });
-    if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+    if (!are_finite(values))
       throw std::runtime_error(numbers.file.string() + ": a value is not finite");
     return values;
   } catch (std::runtime_error const& error) {

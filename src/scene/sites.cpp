@@ -8,15 +8,16 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// 1 where an expression is not 0; nothing without one.
-std::vector<unsigned char> sites_where(Scene const& scene, std::string const& text,
+// 1 where numbers are not 0; nothing without them.
+std::vector<unsigned char> sites_where(Scene const& scene, SiteNumbers const& numbers,
                                        std::string_view key, SiteBox const& box) {
-  if (text.empty()) return {};
-  auto const values = detail::values_at_sites(scene, text, key, box);
+  if (!numbers.there()) return {};
+  auto const values = numbers_of_sites(scene, numbers, key, box);
   std::vector<unsigned char> where(values.size());
   std::ranges::transform(values, where.begin(), [](double value) { return value != 0 ? 1 : 0; });
   return where;
@@ -25,6 +26,15 @@ std::vector<unsigned char> sites_where(Scene const& scene, std::string const& te
 }  // namespace
 
 namespace detail {
+
+void read_occupied(Table const& root, Scene& scene) {
+  auto const lattice = root.table("lattice", "a table [lattice]");
+  for (auto const& [name, member] :
+       {std::pair{"occupied", &Lattice::occupied}, {"frozen", &Lattice::frozen}})
+    if (auto const item = lattice.find(name);
+        item && !read_site_numbers(*item, scene, scene.lattice.*member))
+      item->wrong_type(accepted_site_numbers(scene.lattice));
+}
 
 void refuse_in_si(Scene const& scene) {
   for (auto const* const key :
@@ -37,13 +47,14 @@ void refuse_in_si(Scene const& scene) {
 
 void require_occupied(Scene const& scene) {
   auto const& shape = scene.lattice.shape;
-  if (scene.lattice.occupied.empty()) return;
-  for (std::int64_t plane = 0; plane < shape[2]; ++plane) {
-    auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], 1}});
+  if (!scene.lattice.occupied.there()) return;
+  auto const at_once = scene.lattice.occupied.expression.empty() ? shape[2] : 1;
+  for (std::int64_t plane = 0; plane < shape[2]; plane += at_once) {
+    auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], at_once}});
     if (std::ranges::find(there, 1) != there.end()) return;
   }
   throw scene_error(scene, "lattice.occupied",
-                    "leaves no spin; accepted: an expression that is true somewhere");
+                    "leaves no spin; accepted: numbers that are not 0 somewhere");
 }
 
 }  // namespace detail
@@ -73,7 +84,7 @@ bool needs_pass(Scene const& scene) {
                            return term.site >= 0 || term.factors.there();
                          });
   return lattice.basis.size() > 1 || !lattice.moments.empty() || !lattice.gyromagnetic.empty() ||
-         !lattice.occupied.empty() || !lattice.frozen.empty() || !field.couplings.empty() ||
+         lattice.occupied.there() || lattice.frozen.there() || !field.couplings.empty() ||
          !field.couplings_file.empty() || !field.cubic_anisotropies.empty() || has_sites ||
          field.bulk_dmi || field.torque.zhang_li || field.torque.slonczewski;
 }

@@ -167,7 +167,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
       bulk_dmi_(lattice, bulk_constant(scene)),
       has_pairs_(std::ranges::max(pairs_.field_bounds()) > 0),
       has_bulk_dmi_(bulk_constant(scene) != 0),
-      has_vacancies_(!scene.lattice.occupied.empty()),
+      has_vacancies_(scene.lattice.occupied.there()),
       is_affine_(scene.field.cubic_anisotropies.empty() && !pairs_.has_biquadratic()),
       precession_(scene.system.precession),
       field_("FieldInPass::field", lattice),

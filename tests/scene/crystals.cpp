@@ -45,8 +45,8 @@ TEST(Crystals, EveryKeyArrives) {
   EXPECT_EQ(lattice.basis, (std::vector<Triple>{{0, 0, 0}, {0.5, 0.25, 0}}));
   EXPECT_EQ(lattice.moments, (std::vector<double>{1, 0.5}));
   EXPECT_EQ(lattice.gyromagnetic, (std::vector<double>{1.5, 1.5}));
-  EXPECT_EQ(lattice.occupied, "i<2");
-  EXPECT_EQ(lattice.frozen, "s");
+  EXPECT_EQ(lattice.occupied.expression, "i<2");
+  EXPECT_EQ(lattice.frozen.expression, "s");
   EXPECT_EQ(sites(scene), 24);
   EXPECT_EQ(couplings(scene), (std::vector<Coupling>{
                                   {{0, 1}, {0, 0, 0}, {2, 3, -2, -3, 2, 1, 2, -1, 2}, 0},

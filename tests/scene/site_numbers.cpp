@@ -4,6 +4,7 @@
 #include "scene_file.hpp"
 
 #include <limits>
+#include <memory>
 
 namespace cayspin::inline v0_1::io::test {
 namespace {
@@ -79,6 +80,40 @@ TEST(SiteNumbers, ComeFromExpressionsAndFiles) {
             numbers_in(part, crystal.lattice.shape, 1, all));
 }
 
+TEST(SiteNumbers, SayWhereSpinsAre) {
+  Folder const folder;
+  std::vector<double> mask;
+  for (int n = 0; n < 24; ++n) mask.push_back(n % 5 == 0 ? 0 : n % 3 - 0.5);
+  write_dataset(folder / "mask.h5", "/values", {2, 3, 4}, mask);
+  auto const with = [&](std::string_view keys) {
+    return read_text(
+        folder, replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\n" + std::string(keys)));
+  };
+  auto const file = with("occupied = { file = 'mask.h5' }\nfrozen = { file = 'mask.h5' }");
+  check_files(file);
+  EXPECT_TRUE(needs_pass(file));
+  auto const there = occupied(file, whole(file));
+  for (std::size_t site = 0; site < 24; ++site) EXPECT_EQ(there[site], site % 5 != 0) << site;
+  EXPECT_EQ(frozen(file, whole(file)), there);
+
+  Given given;
+  given.numbers["lattice.occupied"] = std::make_shared<std::vector<double> const>(mask);
+  auto const text =
+      replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\noccupied = { given = true }");
+  auto const by_program = parse_scene(text, "scene.toml", {}, given);
+  SiteBox const part{{1, 0, 1}, {3, 2, 1}};
+  EXPECT_EQ(occupied(by_program, whole(by_program)), there);
+  EXPECT_EQ(occupied(by_program, part), numbers_in(part, {4, 3, 2}, 1, there));
+  EXPECT_EQ(occupied(with_overrides(by_program, {"integrator.dt=0.02"}), part),
+            occupied(by_program, part));
+  auto const larger = parse_scene(text, "scene.toml", {"lattice.shape=[4, 3, 3]"}, given);
+  EXPECT_THROW(occupied(larger, whole(larger)), SceneError);
+  mask[23] = std::numeric_limits<double>::quiet_NaN();
+  given.numbers["lattice.occupied"] = std::make_shared<std::vector<double> const>(mask);
+  auto const not_a_number = parse_scene(text, "scene.toml", {}, given);
+  EXPECT_THROW(occupied(not_a_number, part), SceneError);
+}
+
 TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
   Folder const folder;
   write_dataset(folder / "short.h5", "/values", {3, 4}, std::vector<double>(12, 1));
@@ -91,6 +126,10 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
         {"exchange = '1/i'", ": field.exchange: expression \"1/i\" is not finite at x = "},
         {"exchange = true", ": field.exchange: true is a boolean"},
         {"exchange = { fil = 'a.h5' }", ": field.exchange.fil: unknown key"},
+        {"exchange = { given = true }",
+         ":7: field.exchange.given: stands for numbers that a program gives, and none did"},
+        {"exchange = { given = false }",
+         ": field.exchange.given: false has no meaning; accepted: file"},
         {"exchange = { file = 3 }", ": field.exchange.file: 3 is an integer"},
         {"exchange = { file = 'none.h5' }", "none.h5"},
         {"exchange = { file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
@@ -102,6 +141,16 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
     auto const message = refusal_of(folder, replaced(film, "exchange = 1", typed));
     EXPECT_NE(message.find(what), std::string::npos) << typed << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  for (auto const& [typed, what] :
+       {std::pair{"{ file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
+        {"1",
+         ":6: lattice.occupied: 1 is an integer; accepted: an expression in x, y, z, i, j, k, "
+         "or { file = \"NAME.h5\" }"}}) {
+    auto const message = refusal_of(
+        folder,
+        replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\noccupied = " + std::string(typed)));
+    EXPECT_NE(message.find(what), std::string::npos) << message;
   }
   auto const message = refusal_of(folder, replaced(film, "damping = 0.1", "damping = 'x/'"));
   EXPECT_NE(message.find(": system.damping: "), std::string::npos) << message;

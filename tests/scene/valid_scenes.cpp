@@ -65,8 +65,8 @@ TEST(Scene, TextIsAFile) {
 TEST(Scene, GivenStartIsNormalised) {
   auto const text = replaced(replaced(llg_scene, "uniform = [0.3, 0.5, 0.8]", "given = true"),
                              "[4, 3]", "[1, 2]");
-  auto const given =
-      std::make_shared<std::vector<double> const>(std::vector<double>{0, 3, 4, -2, 0, 0});
+  Given given;
+  given.spins = std::make_shared<std::vector<double> const>(std::vector<double>{0, 3, 4, -2, 0, 0});
   auto const scene = parse_scene(text, "given", {}, given);
   EXPECT_EQ(initial_spins(scene), (std::vector<double>{0, 0.6, 0.8, -1, 0, 0}));
   EXPECT_EQ(initial_spins(with_overrides(scene, {"integrator.dt=0.02"})), initial_spins(scene));

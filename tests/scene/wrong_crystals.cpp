@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(
                    ":8: lattice.gyromagnetic[1]: nan is not finite", ""},
         WrongScene{"occupied_type", basis, "basis = [[0, 0, 0], [0.5, 0.5, 0.5]]\noccupied = true",
                    ":8: lattice.occupied: true is a boolean",
-                   "a string with an expression in x, y, z, i, j, k, s"},
+                   "an expression in x, y, z, i, j, k, s, or { file = \"NAME.h5\" }"},
         WrongScene{"occupied_variable", basis,
                    "basis = [[0, 0, 0], [0.5, 0.5, 0.5]]\noccupied = \"t < 1\"",
                    ":8: lattice.occupied: expression \"t < 1\"",

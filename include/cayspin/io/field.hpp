@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -103,12 +104,16 @@ struct InterfacialDmi {
 /// A number, or the text of an expression in t.
 using AppliedComponent = std::variant<double, std::string>;
 
-/// A number for each site: an expression as in [initial], or a dataset of an HDF5 file.
+/// Numbers of sites, x fastest, that a program gives beside the text of a scene.
+using GivenNumbers = std::shared_ptr<std::vector<double> const>;
+
+/// A number for each site: an expression as in [initial], a dataset of an HDF5 file, or given.
 struct SiteNumbers {
   std::string expression;
   std::filesystem::path file;
+  GivenNumbers given;
 
-  bool there() const { return !expression.empty() || !file.empty(); }
+  bool there() const { return !expression.empty() || !file.empty() || given; }
 };
 
 /// H = constant (m.axis) axis.

@@ -14,13 +14,11 @@ Scene read_scene_to_relax(std::filesystem::path const& path,
 /// Reads a scene that only `cayspin relax` can take as read_scene_to_relax does, any other one as
 /// read_scene does.
 Scene read_scene_to_run_or_relax(std::filesystem::path const& path,
-                                 std::vector<std::string> const& overrides = {},
-                                 std::shared_ptr<std::vector<double> const> given_spins = {});
+                                 std::vector<std::string> const& overrides = {}, Given given = {});
 
 /// The same for a text in memory.
 Scene parse_scene_to_run_or_relax(std::string text, std::filesystem::path const& name,
-                                  std::vector<std::string> const& overrides = {},
-                                  std::shared_ptr<std::vector<double> const> given_spins = {});
+                                  std::vector<std::string> const& overrides = {}, Given given = {});
 
 /// Has the scene a table [integrator]? What stands in Scene::integrator of one without means
 /// nothing.

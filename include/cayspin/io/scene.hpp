@@ -57,7 +57,7 @@ struct Lattice {
   std::array<Triple, 3> cell = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< in units of spacing
   std::vector<Triple> basis = {{0, 0, 0}};    ///< in fractions of the cell's vectors
   std::vector<double> moments, gyromagnetic;  ///< one for each site of the cell; empty: all 1
-  std::string occupied, frozen;               ///< expressions; empty: all, none
+  SiteNumbers occupied, frozen;               ///< where they are not 0; default: all, none
 };
 
 /// All spins along one direction.
@@ -78,9 +78,15 @@ struct FileStart {
 };
 /// A start that a program gives beside the text of its scene, normalised per spin.
 struct GivenStart {
-  std::shared_ptr<std::vector<double> const> spins;  ///< sites x 3, x fastest
+  GivenNumbers spins;  ///< sites x 3, x fastest
 };
 using Initial = std::variant<UniformStart, ExpressionStart, RandomStart, FileStart, GivenStart>;
+
+/// What a program gives beside the text of its scene.
+struct Given {
+  GivenNumbers spins;                                        ///< for initial.given = true
+  std::map<std::string, GivenNumbers, std::less<>> numbers;  ///< for { given = true } of a key
+};
 
 /// A key that is true or false. The scene reader goes through the lists of these.
 template <class Section>
@@ -179,22 +185,21 @@ struct Scene {
   Output output;
   std::string text;            ///< the TOML text; re-serialised when an override changed it
   std::filesystem::path path;  ///< the scene file, or the name of a text without one
-  std::shared_ptr<std::vector<double> const> given_spins;  ///< for initial.given = true
+  Given given;
   std::map<std::string, std::string, std::less<>>
       places;  ///< key -> "FILE:LINE" or "--set key=value"
 };
 
 /// Reads and validates a scene. Each override is "key.path=VALUE" with a TOML value, applied in
 /// order. Files that the scene names are not opened: check_files, initial_spins and inertia do
-/// that. `given_spins`: the start of a scene with initial.given = true. Throws SceneError.
+/// that. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {},
-                 std::shared_ptr<std::vector<double> const> given_spins = {});
+                 Given given = {});
 
 /// The same for a text in memory, such as that in a trajectory file. Messages name it `name`, and
 /// its files lie in the folder of `name`.
 Scene parse_scene(std::string text, std::filesystem::path const& name,
-                  std::vector<std::string> const& overrides = {},
-                  std::shared_ptr<std::vector<double> const> given_spins = {});
+                  std::vector<std::string> const& overrides = {}, Given given = {});
 
 /// A scene with more overrides, and its text with them. Errors found later name the keys of
 /// `scene`, where its author finds them. Throws SceneError.

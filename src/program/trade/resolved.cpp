@@ -92,7 +92,7 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
                                         std::string const& resolved_before) {
   if (!scene.integrator.method->automatic || resolved_before.empty()) return std::nullopt;
   auto const parsed = [&](std::string const& text) {
-    return io::parse_scene(text, scene.path, {}, scene.given_spins);
+    return io::parse_scene(text, scene.path, {}, scene.given);
   };
   auto const typed = parsed(typed_before), resolved = parsed(resolved_before);
   // What is due at steps of the scene is due at so many times as many of the chosen method.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/expression.hpp>
+#include <cayspin/io/scene.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cayspin::inline v0_1::io::detail {
+
+/// What expressions of sites may use: the position, the cell's indices and, of a crystal, the
+/// number in the cell.
+std::vector<std::string> site_variables(Lattice const& lattice);
+
+/// Their values at a site of the lattice: plane `site[2]` holds sites of one number. A site at its
+/// cell's corner counts as in the middle, where it is alone there.
+inline std::array<double, 7> site_values(Lattice const& lattice,
+                                         std::array<std::int64_t, 3> const& site) {
+  auto const sites = static_cast<std::int64_t>(lattice.basis.size());
+  auto const number = site[2] % sites;
+  std::array<std::int64_t, 3> const cell{site[0], site[1], site[2] / sites};
+  std::array<double, 7> values;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto const cells = static_cast<double>(lattice.shape[axis] / (axis == 2 ? sites : 1));
+    double const fraction = lattice.basis[static_cast<std::size_t>(number)][axis];
+    double const within = sites == 1 ? 0.5 : fraction - std::floor(fraction);
+    values[3 + axis] = static_cast<double>(cell[axis]);
+    values[axis] = (values[3 + axis] + within) / cells;
+  }
+  values[6] = static_cast<double>(number);
+  return values;
+}
+
+/// An expression of these, which may use the functions grain(size, seed) and random(n, seed).
+/// `length`: of the unit of lattice.spacing, in that of sizes. Throws as Expression does.
+Expression site_expression(std::string text, Lattice const& lattice, double length = 1);
+inline Expression site_expression(std::string text, Scene const& scene) {
+  return site_expression(std::move(text), scene.lattice, scene.units.length);
+}
+
+}  // namespace cayspin::inline v0_1::io::detail
