@@ -290,7 +290,8 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
   plan.file_bytes = plan.frames * (lattice.sites() * 3 * (in_double ? 8 : 4) + sample_bytes) +
                     count(scene.output.scalars_every) * sample_bytes;
   if (has_positions(scene.lattice))
-    plan.file_bytes += 24 * (lattice.sites() + plan.frames * std::ssize(scene.lattice.basis));
+    plan.file_bytes +=
+        position_bytes(scene.lattice) + 24 * plan.frames * std::ssize(scene.lattice.basis);
   // What a step has to follow. Its fastest modes are those of exchange: a stable dt guards them.
   io::Scene followed = scene;
   if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {

@@ -53,6 +53,11 @@ bool has_positions(io::Lattice const& lattice) {
   return lattice.basis.size() > 1 || lattice.cell != io::Lattice().cell;
 }
 
+std::int64_t position_bytes(io::Lattice const& lattice) {
+  auto const& [nx, ny, nz] = lattice.shape;
+  return has_positions(lattice) ? 3 * 8 * nx * ny * nz : 0;
+}
+
 io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& space, int threads,
                                 std::string const& git_commit) {

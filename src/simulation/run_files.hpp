@@ -7,6 +7,7 @@
 #include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +21,8 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
 
 /// Does a file say where the sites are? They are on no regular grid.
 bool has_positions(io::Lattice const& lattice);
+/// Of /positions, once in a file; 0 without them.
+std::int64_t position_bytes(io::Lattice const& lattice);
 
 /// With the frames that the scene asks for.
 io::TrajectoryStorage storage_of(io::Scene const& scene);

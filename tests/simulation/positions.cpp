@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Where a file says that the sites of a crystal are.
 #include "simulation/run_files.hpp"
+#include "simulation/scene_minimizer.hpp"
 #include "simulation/text.hpp"
+
+#include <cayspin/io/relax.hpp>
 
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
 namespace cayspin::simulation::test {
@@ -36,6 +40,21 @@ TEST(Positions, AreThoseOfCellsAndBasisInTheUnitsOfTheScene) {
           expected.insert(expected.end(), {a + 0.5 * b, 2 * (b + 0.25 * c), 4 * c});
         }
   EXPECT_EQ(options.positions, expected);
+}
+
+TEST(Positions, StandOnceInTheFileOfSeveralStatesOfRest) {
+  auto const bytes_of = [](std::string const& crystal, std::string const& applied) {
+    auto const text = "[system]\nkind = 'llg'\ndamping = 0.1\n[lattice]\nshape = [6, 5, 4]\n" +
+                      crystal + "\n[field]\ncouplings = { shells = [1] }\napplied = " + applied +
+                      "\n[initial]\nuniform = [0, 0, 1]\n[integrator]\nmethod = 'rkmk4'\n"
+                      "dt = 0.01\nsteps = 1\n";
+    auto const scene = io::parse_scene_to_run_or_relax(text, "scene.toml");
+    return make_plan_to_relax(scene, Precision::double_precision).file_bytes;
+  };
+  std::string const one = "[0, 0, 1]", three = "[[0, 0, 1], [0, 0, 2], [0, 0, 3]]";
+  EXPECT_EQ(3 * bytes_of("", one) - bytes_of("", three), 0);
+  EXPECT_EQ(3 * bytes_of("crystal = 'bcc'", one) - bytes_of("crystal = 'bcc'", three),
+            2 * 240 * 3 * 8);
 }
 
 TEST(Positions, CellsAreCountedByTheirSites) {
