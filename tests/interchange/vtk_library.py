@@ -11,10 +11,11 @@ from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 
 
 class VtkLibrary(InterchangeTest):
-    def test_times_grid_and_vectors_are_those_of_the_trajectory(self):
+    def frames(self, name, *options):
+        """The HDF5 file of a run, and the grid that VTK has of each frame."""
         for precision in ("double", "single"):
-            file = self.run_scene(f"{precision}.h5", "--precision", precision, "--set",
-                                  "output.xdmf=true")
+            file = self.run_scene(f"{name}_{precision}.h5", "--precision", precision, "--set",
+                                  "output.xdmf=true", *options)
             xdmf = file.with_suffix(".xdmf")
             xml.etree.ElementTree.parse(xdmf)
             reader = vtkXdmfReader()
@@ -23,17 +24,38 @@ class VtkLibrary(InterchangeTest):
             times = reader.GetOutputInformation(0).Get(
                 vtkStreamingDemandDrivenPipeline.TIME_STEPS())
             self.assertEqual(times, tuple(self.dataset(file, "time")))
-            spins = self.dataset(file, "spins")
-            for time, expected in zip(times, spins):
+            for time, spins in zip(times, self.dataset(file, "spins")):
                 reader.UpdateTimeStep(time)
-                grid = reader.GetOutputDataObject(0)
-                self.assertEqual(grid.GetDimensions(), SHAPE)
-                self.assertEqual(grid.GetSpacing(), SPACING)
-                self.assertEqual(grid.GetOrigin(), tuple(np.divide(SPACING, 2)))
-                vectors = grid.GetPointData().GetArray("m")
-                site = grid.FindPoint(0.25 + 0.5 * 4, 0.5 + 1.0 * 2, 1.0 + 2.0 * 1)
-                self.assertEqual(vectors.GetTuple(site), tuple(expected[1, 2, 4]))
-                np.testing.assert_array_equal(vtk_to_numpy(vectors), expected.reshape(-1, 3))
+                yield file, spins, reader.GetOutputDataObject(0)
+
+    def test_times_grid_and_vectors_are_those_of_the_trajectory(self):
+        for _, expected, grid in self.frames("film"):
+            self.assertEqual(grid.GetDimensions(), SHAPE)
+            self.assertEqual(grid.GetSpacing(), SPACING)
+            self.assertEqual(grid.GetOrigin(), tuple(np.divide(SPACING, 2)))
+            vectors = grid.GetPointData().GetArray("m")
+            site = grid.FindPoint(0.25 + 0.5 * 4, 0.5 + 1.0 * 2, 1.0 + 2.0 * 1)
+            self.assertEqual(vectors.GetTuple(site), tuple(expected[1, 2, 4]))
+            np.testing.assert_array_equal(vtk_to_numpy(vectors), expected.reshape(-1, 3))
+
+    def test_points_and_vectors_of_a_crystal_are_those_of_the_trajectory(self):
+        count = 0
+        for file, expected, grid in self.frames("crystal", "--set", "lattice.crystal='honeycomb'",
+                                                "--set", "field={couplings={shells=[1.0]}}"):
+            self.assertEqual(expected.shape, (2, *SHAPE[::-1], 3))
+            points = vtk_to_numpy(grid.GetPoints().GetData())
+            positions = self.dataset(file, "positions")
+            np.testing.assert_allclose(points, positions.reshape(-1, 3), rtol=1e-7)
+            vectors = grid.GetPointData().GetArray("m")
+            np.testing.assert_array_equal(vtk_to_numpy(vectors), expected.reshape(-1, 3))
+            # Cell (4, 2, 1), site 1, of edges 0.5 along x and 1.0 along y.
+            place = (0.5 * (4 + 1 / 3 + (2 + 1 / 3) / 2), np.sqrt(0.75) * (2 + 1 / 3), 2.0)
+            site = grid.FindPoint(place)
+            np.testing.assert_allclose(grid.GetPoint(site), place, rtol=1e-6)
+            self.assertEqual(vectors.GetTuple(site), tuple(expected[1, 1, 2, 4]))
+            self.assertEqual(grid.GetNumberOfCells(), 2 * np.prod(SHAPE))
+            count += 1
+        self.assertEqual(count, 2 * 4)
 
 
 main()
