@@ -15,7 +15,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  the backend has to be chosen before
 
 SCENES = pathlib.Path(__file__).resolve().parent.parent / "scenes"
-HEXAGON = np.array([[1, 0, 0], [0.5, np.sqrt(0.75), 0], [0, 0, 1]])
 
 
 def run(scene, folder, name):
@@ -62,11 +61,9 @@ def draw_dispersion(axis, folder):
         lattice={"shape": [36, 36], "crystal": "honeycomb", "boundary": "periodic"},
         field={"couplings": bonds}, initial=start,
         integrator={"method": "rkmk4", "dt": 0.05, "end": 250.0}, output={"every": 8})
-    corners = [(0, 0, 0), (1 / 3, 1 / 3, 0), (0.5, 0, 0), (0, 0, 0)]
+    corners = [(0, 0, 0), (2 / 3, 1 / 3, 0), (0.5, 0, 0), (0, 0, 0)]
     with run(scene, folder, "magnons.h5") as file:
-        places = [HEXAGON[0] * 0, (HEXAGON[0] + HEXAGON[1]) / 3]
-        found = file.dispersion(corners, cell=HEXAGON, positions=places, about=(0, 0, 1),
-                                labels=["Γ", "K", "M", "Γ"])
+        found = file.dispersion(corners, about=(0, 0, 1), labels=["Γ", "K", "M", "Γ"])
     found.plot(axis)
     axis.set(title="Magnons of a honeycomb with a gap at K", ylim=(0, 6.6))
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from cayspin import arguments, observables
 from cayspin._cayspin import CayspinError, complete_file
+from cayspin.scene import Scene
 
 
 class _Frames:
@@ -79,14 +80,27 @@ class Trajectory:
         """Whether the run ended as planned."""
         return bool(self.file.attrs["complete"])
 
-    def _lattice(self, key: str, otherwise: Any, argument: str) -> list:
-        """What the scene says of x, y and z: lattice.KEY, one for all axes or one for each."""
+    def _tables(self, key: str, argument: str) -> dict:
+        """The tables of the scene, for its lattice.KEY."""
         try:
             import tomllib
         except ImportError:  # before Python 3.11
             raise CayspinError(f"{self.path}: to read lattice.{key} of its scene takes Python "
                                f"3.11; accepted: the argument {argument}") from None
-        given = tomllib.loads(self.scene).get("lattice", {}).get(key, otherwise)
+        return tomllib.loads(self.scene)
+
+    def _crystal(self, argument: str) -> Scene:
+        """A scene of the same cells alone."""
+        lattice = self._tables("cell", argument).get("lattice", {})
+        cells = {key: lattice[key] for key in ("crystal", "cell", "basis") if key in lattice}
+        cells["shape"] = [*lattice["shape"], 1, 1][:3]
+        cells["spacing"] = self._lattice("spacing", 1.0, argument)
+        return Scene(system={"kind": "llg", "damping": 0.0}, lattice=cells,
+                     initial={"uniform": [0, 0, 1]})
+
+    def _lattice(self, key: str, otherwise: Any, argument: str) -> list:
+        """What the scene says of x, y and z: lattice.KEY, one for all axes or one for each."""
+        given = self._tables(key, argument).get("lattice", {}).get(key, otherwise)
         given = given if isinstance(given, list) else [given] * 3
         return given + [otherwise] * (3 - len(given))
 
@@ -101,7 +115,7 @@ class Trajectory:
     def dispersion(self, path: Any, frames: slice = slice(None),
                    **options: Any) -> observables.Dispersion:
         """S(k, w) along a path of wave vectors, of these frames, as cayspin.dispersion says.
-        Boundaries and spacings are those of the scene; a crystal takes `cell` and `positions`.
+        Boundaries, the cell and the positions in it are those of the scene.
         Raises CayspinError also for frames that are not at equal steps of time."""
         if not isinstance(frames, slice):
             raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
@@ -116,11 +130,9 @@ class Trajectory:
         if "periodic" not in options:
             words = self._lattice("boundary", "open", "periodic")
             options["periodic"] = [word == "periodic" for word in words]
-        if "cell" not in options:
-            if spins.ndim == 6:
-                raise CayspinError("dispersion: a crystal, and no cell; accepted: cell, its three "
-                                   "vectors")
-            options["cell"] = np.diag(self._lattice("spacing", 1.0, "cell")).astype(float)
+        for key, attribute in (("cell", "cell"), ("positions", "basis")):
+            if key not in options:
+                options[key] = getattr(self._crystal(key), attribute)
         return observables.dispersion(_Frames(spins, chosen), dt, path, **options)
 
     def to_xarray(self):

@@ -342,15 +342,6 @@ class Files(PackageTest):
             np.testing.assert_array_equal(run.sublattice_magnetization[:], means)
             self.assertEqual(run.topological_charge().shape, (5, 2, 1))
             self.assertIn("7 x 3 x 1", repr(run))
-            path, positions = [(0, 0, 0), (3 / 7, 0, 0)], [(0, 0, 0), (0.5, 0, 0)]
-            self.assert_refused(cayspin.CayspinError, "no cell", run.dispersion, path)
-            options = {"cell": np.eye(3), "positions": positions, "about": (0, 0, 1)}
-            found = run.dispersion(path, **options)
-            later = run.dispersion(path, frames=slice(1, None), **options)
-            options["periodic"] = (True, False, False)
-            for seen, first in ((found, 0), (later, 1)):
-                expected = cayspin.dispersion(spins[first:], 0.5, path, **options)
-                np.testing.assert_allclose(seen.intensity, expected.intensity, rtol=1e-10)
 
 
 if __name__ == "__main__":
