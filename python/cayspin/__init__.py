@@ -12,12 +12,13 @@ Arrays of vectors have the shape (nz, ny, nx, 3), of crystals with several sites
 
 from cayspin._cayspin import CayspinError, NumbersFailed, SceneError
 from cayspin._cayspin import version as __version__
+from cayspin.averages import Averages
 from cayspin.observables import Average, Dispersion, average, dispersion, topological_charge
 from cayspin.scene import Scene
 from cayspin.simulation import Minimum, Simulation
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
 
-__all__ = ["Advice", "Average", "CayspinError", "Dispersion", "Minimum", "NumbersFailed", "Scene",
-           "SceneError", "Simulation", "Trade", "Trajectory", "__version__", "advise", "average",
-           "dispersion", "open", "topological_charge", "trade"]
+__all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Minimum", "NumbersFailed",
+           "Scene", "SceneError", "Simulation", "Trade", "Trajectory", "__version__", "advise",
+           "average", "dispersion", "open", "topological_charge", "trade"]

@@ -10,6 +10,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 
 from cayspin import _cayspin, arguments, sites
+from cayspin.averages import Averages
 from cayspin.scene import Scene
 
 _GUARD_PERIOD = 100  # steps between two looks at energy and lengths in step()
@@ -158,6 +159,16 @@ class Simulation:
             raise _cayspin.CayspinError(f"observe: every {every} steps; accepted: at least 1")
         self._observers.append((every, f))
 
+    def averages(self, every: int, window: int | None = None) -> Averages:
+        """Running means of magnetizations and energies with their errors: looks after each step
+        whose number is a multiple of `every`, from now on. With `window` they are over that many
+        latest looks, otherwise over all since the last restart() of what is returned."""
+        if window is not None and arguments.whole(window, "averages: window") < 1:
+            raise _cayspin.CayspinError(f"averages: window {window}; accepted: at least 1")
+        means = Averages(window)
+        self.observe(every, means._look)
+        return means
+
     @property
     def spins(self) -> np.ndarray:
         """The spins now, (nz, ny, nx, 3), of a crystal with several sites in a cell
@@ -196,6 +207,13 @@ class Simulation:
     def magnetization(self) -> np.ndarray:
         """The mean spin, (3,)."""
         return np.array(self._run.sample()[2])
+
+    def sublattice_magnetization(self) -> np.ndarray:
+        """The mean spin of each site of the cell, (site, 3), where there are spins."""
+        spins = self.spins
+        spins = spins.reshape(-1, *spins.shape[-4:])
+        count = spins.any(-1).sum((1, 2, 3))
+        return spins.sum((1, 2, 3), np.float64) / np.maximum(count, 1)[:, None]
 
     def norm_defect(self) -> float:
         """The largest | |m| - 1 | of all sites."""

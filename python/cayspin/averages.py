@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Means over time while a simulation runs."""
+
+from __future__ import annotations
+
+import collections
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cayspin.observables import Average, average
+
+if TYPE_CHECKING:
+    from cayspin.simulation import Simulation
+
+
+class Averages:
+    """Means over looks at a simulation while it runs, from Simulation.averages(): of all looks, or
+    of the latest. Errors are those of cayspin.average(). Before the first look a mean is NaN."""
+
+    def __init__(self, window: int | None):
+        def looks():
+            return collections.deque(maxlen=window)
+
+        self._looks = {name: looks() for name in ("energy", "magnetization", "sublattices")}
+        self._terms: collections.defaultdict[str, Any] = collections.defaultdict(looks)
+
+    def _look(self, sim: Simulation) -> None:
+        energy, _, magnetization = sim._run.sample()
+        self._looks["energy"].append(energy)
+        self._looks["magnetization"].append(magnetization)
+        self._looks["sublattices"].append(sim.sublattice_magnetization())
+        for name, value in sim.energies().items():
+            self._terms[name].append(value)
+
+    @staticmethod
+    def _average(looks):
+        return average(looks) if looks else Average(np.nan, np.nan, 0)
+
+    def restart(self) -> None:
+        """Forgets all looks: for a simulation that has come to equilibrium."""
+        for looks in (*self._looks.values(), *self._terms.values()):
+            looks.clear()
+
+    def __len__(self) -> int:
+        """Looks that the means are over."""
+        return len(self._looks["energy"])
+
+    @property
+    def magnetization(self) -> Average:
+        """Of the magnetization, (3,)."""
+        return self._average(self._looks["magnetization"])
+
+    @property
+    def sublattice_magnetization(self) -> Average:
+        """Of the mean spin of each site of the cell, (site, 3)."""
+        return self._average(self._looks["sublattices"])
+
+    @property
+    def energy(self) -> Average:
+        """Of the energy, summed over sites."""
+        return self._average(self._looks["energy"])
+
+    @property
+    def energies(self) -> dict[str, Average]:
+        """Of the energy of each term of the scene."""
+        return {name: self._average(looks) for name, looks in self._terms.items()}
+
+    def __repr__(self):
+        return f"<cayspin.Averages over {len(self)} looks>"
