@@ -35,7 +35,8 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
   if (ghosts == 0)
     throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
                                  *options.ranks));
-  return repeated_share(plan.lattice, ghosts, read_parts(*options.ranks, plan.lattice, ghosts));
+  auto const parts = read_parts(*options.ranks, plan.lattice, depth_of_parts(scene, plan));
+  return repeated_share(plan.lattice, ghosts, parts);
 }
 
 int order(io::Scene const& scene, Variant const& variant) {
@@ -187,9 +188,9 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
   print_memory(plan, precision, "method");
   if (repeated)
     print("ranks",
-          fmt::format("each repeats {:.3g} % of its work, and has {} rows or planes of its "
-                      "neighbours at each inner end",
-                      100 * *repeated, plan.variant.ghosts));
+          fmt::format("each repeats {:.3g} % of its work, and has {} of its neighbours at each "
+                      "inner end",
+                      100 * *repeated, mpi::to_text(depth_of_parts(scene, plan))));
   print_output(scene, plan);
 }
 

@@ -5,6 +5,7 @@
 #include "simulation/command_line.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/parts.hpp"
 #include "simulation/restart.hpp"
 #include "simulation/run_state.hpp"
 #include "simulation/text.hpp"
@@ -53,11 +54,6 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
     throw io::scene_error(scene, "integrator.method", accepted + "or another method");
   if (has_dear_field(scene))
     throw io::scene_error(scene, "field.slab_demag.dear", accepted + "or no such key");
-  if (io::needs_pass(scene))
-    throw io::scene_error(scene, "field",
-                          accepted +
-                              "or a scene without crystals, couplings, currents and sites of "
-                              "their own");
   auto const& slab = scene.field.slab_demag;
   if (slab && slab->average_layer && (slab->on_host || slab->normal[0] != 0 || !on_host))
     throw io::scene_error(scene, "field.slab_demag.average",
@@ -98,6 +94,9 @@ Restart restart_of(LeftBehind left, io::Scene const& scene, Plan const& plan,
 std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
                              Restart const* restart) {
   auto const own = own_sites(lattice);
+  // An expression that fails at one site has to end all ranks, which later wait for each other.
+  io::occupied(scene, own);
+  io::frozen(scene, own);
   return restart ? restart->spins(own) : io::initial_spins(scene, own);
 }
 
@@ -261,14 +260,15 @@ int run_on_ranks(RunOptions const& options, Ranks& ranks) {
                    ? fmt::format("tolerance {:.3g}", *scene.integrator.tolerance)
                    : "dt " + time_text(scene.units, scene.integrator.dt));
   auto plan = ranks.together([&] { return make_plan(scene, options.precision); });
+  auto const depth = depth_of_parts(scene, plan);
   auto const parts = ranks.together([&] {
     bool const on_host = in_space(space, options.precision, []<class, class Space>() {
       return cayspin::detail::is_host_execution<Space>;
     });
     require_one_rank(scene, plan, on_host, ranks);
-    return ranks.division(plan.lattice, plan.variant.ghosts, options.ranks);
+    return ranks.division(plan.lattice, depth, options.ranks);
   });
-  auto const part = ranks.divide(plan.lattice, plan.variant.ghosts, parts);
+  auto const part = ranks.divide(plan.lattice, depth, parts);
   if (part.none) return Status::done;
   keep_part(plan, scene, options.precision, part.local, ranks.planes_at_once(part.local));
   auto const restart = ranks.together([&]() -> std::unique_ptr<Restart> {

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <stdexcept>
 
 namespace cayspin::inline v0_1::io {
@@ -33,21 +34,24 @@ class ValuesOfSites {
   }
 
   std::vector<double> in(SiteBox const& box) const {
-    auto const all = dataset_.read();
+    if (sites_ == 1)
+      return dataset_.read(extents({box.begin[2], box.begin[1], box.begin[0]}),
+                           extents({box.extent[2], box.extent[1], box.extent[0]}));
     std::vector<double> numbers;
-    auto const cells = shape_[2] / sites_;
-    for (std::int64_t k = 0; k < box.extent[2]; ++k)
-      for (std::int64_t j = 0; j < box.extent[1]; ++j) {
-        auto const plane = box.begin[2] + k;
-        auto const stored = plane % sites_ * cells + plane / sites_;
-        auto const from =
-            all.begin() + (stored * shape_[1] + box.begin[1] + j) * shape_[0] + box.begin[0];
-        numbers.insert(numbers.end(), from, from + box.extent[0]);
-      }
+    for (auto plane = box.begin[2]; plane < box.begin[2] + box.extent[2]; ++plane) {
+      auto const of_plane =
+          dataset_.read(extents({plane % sites_, plane / sites_, box.begin[1], box.begin[0]}),
+                        extents({1, 1, box.extent[1], box.extent[0]}));
+      numbers.insert(numbers.end(), of_plane.begin(), of_plane.end());
+    }
     return numbers;
   }
 
  private:
+  static Extents extents(std::initializer_list<std::int64_t> numbers) {
+    return Extents(numbers.begin(), numbers.end());
+  }
+
   std::array<std::int64_t, 3> shape_;
   std::int64_t sites_;
   RealDataset dataset_;

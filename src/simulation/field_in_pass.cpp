@@ -3,8 +3,10 @@
 
 #include "applied_field.hpp"
 #include "pass_terms.hpp"
+#include "ranks.hpp"
 #include "space.hpp"
 
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/scalars.hpp>
@@ -12,7 +14,10 @@
 #include <Kokkos_Profiling_ScopedRegion.hpp>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -106,6 +111,20 @@ Sites sites_of(io::Scene const& scene) {
   return all;
 }
 
+// The largest of all parts: of doubles >= 0 their words are in the same order.
+double largest_of_parts(Lattice const& lattice, double largest) {
+  if (lattice.part == nullptr) return largest;
+  std::array words{std::bit_cast<std::int64_t>(largest)};
+  lattice.part->maximum(words);
+  return std::bit_cast<double>(words[0]);
+}
+
+// The site of the cell that each of a part's own planes holds.
+std::size_t site_of_cell(Lattice const& lattice, std::size_t number) {
+  auto const in_plane = static_cast<std::size_t>(lattice.own(0) * lattice.own(1));
+  return number / in_plane % static_cast<std::size_t>(lattice.cell_sites);
+}
+
 template <class Real, class Memory>
 ScalarField<Real, Memory> field_of(char const* name, Lattice const& lattice,
                                    std::vector<double> const& numbers) {
@@ -191,14 +210,13 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   sites_ = table_of<CellSite, Memory>("sites", sites);
   cubics_ = table_of<CubicAnisotropy, Memory>("cubics", cubics);
 
-  io::SiteBox const box{{0, 0, 0}, lattice.shape};
+  auto const box = own_sites(lattice);
   auto const occupied = io::occupied(scene, box), frozen = io::frozen(scene, box);
   std::vector<double> moves(static_cast<std::size_t>(lattice.sites()), 1), moments = moves;
-  auto const in_plane = static_cast<std::size_t>(lattice.shape[0] * lattice.shape[1]);
   for (std::size_t site = 0; site < moves.size(); ++site) {
     moves[site] = !frozen.empty() && frozen[site] ? 0 : 1;
-    auto const of_cell = site / in_plane % sites.size();
-    moments[site] = !occupied.empty() && !occupied[site] ? 0 : sites[of_cell].moment;
+    moments[site] =
+        !occupied.empty() && !occupied[site] ? 0 : sites[site_of_cell(lattice, site)].moment;
   }
   if (!frozen.empty()) moves_ = field_of<Real, Memory>("moves", lattice, moves);
   moments_ = field_of<Real, Memory>("moments", lattice, moments);
@@ -227,7 +245,7 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
     auto const values = io::numbers_of_sites(scene, numbers, key, box);
     double largest = 0;
     for (double const value : values) largest = std::max(largest, std::abs(value));
-    none_.magnitude += bond_energies * largest;
+    none_.magnitude += bond_energies * largest_of_parts(lattice_, largest);
     return field_of<Real, Memory>(name, lattice_, values);
   };
   auto const& spacing = lattice_.spacing;
@@ -252,24 +270,19 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
   }
   if (scene.system.dampings.there()) {
     auto const dampings = io::numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
-    if (std::ranges::min(dampings) < 0)
-      throw io::scene_error(scene, "system.damping",
-                            "is negative at a site; accepted: numbers >= 0");
     dampings_ = field_of<Real, Memory>("dampings", lattice_, dampings);
   }
   std::vector<AnisotropyOfSites<Real>> axes;
-  auto const cell_sites = static_cast<std::size_t>(lattice_.cell_sites);
-  auto const in_plane = static_cast<std::size_t>(lattice_.shape[0] * lattice_.shape[1]);
   for (auto const& term : field.anisotropies) {
     if (!term.factors.there()) continue;
     auto values = io::numbers_of_sites(scene, term.factors, "field.anisotropy", box);
     double largest = 0;
     for (std::size_t site = 0; site < values.size(); ++site) {
-      if (term.site >= 0 && site / in_plane % cell_sites != static_cast<std::size_t>(term.site))
+      if (term.site >= 0 && site_of_cell(lattice_, site) != static_cast<std::size_t>(term.site))
         values[site] = 0;
       largest = std::max(largest, std::abs(values[site]));
     }
-    none_.magnitude += 0.5 * largest;
+    none_.magnitude += 0.5 * largest_of_parts(lattice_, largest);
     constants_of_axes_.push_back(field_of<Real, Memory>("anisotropy", lattice_, values));
     axes.push_back({constants_of_axes_.back().array(), vector(term.axis)});
   }
@@ -281,6 +294,8 @@ template <class Exec>
 void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                          Spins const& spins, double t, FieldFor purpose) const {
   Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
+  // Bonds may reach further than the ghosts that a stage before this one has kept up to date.
+  cayspin::detail::update_ghosts(exec, lattice_, spins);
   auto others = usual;
   others.zeeman = {};
   others.has_applied = false;
@@ -319,7 +334,9 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
   }
   if (moves_) kernel.moves = moves_->array();
   if (dampings_ && purpose == FieldFor::generator) kernel.dampings = dampings_->array();
-  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel);
+  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel,
+                                       spins.layout().own);
+  cayspin::detail::update_ghosts(exec, lattice_, field_);
 }
 
 template <class Spins>

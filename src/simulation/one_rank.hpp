@@ -12,7 +12,7 @@ class OneRank final : public Ranks {
   int count() const override { return 1; }
   int rank() const override { return 0; }
   int on_this_machine() const override { return 1; }
-  std::array<int, 2> division(cayspin::Lattice const&, int,
+  std::array<int, 2> division(cayspin::Lattice const&, mpi::Depth const&,
                               std::optional<std::string> const& asked) const override {
     if (asked && *asked != "1,1")
       throw UsageError(
@@ -21,7 +21,8 @@ class OneRank final : public Ranks {
                       *asked));
     return {1, 1};
   }
-  PartOfRank divide(cayspin::Lattice const& lattice, int, std::array<int, 2> const&) override {
+  PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const&,
+                    std::array<int, 2> const&) override {
     return {lattice};
   }
   std::array<bool, 2> any(std::array<bool, 2> wanted) const override { return wanted; }

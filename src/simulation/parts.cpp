@@ -2,29 +2,42 @@
 #include "parts.hpp"
 
 #include "failure.hpp"
+#include "plan.hpp"
 
-#include <cayspin/mpi/division.hpp>
+#include <cayspin/field/bonds_of_sites.hpp>
+#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 
 namespace cayspin::simulation {
 
+mpi::Depth depth_of_parts(io::Scene const& scene, Plan const& plan) {
+  mpi::Depth depth(plan.variant.ghosts);
+  if (io::needs_pass(scene)) {
+    cayspin::detail::BondLists const bonds(plan.lattice, io::couplings(scene));
+    auto const [rows, cells] = bonds.rows_and_cells();
+    depth.y = std::max(depth.y, rows);
+    depth.z = std::max(depth.z, cells * static_cast<int>(plan.lattice.cell_sites));
+  }
+  return mpi::in_whole_cells(depth, plan.lattice);
+}
+
 std::array<int, 2> read_parts(std::string const& text, cayspin::Lattice const& lattice,
-                              int ghosts) {
+                              mpi::Depth const& depth) {
   std::array<int, 2> parts{0, 0};
   int end = 0;
   if (std::sscanf(text.c_str(), "%d,%d%n", &parts[0], &parts[1], &end) != 2 ||
       static_cast<std::size_t>(end) != text.size() || parts[0] < 1 || parts[1] < 1)
     throw UsageError(fmt::format("--ranks {}: accepted: two numbers, as 1,4", text));
-  if (!mpi::can_divide(lattice, ghosts, {.y = parts[0], .z = parts[1]}))
+  if (!mpi::can_divide(lattice, depth, {.y = parts[0], .z = parts[1]}))
     throw UsageError(
-        fmt::format("--ranks {}: accepted: numbers of parts along y and z, of at least {} rows or "
-                    "planes each",
-                    text, ghosts));
+        fmt::format("--ranks {}: accepted: numbers of parts along y and z, of at least {} each",
+                    text, mpi::to_text(depth)));
   return parts;
 }
 

@@ -65,19 +65,48 @@ double largest(AppliedField const& vector, std::string_view key, io::Scene const
   return largest;
 }
 
+struct Range {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+
+  double magnitude() const { return std::max(-least, largest); }
+};
+
+// Of all sites, by some planes at once: a rank has no room for more than its part.
+Range range_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers, std::string_view key) {
+  auto const& shape = scene.lattice.shape;
+  auto const at_once = io::planes_to_read(shape, sizeof(double));
+  Range range;
+  for (std::int64_t first = 0; first < shape[2]; first += at_once) {
+    auto const planes = std::min(at_once, shape[2] - first);
+    for (double const value :
+         io::numbers_of_sites(scene, numbers, key, {{0, 0, first}, {shape[0], shape[1], planes}}))
+      range = {std::min(range.least, value), std::max(range.largest, value)};
+  }
+  return range;
+}
+
 double largest_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers,
                         std::string_view key) {
-  double largest = 0;
-  for (double const value :
-       io::numbers_of_sites(scene, numbers, key, {{0, 0, 0}, scene.lattice.shape}))
-    largest = std::max(largest, std::abs(value));
-  return largest;
+  return range_of_sites(scene, numbers, key).magnitude();
 }
 
 double largest_damping(io::Scene const& scene) {
   auto const& system = scene.system;
-  return system.dampings.there() ? largest_of_sites(scene, system.dampings, "system.damping")
-                                 : system.damping;
+  if (!system.dampings.there()) return system.damping;
+  auto const range = range_of_sites(scene, system.dampings, "system.damping");
+  if (range.least < 0)
+    throw io::scene_error(scene, "system.damping", "is negative at a site; accepted: numbers >= 0");
+  return range.largest;
+}
+
+double largest_exchange(io::Scene const& scene) {
+  constexpr auto key = "field.exchange";
+  auto const range = range_of_sites(scene, scene.field.exchange_factors, key);
+  if (range.least < 0 && range.largest > 0)
+    throw io::scene_error(scene, key,
+                          "the constants must have one sign, as the harmonic mean of a positive "
+                          "and a negative one is no bond");
+  return range.magnitude();
 }
 
 // Of terms whose constants differ from site to site.
@@ -85,8 +114,7 @@ double bound_of_numbers(io::Scene const& scene, Lattice const& lattice) {
   auto const& field = scene.field;
   double bound = 0;
   if (field.exchange_factors.there())
-    bound += field.exchange->field_bound(lattice) *
-             largest_of_sites(scene, field.exchange_factors, "field.exchange");
+    bound += field.exchange->field_bound(lattice) * largest_exchange(scene);
   if (field.dmi_factors.there())
     for (int axis = 0; axis < 3; ++axis)
       if (lattice.has_neighbors(axis))

@@ -5,6 +5,7 @@
 
 #include <cayspin/io/site_box.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/mpi/division.hpp>
 #include <cayspin/part.hpp>
 
 #include <algorithm>
@@ -41,13 +42,13 @@ class Ranks {
   /// Of those on this machine, this one included.
   virtual int on_this_machine() const = 0;
 
-  /// Numbers of parts along y and z, of at least `ghosts` rows or planes each: those asked for as
+  /// Numbers of parts along y and z, of at least `depth` rows or planes each: those asked for as
   /// "y,z", or else as many as there are, up to one for each rank. Throws UsageError for what
   /// cannot be.
-  virtual std::array<int, 2> division(cayspin::Lattice const& lattice, int ghosts,
+  virtual std::array<int, 2> division(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                                       std::optional<std::string> const& asked) const = 0;
   /// Divides a lattice, and counts only those that have a part from now on.
-  virtual PartOfRank divide(cayspin::Lattice const& lattice, int ghosts,
+  virtual PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                             std::array<int, 2> const& parts) = 0;
 
   /// Of a lattice with a part for each rank, the planes along z that the first takes at once: those

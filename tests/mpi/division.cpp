@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Divisions of lattices, and wrong ones refused in one sentence.
 #include <cayspin/cayspin.hpp>
+#include <cayspin/crystal.hpp>
+#include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/mpi/domain.hpp>
 
 #include <gtest/gtest.h>
+
+#include <vector>
 
 namespace cayspin::test {
 namespace {
@@ -35,6 +39,24 @@ TEST(Division, DomainsAreHeldAgainstTheRanks) {
   EXPECT_EQ(alone.local().shape, (std::array<std::int64_t, 3>{8, 8, 8}));
 }
 
+// Planes come by cells, of parts and of their ghosts.
+TEST(Division, PartsOfCrystalsHoldWholeCells) {
+  int ranks = 0, rank = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  auto const bcc = Crystal::bcc().lattice({3, 7, 9});
+  EXPECT_EQ(divide(bcc, 4, 2), (Division{1, 2}));
+  EXPECT_TRUE(mpi::can_divide(bcc, {2, 5}, {3, 3}));
+  EXPECT_FALSE(mpi::can_divide(bcc, {2, 7}, {1, 3}));
+  EXPECT_FALSE(mpi::can_divide(bcc, {3, 5}, {3, 3}));
+  mpi::Domain const domain(MPI_COMM_WORLD, bcc, {1, 3}, {1, ranks});
+  auto const& local = domain.local();
+  EXPECT_EQ(domain.begin()[2] % 2, 0);
+  EXPECT_EQ(local.own(2) % 2, 0);
+  EXPECT_EQ(local.ghosts[2], (Ghosts{rank > 0 ? 4 : 0, rank + 1 < ranks ? 4 : 0}));
+  EXPECT_EQ(local.ghosts[1], Ghosts{});
+}
+
 // Every rank is told, whichever differs.
 TEST(Division, RanksThatDisagreeAreRefused) {
   int rank = 0, ranks = 0;
@@ -59,6 +81,21 @@ TEST(Division, SteppersNeedTheirGhosts) {
   else
     Rkmk4 const stepper(spins);
   LieHeun const fits(spins);
+}
+
+TEST(Division, CouplingsNeedGhostsAsFarAsTheyReach) {
+  int ranks = 0;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  if (ranks == 1) return;
+  auto const lattice = Lattice::cubic(3, 4, 12);
+  std::vector const bonds{Coupling::of({0, 0}, {0, 0, -2}, 1.0)};
+  mpi::Domain const thin(MPI_COMM_WORLD, lattice, 1, {1, ranks}),
+      thick(MPI_COMM_WORLD, lattice, {1, 2}, {1, ranks});
+  EXPECT_THROW(PairCouplings(thin.local(), bonds), std::invalid_argument);
+  // Between the stages of a step nobody brings so many up to date.
+  PairCouplings const field(thick.local(), bonds);
+  SpinField<double> const spins("spins", thick.local());
+  EXPECT_THROW(energy(Kokkos::DefaultExecutionSpace(), field, spins), std::invalid_argument);
 }
 
 }  // namespace

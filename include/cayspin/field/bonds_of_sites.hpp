@@ -5,6 +5,7 @@
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/part.hpp>
 
 #include <algorithm>
 #include <array>
@@ -144,6 +145,19 @@ class BondLists {
     of_shells.insert(of_shells.end(), of_tensors.begin(), of_tensors.end());
   }
 
+  /// Over how many rows along y and cells along z bonds reach.
+  std::array<std::int32_t, 2> rows_and_cells() const {
+    std::array<std::int32_t, 2> most{};
+    auto const of_cell = static_cast<std::int32_t>(sites.size());
+    for (std::int32_t site = 0; site < of_cell; ++site) {
+      auto const& [low, high] = sites[static_cast<std::size_t>(site)].reach;
+      most[0] = std::max({most[0], low[1], high[1]});
+      most[1] =
+          std::max({most[1], (site + high[2]) / of_cell, (low[2] - site + of_cell - 1) / of_cell});
+    }
+    return most;
+  }
+
  private:
   struct Seen {
     std::array<std::int32_t, 3> way;
@@ -204,7 +218,8 @@ class BondLists {
   }
 
   /// Shortens a way round a periodic axis; false where it is longer than an open one.
-  static bool stays(std::array<std::int64_t, 3>& way, Lattice const& lattice) {
+  static bool stays(std::array<std::int64_t, 3>& way, Lattice const& of_sites) {
+    auto const& lattice = whole(of_sites);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (lattice.boundary[axis] == Boundary::periodic)
         way[axis] %= lattice.shape[axis];

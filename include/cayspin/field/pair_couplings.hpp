@@ -10,6 +10,8 @@
 #include <cayspin/stencil.hpp>
 
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace cayspin::inline v0_1 {
@@ -106,12 +108,14 @@ class PairField {
 
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that
 /// H = T m' + 2 B (m.m') m', and T transposed the other way. Bonds past an open end are none. A
-/// periodic axis that is shorter than a bond closes on itself.
+/// periodic axis that is shorter than a bond closes on itself. On a part of a lattice its ghosts
+/// have to be up to date before each look, which steppers do not see to.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:
   /// Throws std::invalid_argument for a coupling of sites that no cell has, one of a site with
-  /// itself, and a number that is not finite.
+  /// itself, a number that is not finite, and a part of a lattice with fewer ghosts than bonds
+  /// reach.
   PairCouplings(Lattice const& lattice, std::vector<Coupling> const& couplings)
       : PairCouplings(lattice, detail::BondLists(lattice, couplings)) {}
 
@@ -120,6 +124,7 @@ class PairCouplings {
     static_assert(std::is_same_v<typename Spins::memory_space, MemorySpace>,
                   "PairCouplings were made for spins in another memory space.");
     require_lattice("cayspin::PairCouplings", lattice_, spins.lattice());
+    detail::require_whole("cayspin::PairCouplings", lattice_);
   }
   template <class Exec, class Spins>
   detail::PairField<typename Spins::value_type> prepare(Exec const&, Spins const& spins,
@@ -136,7 +141,17 @@ class PairCouplings {
  private:
   PairCouplings(Lattice const& lattice, detail::BondLists const& lists)
       : lattice_(lattice), bonds_(lists), field_bounds_(lists.field_bounds) {
-    detail::require_whole("cayspin::PairCouplings", lattice);
+    auto const [rows, cells] = lists.rows_and_cells();
+    require_ghosts(lattice.ghosts[1], rows);
+    require_ghosts(lattice.ghosts[2], cells * lattice.cell_sites);
+  }
+
+  static void require_ghosts(Ghosts const& ghosts, std::int64_t needed) {
+    for (std::int64_t const there : {ghosts.before, ghosts.after})
+      if (there != 0 && there < needed)
+        throw std::invalid_argument("cayspin::PairCouplings: bonds reach over " +
+                                    std::to_string(needed) + " rows or planes, and the part has " +
+                                    std::to_string(there) + " ghosts");
   }
 
   Lattice lattice_;

@@ -16,17 +16,40 @@ struct Division {
   friend bool operator==(Division const&, Division const&) = default;
 };
 
-/// Can each part send `depth` rows or planes of its own?
-inline bool can_divide(Lattice const& lattice, int depth, Division const& division) {
-  auto const fits = [&](std::int64_t extent, int parts) {
-    return parts == 1 || (parts > 1 && extent / parts >= depth);
+/// The rows along y and planes along z that a part has of each of its neighbours.
+struct Depth {
+  int y, z;
+  Depth(int of_both) : y(of_both), z(of_both) {}
+  Depth(int rows, int planes) : y(rows), z(planes) {}
+  friend bool operator==(Depth const&, Depth const&) = default;
+};
+
+/// Parts and their ghosts hold whole cells: of a crystal, the planes along z of all its sites.
+inline Depth in_whole_cells(Depth const& depth, Lattice const& lattice) {
+  auto const of_cell = static_cast<int>(lattice.cell_sites);
+  return {depth.y, (depth.z + of_cell - 1) / of_cell * of_cell};
+}
+
+/// Can each part send the rows or planes of its own that its neighbours need?
+inline bool can_divide(Lattice const& lattice, Depth const& depth, Division const& division) {
+  auto const fits = [](std::int64_t extent, int needed, int parts) {
+    return parts == 1 || (parts > 1 && extent / parts >= needed);
   };
-  return fits(lattice.shape[1], division.y) && fits(lattice.shape[2], division.z);
+  auto const of_cell = lattice.cell_sites;
+  return fits(lattice.shape[1], depth.y, division.y) &&
+         fits(lattice.shape[2] / of_cell,
+              static_cast<int>(in_whole_cells(depth, lattice).z / of_cell), division.z);
+}
+
+/// Such parts in words.
+inline std::string to_text(Depth const& depth) {
+  if (depth.y == depth.z) return std::to_string(depth.y) + " rows or planes";
+  return std::to_string(depth.y) + " rows or " + std::to_string(depth.z) + " planes";
 }
 
 /// The division into so many parts that repeats least work; along z where two are alike.
 /// Throws std::invalid_argument when there is none.
-inline Division divide(Lattice const& lattice, int depth, int parts) {
+inline Division divide(Lattice const& lattice, Depth const& depth, int parts) {
   Division best{0, 0};
   double least = 0;
   for (int y = 1; y <= parts; ++y) {
@@ -41,22 +64,24 @@ inline Division divide(Lattice const& lattice, int depth, int parts) {
     throw std::invalid_argument(
         "cayspin::mpi::divide: a lattice of " + std::to_string(lattice.shape[0]) + " x " +
         std::to_string(lattice.shape[1]) + " x " + std::to_string(lattice.shape[2]) +
-        " sites has no " + std::to_string(parts) + " parts of at least " + std::to_string(depth) +
-        " rows or planes");
+        " sites has no " + std::to_string(parts) + " parts of at least " +
+        to_text(in_whole_cells(depth, lattice)));
   return best;
 }
 
 /// Throws std::invalid_argument unless the division is one into `parts` parts that fit.
-inline void require_division(Lattice const& lattice, int depth, Division const& division,
+inline void require_division(Lattice const& lattice, Depth const& depth, Division const& division,
                              int parts) {
-  if (depth < 1) throw std::invalid_argument("cayspin::mpi::Domain: the depth must be at least 1");
+  if (depth.y < 1 || depth.z < 1)
+    throw std::invalid_argument("cayspin::mpi::Domain: the depth must be at least 1");
   if (division.y < 1 || division.z < 1 || std::int64_t{division.y} * division.z != parts)
     throw std::invalid_argument("cayspin::mpi::Domain: a division into " +
                                 std::to_string(division.y) + " x " + std::to_string(division.z) +
                                 " parts is not one for " + std::to_string(parts) + " ranks");
   if (!can_divide(lattice, depth, division))
-    throw std::invalid_argument("cayspin::mpi::Domain: a part has fewer rows or planes than the " +
-                                std::to_string(depth) + " that its neighbours need");
+    throw std::invalid_argument("cayspin::mpi::Domain: a part has fewer than the " +
+                                to_text(in_whole_cells(depth, lattice)) +
+                                " that its neighbours need");
 }
 
 }  // namespace cayspin::inline v0_1::mpi

@@ -20,25 +20,28 @@ namespace cayspin::inline v0_1::mpi {
 /// A lattice divided among the ranks of a communicator, along y and z. Each rank holds its part,
 /// with `depth` ghosts at each end that is inside the lattice. Fields on local() are like any
 /// others: steppers, terms and sums take them, and give the bits of one rank.
-/// One step needs as many ghosts as it has stages. Outlives its fields and steppers.
+/// One step needs as many ghosts as it has stages. Parts of a crystal hold whole cells, and so do
+/// their ghosts. Outlives its fields and steppers.
 class Domain final : public Part {
  public:
   /// All ranks of `comm` call it. Throws std::invalid_argument on every rank when the lattices or
   /// depths of ranks differ, or the lattice cannot be divided.
-  Domain(MPI_Comm comm, Lattice const& lattice, int depth)
+  Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth)
       : Domain(comm, lattice, depth, divide(agreed(comm, lattice, depth), depth, size_of(comm))) {}
 
   /// With this division: the product of its numbers is the number of ranks.
-  Domain(MPI_Comm comm, Lattice const& lattice, int depth, Division const& division)
-      : whole_(agreed(comm, lattice, depth, division)), division_(division), depth_(depth) {
+  Domain(MPI_Comm comm, Lattice const& lattice, Depth const& depth, Division const& division)
+      : whole_(agreed(comm, lattice, depth, division)),
+        division_(division),
+        depth_(in_whole_cells(depth, lattice)) {
     lattice.validate();
     require_division(lattice, depth, division, size_of(comm));
     MPI_Comm_dup(comm, &comm_);
     MPI_Comm_rank(comm_, &rank_);
     local_ = lattice;
     local_.part = this;
-    divide_axis(1, division.y, rank_ % division.y);
-    divide_axis(2, division.z, rank_ / division.y);
+    divide_axis(1, division.y, rank_ % division.y, 1);
+    divide_axis(2, division.z, rank_ / division.y, lattice.cell_sites);
   }
   Domain(Domain const&) = delete;
   Domain& operator=(Domain const&) = delete;
@@ -53,7 +56,7 @@ class Domain final : public Part {
   Lattice const& whole() const override { return whole_; }
   std::array<std::int64_t, 3> begin() const override { return begin_; }
   Division const& division() const { return division_; }
-  int depth() const { return depth_; }
+  Depth const& depth() const { return depth_; }
   int rank() const { return rank_; }
   MPI_Comm comm() const { return comm_; }
 
@@ -77,11 +80,15 @@ class Domain final : public Part {
 
  private:
   /// `lattice`, if all ranks were given the same.
-  static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, int depth,
+  static Lattice const& agreed(MPI_Comm comm, Lattice const& lattice, Depth const& depth,
                                Division const& division = {}) {
-    constexpr std::size_t count = 12;
-    std::array<std::int64_t, 2 * count> given{depth, division.y,
-                                              division.z};  // and then their complements
+    constexpr std::size_t count = 14;
+    std::array<std::int64_t, 2 * count> given{};  // numbers, and then their complements
+    given[0] = lattice.cell_sites;
+    given[1] = division.y;
+    given[2] = division.z;
+    given[12] = depth.y;
+    given[13] = depth.z;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       given[3 + axis] = lattice.shape[axis];
       given[6 + axis] = std::bit_cast<std::int64_t>(lattice.spacing[axis]);
@@ -119,15 +126,19 @@ class Domain final : public Part {
         work(axis, messages_[axis]);
   }
 
-  /// Part number `index` of `parts` along an axis.
-  void divide_axis(std::size_t axis, int parts, int index) {
+  int depth_along(std::size_t axis) const { return axis == 1 ? depth_.y : depth_.z; }
+
+  /// Part number `index` of `parts` along an axis, in multiples of `unit`.
+  void divide_axis(std::size_t axis, int parts, int index, std::int64_t unit) {
     neighbor_[axis] = {MPI_PROC_NULL, MPI_PROC_NULL};
     if (parts == 1) return;
     std::int64_t const extent = whole_.shape[axis];
-    std::int64_t const first = extent * index / parts, last = extent * (index + 1) / parts;
+    auto const begin_of = [&](int part) { return extent / unit * part / parts * unit; };
+    std::int64_t const first = begin_of(index), last = begin_of(index + 1);
     bool const closed = whole_.boundary[axis] == Boundary::periodic;
     bool const before = closed || index > 0, after = closed || index + 1 < parts;
-    local_.ghosts[axis] = {before ? depth_ : 0, after ? depth_ : 0};
+    int const depth = depth_along(axis);
+    local_.ghosts[axis] = {before ? depth : 0, after ? depth : 0};
     local_.shape[axis] = last - first + local_.ghosts[axis].before + local_.ghosts[axis].after;
     local_.boundary[axis] = Boundary::open;
     begin_[axis] = first - local_.ghosts[axis].before;
@@ -142,7 +153,7 @@ class Domain final : public Part {
   /// What goes to the neighbours along an axis, and where what comes from them goes.
   detail::Faces faces(std::size_t axis) const {
     auto const& ghosts = local_.ghosts[axis];
-    std::int64_t const end = local_.shape[axis] - ghosts.after;
+    std::int64_t const end = local_.shape[axis] - ghosts.after, depth = depth_along(axis);
     auto const rows = [&](std::int64_t begin, std::int64_t count) {
       detail::Box box{{0, 0, 0}, local_.shape};
       if (axis == 2) {
@@ -153,14 +164,15 @@ class Domain final : public Part {
       box.end[axis] = begin + count;
       return box;
     };
-    return {{rows(ghosts.before, depth_), rows(end - depth_, depth_)},
+    return {{rows(ghosts.before, depth), rows(end - depth, depth)},
             {rows(0, ghosts.before), rows(end, ghosts.after)}};
   }
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   Lattice whole_, local_;
   Division division_;
-  int depth_ = 0, rank_ = 0;
+  Depth depth_;
+  int rank_ = 0;
   std::array<std::int64_t, 3> begin_{0, 0, 0};
   std::array<std::array<int, 2>, 3> neighbor_{};
   mutable std::array<detail::GhostMessages, 3> messages_;

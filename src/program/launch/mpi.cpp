@@ -75,17 +75,17 @@ class MpiRanks final : public Ranks {
   int rank() const override { return rank_; }
   int on_this_machine() const override { return on_this_machine_; }
 
-  std::array<int, 2> division(cayspin::Lattice const& lattice, int ghosts,
+  std::array<int, 2> division(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                               std::optional<std::string> const& asked) const override {
-    if (!asked) return most_parts(lattice, ghosts);
-    auto const chosen = read_parts(*asked, lattice, ghosts);
+    if (!asked) return most_parts(lattice, depth);
+    auto const chosen = read_parts(*asked, lattice, depth);
     if (std::int64_t{chosen[0]} * chosen[1] > count_)
       throw UsageError(
           fmt::format("--ranks {}: accepted: parts for at most {} ranks", *asked, count_));
     return chosen;
   }
 
-  PartOfRank divide(cayspin::Lattice const& lattice, int ghosts,
+  PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                     std::array<int, 2> const& numbers) override {
     int const parts = numbers[0] * numbers[1];
     bool const has_part = rank_ < parts;
@@ -93,14 +93,13 @@ class MpiRanks final : public Ranks {
       MPI_Comm those = MPI_COMM_NULL;
       MPI_Comm_split(comm_, has_part ? 0 : 1, rank_, &those);
       if (is_first())
-        fmt::print(stderr,
-                   "warning: {} of {} ranks have no part: one has at least {} rows or planes\n",
-                   count_ - parts, count_, ghosts);
+        fmt::print(stderr, "warning: {} of {} ranks have no part: one has at least {}\n",
+                   count_ - parts, count_, mpi::to_text(depth));
       use(those);
     }
     if (!has_part || parts == 1) return {.local = lattice, .none = !has_part};
     auto const domain = std::make_shared<mpi::Domain>(
-        comm_, lattice, ghosts, mpi::Division{.y = numbers[0], .z = numbers[1]});
+        comm_, lattice, depth, mpi::Division{.y = numbers[0], .z = numbers[1]});
     auto const box = own_sites(domain->local());
     boxes_.resize(is_first() ? static_cast<std::size_t>(count_) : 0);
     MPI_Gather(&box, sizeof box, MPI_BYTE, boxes_.data(), sizeof box, MPI_BYTE, 0, comm_);
@@ -167,10 +166,10 @@ class MpiRanks final : public Ranks {
     MPI_Comm_rank(comm, &rank_);
   }
 
-  std::array<int, 2> most_parts(cayspin::Lattice const& lattice, int ghosts) const {
+  std::array<int, 2> most_parts(cayspin::Lattice const& lattice, mpi::Depth const& depth) const {
     for (int parts = count_; parts > 1; --parts) {
       try {
-        auto const [y, z] = mpi::divide(lattice, ghosts, parts);
+        auto const [y, z] = mpi::divide(lattice, depth, parts);
         return {y, z};
       } catch (std::invalid_argument const&) {  // not into so many
       }
