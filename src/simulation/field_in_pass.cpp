@@ -294,7 +294,8 @@ template <class Exec>
 void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                          Spins const& spins, double t, FieldFor purpose) const {
   Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
-  // Bonds may reach further than the ghosts that a stage before this one has kept up to date.
+  // Bonds reach further than the ghosts that a stage before this one has kept up to date. The field
+  // of ghosts is nobody's concern: what a stage makes of it is replaced before the next look.
   cayspin::detail::update_ghosts(exec, lattice_, spins);
   auto others = usual;
   others.zeeman = {};
@@ -336,7 +337,6 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
   if (dampings_ && purpose == FieldFor::generator) kernel.dampings = dampings_->array();
   cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel,
                                        spins.layout().own);
-  cayspin::detail::update_ghosts(exec, lattice_, field_);
 }
 
 template <class Spins>

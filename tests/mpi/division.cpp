@@ -69,6 +69,11 @@ TEST(Division, RanksThatDisagreeAreRefused) {
   EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? longer : open, 2), std::invalid_argument);
   EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? closed : open, 2), std::invalid_argument);
   EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, open, last ? 3 : 2), std::invalid_argument);
+  auto crystal = open;
+  crystal.cell_sites = 2;
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, last ? crystal : open, 2), std::invalid_argument);
+  EXPECT_THROW(mpi::Domain(MPI_COMM_WORLD, open, mpi::Depth(2, last ? 3 : 2)),
+               std::invalid_argument);
 }
 
 TEST(Division, SteppersNeedTheirGhosts) {
