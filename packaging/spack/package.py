@@ -43,7 +43,7 @@ class Cayspin(CMakePackage):
     with when("+program"):
         depends_on("hdf5@1.10:~mpi")
         depends_on("fmt@9:")
-        depends_on("muparser")
+        depends_on("muparser@2.3.3:")
         depends_on("tomlplusplus")
         depends_on("eigen@3.4:", type="build")
         depends_on("cli11", type="build")

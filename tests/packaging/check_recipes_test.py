@@ -39,7 +39,7 @@ class Recipes(unittest.TestCase):
     def test_conda(self):
         for old, new, words in [
                 ('version = "0.1.0"', 'version = "0.2.0"', "conda: the version"),
-                ("    - muparser\n", "", "conda: muparser is required"),
+                ("    - muparser >=2.3.3\n", "", "conda: muparser is required"),
                 ("kokkos >=4.5,<6\n    - hdf5", "kokkos >=4.5\n    - hdf5", "conda: kokkos has"),
                 ("cmake >=3.25", "cmake", "conda: cmake has to be"),
                 ("DCAYSPIN_INSTALL", "DCAYSPIN_INSTAL", "conda: there is no CMake option"),
