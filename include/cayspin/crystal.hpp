@@ -79,12 +79,15 @@ struct Crystal {
     return made;
   }
 
+  /// Of a cell.
+  double volume() const {
+    return std::abs(detail::scalar_product(cell[0], detail::vector_product(cell[1], cell[2])));
+  }
+
   /// The cell's volume over that of a box of the same edges.
   double fullness() const {
-    auto const& [a, b, c] = cell;
-    double const volume = detail::scalar_product(a, detail::vector_product(b, c));
     auto const length = [](Point const& v) { return std::hypot(v[0], v[1], v[2]); };
-    return std::abs(volume) / (length(a) * length(b) * length(c));
+    return volume() / (length(cell[0]) * length(cell[1]) * length(cell[2]));
   }
 
   /// Two sites within a millionth of the cell's vectors, in the same or in different cells.

@@ -16,6 +16,8 @@ inline constexpr double bohr_magneton = 9.2740100657e-24;        ///< J/T
 inline constexpr double boltzmann = 1.380649e-23;                ///< J/K
 inline constexpr double electronvolt = 1.602176634e-19;          ///< J
 inline constexpr double rydberg = 2.1798723611030e-18;           ///< J
+inline constexpr double elementary_charge = 1.602176634e-19;     ///< C
+inline constexpr double reduced_planck = 1.054571817e-34;        ///< J s
 /// |gamma| of the free electron, rad/(s T).
 inline constexpr double electron_gamma = 1.760859e11;
 
@@ -54,6 +56,23 @@ inline Damping gilbert(double alpha) { return {alpha, 1 + alpha * alpha}; }
 /// dm/dt = -gamma m x B - alpha gamma m x (m x B)
 inline Damping landau_lifshitz(double alpha) { return {alpha, 1}; }
 
+/// The velocity of Zhang and Li's torque in m/s, as Thiaville et al. (2005) have it, from a current
+/// density in A/m^2 and its polarization: u = -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar.
+/// Electrons, and walls where P > 0, go against the current.
+inline double drift_velocity(double current_density, double polarization, double Ms,
+                             double gamma = electron_gamma) {
+  return -gamma * reduced_planck * polarization * current_density /
+         (2 * elementary_charge * detail::positive(Ms, "Ms"));
+}
+/// The damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). The
+/// efficiency is a polarization or a spin Hall angle; where the product is positive, spins turn
+/// towards the polarization.
+inline double spin_torque(double current_density, double efficiency, double Ms, double thickness) {
+  return reduced_planck * efficiency * current_density /
+         (2 * elementary_charge * detail::positive(Ms, "Ms") *
+          detail::positive(thickness, "the thickness"));
+}
+
 /// What one reduced unit is in SI, and numbers in either.
 class ReducedUnits {
  public:
@@ -61,10 +80,13 @@ class ReducedUnits {
   double length_unit() const { return length_; }  ///< m
   double field_unit() const { return field_; }    ///< T, of B = mu0 H
   double energy_unit() const { return energy_; }  ///< J
-  double damping() const { return damping_; }     ///< of LandauLifshitz
+  /// m/s, of ZhangLi. Its torque gets the factor of the damping's form from the equation.
+  double velocity_unit() const { return velocity_; }
+  double damping() const { return damping_; }  ///< of LandauLifshitz
 
   double time(double seconds) const { return seconds / time_; }
   double length(double metres) const { return metres / length_; }
+  double velocity(double metres_per_second) const { return metres_per_second / velocity_; }
   double applied(double tesla) const { return tesla / field_; }
   double applied_from_ampere_per_metre(double h) const { return applied(vacuum_permeability * h); }
   double energy(double joules) const { return joules / energy_; }
@@ -86,10 +108,11 @@ class ReducedUnits {
         length_(length),
         field_(energy / moment),
         energy_(energy),
+        velocity_(length * gamma * field_),
         damping_(damping.alpha()) {}
 
  private:
-  double time_, length_, field_, energy_, damping_;
+  double time_, length_, field_, energy_, velocity_, damping_;
 };
 
 /// Micromagnetics. The field unit is Ms, the energy unit mu0 Ms^2 times the volume of a cell, the
@@ -114,6 +137,8 @@ class Micromagnetic : public ReducedUnits {
   double exchange(double A) const { return 2 * A / (pressure_ * length_unit() * length_unit()); }
   /// The constant of UniaxialAnisotropy, from Ku in J/m^3 with E = -Ku V (m.e)^2.
   double anisotropy(double Ku) const { return 2 * Ku / pressure_; }
+  /// The constant of CubicAnisotropy, from Kc in J/m^3.
+  double cubic_anisotropy(double Kc) const { return Kc / pressure_; }
   /// The constant of InterfacialDmi and BulkDmi, from D in J/m^2.
   double dmi(double D) const { return D / (pressure_ * length_unit()); }
   /// The strength of SlabDemag, from a demagnetising factor.
@@ -134,8 +159,8 @@ class Micromagnetic : public ReducedUnits {
   std::array<double, 3> spacing_;
 };
 
-/// Atomistic spins on a simple cubic lattice, with E = -J sum of S_i.S_j over pairs counted once
-/// - K sum of (S.e)^2 - mu_s sum of S.B. Lattices have a spacing of 1.
+/// Atomistic spins, with E = -J sum of S_i.S_j over pairs counted once - K sum of (S.e)^2
+/// - mu_s sum of S.B. Lattices have a spacing of 1.
 class Atomistic : public ReducedUnits {
  public:
   /// What the units are made of.
@@ -160,7 +185,9 @@ class Atomistic : public ReducedUnits {
   double exchange(double J) const { return J / energy_unit(); }
   /// The constant of UniaxialAnisotropy, from K in joules.
   double anisotropy(double K) const { return 2 * K / energy_unit(); }
-  /// The constant of InterfacialDmi, from D of a bond in joules.
+  /// The constant of CubicAnisotropy, from Kc in joules.
+  double cubic_anisotropy(double Kc) const { return Kc / energy_unit(); }
+  /// The constant of InterfacialDmi and BulkDmi, from D of a bond in joules.
   double dmi(double D) const { return D / energy_unit(); }
   /// The strength of SlabDemag, from a demagnetising factor.
   double demagnetization(double factor) const { return factor * dipolar_; }

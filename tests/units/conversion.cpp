@@ -45,6 +45,24 @@ TEST(Units, AtomisticFiguresOfTheGuide) {
   EXPECT_EQ(material.dmi(1e-21), 1);
 }
 
+// g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d) by hand; electrons go against the current.
+TEST(Units, CurrentsComeToVelocitiesAndFields) {
+  EXPECT_NEAR(units::drift_velocity(1e12, 0.4, 8e5), -28.9755, 5e-5);
+  EXPECT_NEAR(units::drift_velocity(-2e12, 0.4, 8e5, 2 * units::electron_gamma), 115.902, 5e-4);
+  EXPECT_NEAR(units::spin_torque(1e12, 0.4, 8e5, 3e-9), 0.0548510, 5e-8);
+  EXPECT_NEAR(units::spin_torque(1e12, -0.1, 8e5, 3e-9), -0.01371275, 5e-9);
+  for (auto const& damping : {units::gilbert(0.5), units::landau_lifshitz(0.5)})
+    EXPECT_NEAR(permalloy(damping).velocity(100), 100 / (5e-9 * 1.760859e11 * 1.0053096), 1e-8);
+  EXPECT_THROW(units::drift_velocity(1, 1, 0), std::invalid_argument);
+  EXPECT_THROW(units::spin_torque(1, 1, 1, 0), std::invalid_argument);
+}
+
+TEST(Units, CubicAnisotropyIsAnEnergyOfASite) {
+  EXPECT_NEAR(permalloy({}).cubic_anisotropy(4.8e4), 4.8e4 / 8.04248e5, 1e-6);
+  units::Atomistic const atoms({.mu_s = 1e-23, .energy = 4e-21, .lattice_constant = 3e-10});
+  EXPECT_EQ(atoms.cubic_anisotropy(1e-21), 0.25);
+}
+
 TEST(Units, GoThereAndBack) {
   auto const material = permalloy(units::gilbert(0.3));
   double const eps = std::numeric_limits<double>::epsilon();
