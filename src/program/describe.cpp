@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace cayspin::program {
@@ -56,7 +58,10 @@ std::string lattice_text(io::Scene const& scene) {
       more += fmt::format("; {}: spacing {}, {}", "xyz"[axis],
                           length_text(scene.units, lattice.spacing[axis]),
                           io::to_string(lattice.boundary[axis]));
-  if (!lattice.moments.empty()) more += "; moments " + numbers_text(lattice.moments);
+  if (scene.material && !lattice.moments.empty())
+    more += fmt::format("; mu_s {} J/T", numbers_text(scene.material->moments));
+  else if (!lattice.moments.empty())
+    more += "; moments " + numbers_text(lattice.moments);
   if (!lattice.gyromagnetic.empty()) more += "; gyromagnetic " + numbers_text(lattice.gyromagnetic);
   if (lattice.occupied.there()) more += "; occupied where " + text_of(lattice.occupied);
   if (lattice.frozen.there()) more += "; frozen where " + text_of(lattice.frozen);
@@ -115,36 +120,83 @@ std::string material_text(io::Material const& material) {
   bool const atoms = material.atomistic;
   auto text =
       fmt::format("{} = {:.7g} {}", atoms ? "mu_s" : "Ms", material.moment, atoms ? "J/T" : "A/m");
-  auto const add = [&](std::optional<double> value, char const* name, char const* unit) {
-    if (value) text += fmt::format(", {} = {:.7g} {}", name, *value, unit);
+  auto const add = [&](std::optional<double> value, io::SiteNumbers const& factors,
+                       char const* name, char const* unit) {
+    if (!value) return;
+    auto const constant = factors.there() ? text_of(factors) : fmt::format("{:.7g}", *value);
+    text += fmt::format(", {} = {}{}", name, constant, unit);
   };
-  add(material.exchange, atoms ? "J" : "A", atoms ? "J" : "J/m");
-  add(material.anisotropy, atoms ? "K" : "Ku", atoms ? "J" : "J/m^3");
-  add(material.dmi, "D", atoms ? "J" : "J/m^2");
-  text += fmt::format(", alpha = {:.7g}", material.alpha);
-  if (material.alpha > 0) text += material.gilbert ? " (Gilbert)" : " (Landau-Lifshitz)";
-  add(material.gamma, "gamma", "rad/(s T)");
+  add(material.exchange, material.exchange_factors, atoms ? "J" : "A", atoms ? " J" : " J/m");
+  add(material.anisotropy, material.anisotropy_factors, atoms ? "K" : "Ku",
+      atoms ? " J" : " J/m^3");
+  add(material.dmi, material.dmi_factors, "D", atoms ? " J" : " J/m^2");
+  add(material.bulk_dmi, material.dmi_factors, "D_bulk", atoms ? " J" : " J/m^2");
+  add(material.alpha, material.alpha_factors, "alpha", "");
+  if (material.alpha > 0 || material.alpha_factors.there())
+    text += material.gilbert ? " (Gilbert)" : " (Landau-Lifshitz)";
+  add(material.gamma, {}, "gamma", " rad/(s T)");
   return text;
 }
 
 std::string factors_text(io::SiteNumbers const& numbers) {
-  return numbers.there() ? ", times " + text_of(numbers) : std::string();
+  if (!numbers.there()) return {};
+  return numbers.unit == 1 ? ", times " + text_of(numbers)
+                           : fmt::format(", times {:.6g} ({})", numbers.unit, text_of(numbers));
 }
 
 std::string of_site_text(int site) {
   return site < 0 ? std::string() : fmt::format(", site {}", site);
 }
 
-void add_torques(io::Torque const& torque,
-                 std::vector<std::pair<std::string, std::string>>& lines) {
+// In SI " (K = .. J)": what the constant of a formula is a multiple of.
+std::string in_si_text(io::Scene const& scene, char const* name, double constant) {
+  if (!scene.material) return {};
+  auto const& [x, y, z] = scene.lattice.spacing;
+  double const length = scene.units.length, volume = length * length * length * x * y * z;
+  bool const atoms = scene.material->atomistic;
+  return fmt::format(" ({} = {:.6g} {})", name,
+                     constant * scene.units.energy / (atoms ? 1 : volume), atoms ? "J" : "J/m^3");
+}
+
+void add_anisotropies(io::Scene const& scene,
+                      std::vector<std::pair<std::string, std::string>>& lines) {
+  for (auto const& term : scene.field.anisotropies)
+    lines.emplace_back("anisotropy",
+                       term_text(term) +
+                           (term.factors.there() ? factors_text(term.factors)
+                                                 : in_si_text(scene, "K", term.constant / 2)) +
+                           of_site_text(term.site));
+  for (auto const& term : scene.field.cubic_anisotropies)
+    lines.emplace_back(
+        "anisotropy",
+        fmt::format("E = {:.6g} (a^2 b^2 + b^2 c^2 + c^2 a^2), axes {} and {}{}{}", term.constant,
+                    vector_text(term.axes[0]), vector_text(term.axes[1]),
+                    in_si_text(scene, "Kc", term.constant), of_site_text(term.site)));
+}
+
+std::string couplings_text(io::Scene const& scene, std::vector<Coupling> const& couplings) {
+  auto const text = fmt::format("{} bonds of a cell", couplings.size());
+  if (!scene.material) return text;
+  double largest = 0;
+  for (auto const& coupling : couplings) {
+    for (double const entry : coupling.tensor) largest = std::max(largest, std::abs(entry));
+    largest = std::max(largest, std::abs(coupling.biquadratic));
+  }
+  return fmt::format("{}, up to {:.6g} J", text, largest * scene.units.energy);
+}
+
+void add_torques(io::Scene const& scene, std::vector<std::pair<std::string, std::string>>& lines) {
+  bool const si = scene.units.si;
+  auto const& torque = si ? scene.torque_in_si : scene.field.torque;
   if (auto const& of = torque.zhang_li)
-    lines.emplace_back("torque", fmt::format("Zhang-Li, u = {}, xi = {:.6g}",
-                                             components_text(of->velocity), of->nonadiabaticity));
+    lines.emplace_back("torque",
+                       fmt::format("Zhang-Li, u = {}{}, xi = {:.6g}", components_text(of->velocity),
+                                   si ? " m/s" : "", of->nonadiabaticity));
   if (auto const& of = torque.slonczewski)
     lines.emplace_back("torque",
-                       fmt::format("Slonczewski, damping-like {}, field-like {}, p = {}",
+                       fmt::format("Slonczewski, damping-like {}, field-like {}{}, p = {}",
                                    component_text(of->damping_like), component_text(of->field_like),
-                                   vector_text(of->polarization)));
+                                   si ? " (T)" : "", vector_text(of->polarization)));
 }
 
 std::string slab_text(io::Field const& field) {
@@ -202,17 +254,10 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     if (field.bulk_dmi)
       lines.emplace_back("dmi", fmt::format("E = {:.6g} m.curl m{}", field.bulk_dmi->constant,
                                             factors_text(field.dmi_factors)));
-    if (auto const bonds = io::couplings(scene).size())
-      lines.emplace_back("couplings", fmt::format("{} bonds of a cell", bonds));
-    for (auto const& term : field.anisotropies)
-      lines.emplace_back("anisotropy",
-                         term_text(term) + factors_text(term.factors) + of_site_text(term.site));
-    for (auto const& term : field.cubic_anisotropies)
-      lines.emplace_back("anisotropy",
-                         fmt::format("E = {:.6g} (a^2 b^2 + b^2 c^2 + c^2 a^2), axes {} and {}{}",
-                                     term.constant, vector_text(term.axes[0]),
-                                     vector_text(term.axes[1]), of_site_text(term.site)));
-    add_torques(field.torque, lines);
+    if (auto const bonds = io::couplings(scene); !bonds.empty())
+      lines.emplace_back("couplings", couplings_text(scene, bonds));
+    add_anisotropies(scene, lines);
+    add_torques(scene, lines);
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
     if (!field.applied_in_turn.empty()) lines.emplace_back("applied", list_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "crystal.hpp"
+#include "quantity.hpp"
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
 
@@ -34,13 +35,27 @@ int small_integer(Item const& item, std::int64_t least, std::string_view accepte
   return static_cast<int>(value);
 }
 
-std::array<double, 9> read_tensor(Item const& item) {
+double read_strength(Item const& item, Scene& scene) {
+  auto const [value, unit] = in_joules_of_atoms(item, scene);
+  return number(value) * unit;
+}
+
+Triple read_vector(Item const& item, Scene& scene) {
+  auto const [value, unit] = in_joules_of_atoms(item, scene);
+  auto vector = triple(value);
+  for (double& component : vector) component *= unit;
+  return vector;
+}
+
+std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   constexpr std::string_view accepted = "three rows of three numbers";
+  auto const [value, unit] = in_joules_of_atoms(item, scene);
   std::array<double, 9> tensor;
-  auto const rows = entries(item, 3, 3, accepted);
+  auto const rows = entries(value, 3, 3, accepted);
   for (std::size_t i = 0; i < 3; ++i)
     std::ranges::copy(numbers(rows[i], 3, accepted),
                       tensor.begin() + static_cast<std::ptrdiff_t>(3 * i));
+  for (double& entry : tensor) entry *= unit;
   return tensor;
 }
 
@@ -73,13 +88,14 @@ Coupling read_coupling(Item const& item, Scene& scene) {
   if (tensor) {
     for (auto const& other : {J, D})
       if (other) other->fail("stands beside a tensor, which says it", "no such key");
-    made.tensor = read_tensor(*tensor);
+    made.tensor = read_tensor(*tensor, scene);
   } else if (J || D) {
-    made = Coupling::of(between, offset, J ? number(*J) : 0, D ? triple(*D) : Triple{});
+    made = Coupling::of(between, offset, J ? read_strength(*J, scene) : 0,
+                        D ? read_vector(*D, scene) : Triple{});
   } else if (!biquadratic) {
     item.fail("has no strength", "J, D, tensor or biquadratic");
   }
-  if (biquadratic) made.biquadratic = number(*biquadratic);
+  if (biquadratic) made.biquadratic = read_strength(*biquadratic, scene);
   return made;
 }
 
@@ -107,10 +123,13 @@ Crystal with_spacing(Lattice const& lattice) {
   return made;
 }
 
-std::vector<Coupling> read_shells(Item const& item, Lattice const& lattice) {
+std::vector<Coupling> read_shells(Item const& item, Scene& scene) {
   constexpr std::string_view accepted = "the J of pairs at the first, second, .. distance";
+  auto const& lattice = scene.lattice;
+  auto const [value, unit] = in_joules_of_atoms(item, scene);
   std::vector<double> exchange;
-  for (auto const& entry : entries(item, 1, 100, accepted)) exchange.push_back(number(entry));
+  for (auto const& entry : entries(value, 1, 100, accepted))
+    exchange.push_back(number(entry) * unit);
   auto const sites = static_cast<std::int64_t>(lattice.basis.size());
   // An axis of one cell has no neighbours.
   std::array const repeats{lattice.shape[0] > 1, lattice.shape[1] > 1, lattice.shape[2] > sites};
@@ -141,7 +160,7 @@ void read_couplings(Item const& item, Scene& scene, Field& field) {
     field.couplings_scale = number(*scale);
   }
   if (shells)
-    field.couplings = read_shells(*shells, scene.lattice);
+    field.couplings = read_shells(*shells, scene);
   else
     field.couplings_file = input_file(table, "file", accepted_unit_cell_file);
 }

@@ -106,8 +106,14 @@ void check_crystal(Scene const& scene) {
                                                 : "needs a cell along the axes, of the spacing";
     throw scene_error(scene, key, fmt::format("{}; accepted: {}", needs, accepted));
   };
-  refuse(field.exchange.has_value(), "field.exchange", "field.couplings with J");
-  refuse(field.dmi || field.bulk_dmi, "field.dmi", "field.couplings with D");
+  bool const si = scene.units.si;
+  refuse(field.exchange.has_value(), si ? "material.J" : "field.exchange",
+         "field.couplings with J");
+  refuse(field.dmi || field.bulk_dmi,
+         !si         ? "field.dmi"
+         : field.dmi ? "material.D"
+                     : "material.D_bulk",
+         "field.couplings with D");
   refuse(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
          "no such key");
   refuse(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "quantity.hpp"
 #include "sections.hpp"
 #include "site_numbers.hpp"
 
@@ -102,7 +103,9 @@ CubicAnisotropy read_cubic(Table const& table) {
   CubicAnisotropy term;
   for (auto const* const other : {"constant", "axis"})
     if (auto const item = table.find(other)) item->fail("belongs to a uniaxial one", "no such key");
-  term.constant = number(table.required("cubic", "a finite number"));
+  auto const [value, unit] =
+      in_joules_of_atoms(table.required("cubic", "a finite number"), table.scene());
+  term.constant = number(value) * unit;
   auto const axes = table.required("axes", accepted);
   std::ranges::transform(entries(axes, 2, 2, accepted), term.axes.begin(), direction);
   auto const& [a, b] = term.axes;
@@ -122,7 +125,7 @@ void read_anisotropy(Item const& item, Scene& scene, Field& field) {
   if (auto const axes = table.find("axes")) axes->fail("belongs to a cubic one", "no such key");
   Anisotropy term;
   term.constant =
-      number_of_sites(table.required("constant", "a finite number"), scene, term.factors);
+      constant_of_sites(table.required("constant", "a finite number"), scene, term.factors);
   term.axis = direction(table.required("axis", "three numbers"));
   term.site = read_site(table);
   field.anisotropies.push_back(std::move(term));
@@ -204,8 +207,7 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
 void refuse_reduced_keys(Table const& table) {
   constexpr std::pair<std::string_view, std::string_view> replaced[] = {
       {"exchange", "material.A, or material.J of atomistic spins"},
-      {"dmi", "material.D with material.normal"},
-      {"anisotropy", "material.Ku, or material.K of atomistic spins, with material.axis"},
+      {"dmi", "material.D with material.normal, or material.D_bulk"},
       {"mu0", "no such key: applied is in T"}};
   for (auto const& [key, accepted] : replaced)
     if (auto const item = table.find(key)) item->fail("belongs to reduced units", accepted);

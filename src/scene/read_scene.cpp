@@ -116,6 +116,7 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   scene.system = detail::read_system(root);
   scene.lattice = detail::read_lattice(root, scene.system.kind);
   detail::read_occupied(root, scene);
+  if (scene.units.si) detail::read_material(root, scene);
   detail::read_dampings(root, scene);
   scene.field = detail::read_field(root, scene.system.kind);
   scene.field.torque = detail::read_torque(root, scene.system.kind);
@@ -123,8 +124,10 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
   scene.integrator = read_integrator_for(purpose, root, scene.system.kind);
   scene.thermal = detail::read_thermal(root, scene.system.kind);
   scene.output = detail::read_output(root, scene.integrator.steps);
-  if (scene.units.si) detail::refuse_in_si(scene);
-  if (scene.units.si) detail::convert_to_reduced(root);
+  if (scene.units.si) {
+    detail::check_si(scene);
+    detail::convert_to_reduced(scene);
+  }
   if (write_cell(document, scene) || !overrides.empty()) {
     std::ostringstream stream;
     stream << document << '\n';

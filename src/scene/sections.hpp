@@ -7,8 +7,12 @@ namespace cayspin::inline v0_1::io::detail {
 
 /// Is it units = "SI"? The sections then hold what is typed until convert_to_reduced.
 bool read_is_si(Table const& root);
-/// Reads [material] and turns the scene, of which all sections have been read, into reduced units.
-void convert_to_reduced(Table const& root);
+/// After the lattice; the sections after it are read with the material known.
+void read_material(Table const& root, Scene& scene);
+/// Refuses what [material] says, and what is of atoms in a continuum.
+void check_si(Scene const& scene);
+/// Turns the scene, of which all sections have been read, into reduced units.
+void convert_to_reduced(Scene& scene);
 /// A formula in t, with t in units of `time` and the result in units of `field`.
 std::string scaled_expression(std::string_view text, double time, double field);
 
@@ -25,8 +29,6 @@ void read_couplings(Item const& item, Scene& scene, Field& field);
 /// A number, or an expression in t.
 AppliedComponent read_component_in_time(Item const& item);
 Torque read_torque(Table const& root, SystemKind kind);
-/// Refuses what is known in reduced units alone.
-void refuse_in_si(Scene const& scene);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind);

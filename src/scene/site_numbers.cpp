@@ -81,6 +81,30 @@ std::vector<double> values_at_sites(Scene const& scene, std::string const& text,
   return values;
 }
 
+// Before they are multiplied by their unit.
+std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers,
+                                  std::string_view key, SiteBox const& box) {
+  if (numbers.given) {
+    if (std::ssize(*numbers.given) != sites(scene))
+      throw scene_error(scene, key,
+                        fmt::format("{} numbers were given; accepted: {}, one for each site",
+                                    numbers.given->size(), sites(scene)));
+    if (!are_finite(*numbers.given))
+      throw scene_error(scene, key, "a number that was given is not finite");
+    return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
+  }
+  if (numbers.file.empty()) return values_at_sites(scene, numbers.expression, key, box);
+  try {
+    auto values = read_guarded(numbers.file,
+                               [&] { return ValuesOfSites(numbers.file, scene.lattice).in(box); });
+    if (!are_finite(values))
+      throw std::runtime_error(numbers.file.string() + ": a value is not finite");
+    return values;
+  } catch (std::runtime_error const& error) {
+    throw scene_error(scene, key, error.what());
+  }
+}
+
 }  // namespace
 
 namespace detail {
@@ -124,6 +148,7 @@ double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
 void check_site_numbers(Scene const& scene) {
   auto const check = [&](SiteNumbers const& numbers, std::string_view key) {
     if (numbers.file.empty()) return;
+    key = numbers.key_or(key);
     try {
       try_in_child(numbers.file, [&] { ValuesOfSites(numbers.file, scene.lattice); });
     } catch (std::runtime_error const& error) {
@@ -143,25 +168,9 @@ void check_site_numbers(Scene const& scene) {
 
 std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numbers,
                                      std::string_view key, SiteBox const& box) {
-  if (numbers.given) {
-    if (std::ssize(*numbers.given) != sites(scene))
-      throw scene_error(scene, key,
-                        fmt::format("{} numbers were given; accepted: {}, one for each site",
-                                    numbers.given->size(), sites(scene)));
-    if (!are_finite(*numbers.given))
-      throw scene_error(scene, key, "a number that was given is not finite");
-    return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
-  }
-  if (numbers.file.empty()) return values_at_sites(scene, numbers.expression, key, box);
-  try {
-    auto const values = read_guarded(
-        numbers.file, [&] { return ValuesOfSites(numbers.file, scene.lattice).in(box); });
-    if (!are_finite(values))
-      throw std::runtime_error(numbers.file.string() + ": a value is not finite");
-    return values;
-  } catch (std::runtime_error const& error) {
-    throw scene_error(scene, key, error.what());
-  }
+  auto values = typed_numbers(scene, numbers, numbers.key_or(key), box);
+  for (double& value : values) value *= numbers.unit;
+  return values;
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -36,15 +36,6 @@ void read_occupied(Table const& root, Scene& scene) {
       item->wrong_type(accepted_site_numbers(scene.lattice));
 }
 
-void refuse_in_si(Scene const& scene) {
-  for (auto const* const key :
-       {"lattice.crystal", "lattice.cell", "lattice.basis", "lattice.moments",
-        "lattice.gyromagnetic", "lattice.occupied", "lattice.frozen", "field.couplings", "torque"})
-    if (scene.places.contains(key))
-      throw scene_error(scene, key,
-                        "is for reduced units so far; accepted: no such key in units = \"SI\"");
-}
-
 void require_occupied(Scene const& scene) {
   auto const& shape = scene.lattice.shape;
   if (!scene.lattice.occupied.there()) return;

@@ -1,32 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
 
+#include <cayspin/units.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
+constexpr std::string_view three_components = "three numbers or expressions in t";
+
+std::array<AppliedComponent, 3> read_components(Item const& item) {
+  std::array<AppliedComponent, 3> read;
+  std::ranges::transform(entries(item, 3, 3, three_components), read.begin(),
+                         read_component_in_time);
+  return read;
+}
+
+AppliedComponent times(AppliedComponent const& component, double factor) {
+  if (auto const* const number = std::get_if<double>(&component))
+    return factor * *number + 0.0;  // no -0
+  return fmt::format("({})*({})", factor, std::get<std::string>(component));
+}
+
+// A current in A/m^2 in place of the torque itself: of a material with Ms.
+std::optional<Item> find_current(Table const& table, std::string_view torque,
+                                 std::vector<std::string_view> const& with) {
+  auto const current = table.find("current_density");
+  auto const& material = table.scene().material;
+  if (!current) {
+    for (auto const name : with)
+      if (auto const item = table.find(name))
+        item->fail("stands without current_density", "both or neither");
+    return std::nullopt;
+  }
+  if (auto const item = table.find(torque))
+    current->fail(fmt::format("stands beside {}", torque), "one of the two");
+  if (!material) current->fail("is in A/m^2", fmt::format("{}, or units = \"SI\"", torque));
+  if (material->atomistic)
+    current->fail("needs the magnetization of a continuum",
+                  fmt::format("{}, or material.Ms", torque));
+  return current;
+}
+
+// Velocities in m/s in a scene in SI.
 ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  table.accept_only({"velocity", "nonadiabaticity"});
-  constexpr std::string_view accepted = "three numbers or expressions in t";
+  table.accept_only({"velocity", "current_density", "polarization", "nonadiabaticity"});
   ZhangLi read;
-  std::ranges::transform(entries(table.required("velocity", accepted), 3, 3, accepted),
-                         read.velocity.begin(), read_component_in_time);
+  if (auto const current = find_current(table, "velocity", {"polarization"})) {
+    auto const& [Ms, gamma] = std::tie(scene.material->moment, scene.material->gamma);
+    auto const polarization = number(table.required("polarization", "a number"));
+    read.velocity = read_components(*current);
+    for (auto& component : read.velocity)
+      component = times(component, units::drift_velocity(1, polarization, Ms, gamma));
+  } else {
+    read.velocity = read_components(table.required("velocity", three_components));
+  }
   if (auto const xi = table.find("nonadiabaticity")) read.nonadiabaticity = number(*xi);
   return read;
 }
 
+// Strengths in T in a scene in SI.
 Slonczewski read_slonczewski(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  table.accept_only({"damping_like", "field_like", "polarization"});
+  table.accept_only(
+      {"damping_like", "field_like", "polarization", "current_density", "efficiency", "thickness"});
   Slonczewski read;
   auto const damping_like = table.find("damping_like"), field_like = table.find("field_like");
-  if (!damping_like && !field_like) item.fail("has no strength", "damping_like, field_like");
+  auto const current = find_current(table, "damping_like", {"efficiency", "thickness"});
+  if (!damping_like && !field_like && !current)
+    item.fail("has no strength", "damping_like, field_like");
   if (damping_like) read.damping_like = read_component_in_time(*damping_like);
   if (field_like) read.field_like = read_component_in_time(*field_like);
+  if (current) {
+    auto const efficiency = number(table.required("efficiency", "a number"));
+    auto const thickness = positive_number(table.required("thickness", "a number > 0, in m"));
+    read.damping_like = times(read_component_in_time(*current),
+                              units::spin_torque(1, efficiency, scene.material->moment, thickness));
+  }
   read.polarization = direction(table.required("polarization", "three numbers"));
   return read;
 }

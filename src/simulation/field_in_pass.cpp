@@ -21,6 +21,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace cayspin::simulation {
@@ -147,7 +148,8 @@ class FieldInPass<Spins>::Terms {
  private:
   friend FieldInPass;
 
-  void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box);
+  void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
+                            std::vector<double> moves);
 
   template <class Element>
   using Table = Kokkos::View<Element*, Memory>;
@@ -167,6 +169,7 @@ class FieldInPass<Spins>::Terms {
   Table<CubicAnisotropy> cubics_;
   bool has_pairs_, has_bulk_dmi_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
+  std::optional<ScalarField<Real, Memory>> rates_;  // moves_ over Gilbert's 1 + damping^2
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
   Vec3<double> dmi_vectors_[3] = {};
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
@@ -221,7 +224,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   if (!frozen.empty()) moves_ = field_of<Real, Memory>("moves", lattice, moves);
   moments_ = field_of<Real, Memory>("moments", lattice, moments);
 
-  add_numbers_of_sites(scene, box);
+  add_numbers_of_sites(scene, box, std::move(moves));
 
   // Of the energy of a site, to which its round-off is proportional.
   auto const uniform = io::without_numbers_of_sites(scene.field);
@@ -237,8 +240,8 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
 }
 
 template <class Spins>
-void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
-                                                     io::SiteBox const& box) {
+void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
+                                                     std::vector<double> moves) {
   auto const& field = scene.field;
   auto const read = [&](char const* name, io::SiteNumbers const& numbers, std::string_view key,
                         double bond_energies) {
@@ -256,7 +259,8 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
       exchange_of_sites_.emplace(constants);
     } catch (std::invalid_argument const& error) {
       std::string_view const message = error.what();
-      throw io::scene_error(scene, "field.exchange", message.substr(message.find(": ") + 2));
+      throw io::scene_error(scene, field.exchange_factors.key_or("field.exchange"),
+                            message.substr(message.find(": ") + 2));
     }
   }
   if (field.dmi_factors.there()) {
@@ -271,6 +275,11 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene,
   if (scene.system.dampings.there()) {
     auto const dampings = io::numbers_of_sites(scene, scene.system.dampings, "system.damping", box);
     dampings_ = field_of<Real, Memory>("dampings", lattice_, dampings);
+    if (scene.system.gilbert_of_sites) {
+      for (std::size_t site = 0; site < moves.size(); ++site)
+        moves[site] /= 1 + dampings[site] * dampings[site];
+      rates_ = field_of<Real, Memory>("rates", lattice_, moves);
+    }
   }
   std::vector<AnisotropyOfSites<Real>> axes;
   for (auto const& term : field.anisotropies) {
@@ -334,7 +343,10 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
     std::copy_n(dmi_vectors_, 3, kernel.terms.dmi_of_sites.vectors);
   }
   if (moves_) kernel.moves = moves_->array();
-  if (dampings_ && purpose == FieldFor::generator) kernel.dampings = dampings_->array();
+  if (dampings_ && purpose == FieldFor::generator) {
+    kernel.dampings = dampings_->array();
+    if (rates_) kernel.moves = rates_->array();
+  }
   cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel,
                                        spins.layout().own);
 }

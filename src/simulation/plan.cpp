@@ -95,7 +95,8 @@ double largest_damping(io::Scene const& scene) {
   if (!system.dampings.there()) return system.damping;
   auto const range = range_of_sites(scene, system.dampings, "system.damping");
   if (range.least < 0)
-    throw io::scene_error(scene, "system.damping", "is negative at a site; accepted: numbers >= 0");
+    throw io::scene_error(scene, system.dampings.key_or("system.damping"),
+                          "is negative at a site; accepted: numbers >= 0");
   return range.largest;
 }
 
@@ -103,7 +104,7 @@ double largest_exchange(io::Scene const& scene) {
   constexpr auto key = "field.exchange";
   auto const range = range_of_sites(scene, scene.field.exchange_factors, key);
   if (range.least < 0 && range.largest > 0)
-    throw io::scene_error(scene, key,
+    throw io::scene_error(scene, scene.field.exchange_factors.key_or(key),
                           "the constants must have one sign, as the harmonic mean of a positive "
                           "and a negative one is no bond");
   return range.magnitude();

@@ -29,6 +29,7 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
     auto& alone = add("couplings");
     alone.couplings = field.couplings;
     alone.couplings_file = field.couplings_file;
+    alone.couplings_scale = field.couplings_scale;
   }
   if (!field.anisotropies.empty() || !field.cubic_anisotropies.empty()) {
     auto& alone = add("anisotropy");

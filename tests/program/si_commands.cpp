@@ -35,6 +35,42 @@ TEST_F(SiScene, CheckPrintsBothKindsOfNumbers) {
   EXPECT_NEAR(nlohmann::json::parse(typed.output).at("dt"), json.at("stable_dt"), 1e-25);
 }
 
+TEST_F(SiScene, CheckPrintsCrystalsAndCurrentsInSi) {
+  auto const said = [&](std::string const& material, std::string const& lattice,
+                        std::string const& more) {
+    return start({"check", write("more.toml", "units = 'SI'\nmaterial = { " + material +
+                                                  ", alpha = 0.1, damping_form = 'gilbert' }\n"
+                                                  "system = { kind = 'llg' }\nlattice = { " +
+                                                  lattice + " }\n" + more +
+                                                  "\ninitial = { uniform = [1, 0, 0] }\n"
+                                                  "integrator = { method = 'rkmk4', dt = 1e-16, "
+                                                  "steps = 1 }\noutput = { file = 'o.h5' }\n")})
+        .output;
+  };
+  auto const crystal = said("mu_s = { bohr_magnetons = [2, 0.5] }",
+                            "shape = [4, 4, 4], crystal = 'bcc', spacing = 3e-10",
+                            "field = { couplings = { shells = [7.05e-21, -1e-22] }, anisotropy = [ "
+                            "{ cubic = 2e-24, axes = [[1, 0, 0], [0, 1, 0]], site = 1 }, { "
+                            "constant = { meV = 0.1 }, axis = [0, 0, 1] } ] }");
+  for (std::string const part :
+       {"mu_s = 1.854802e-23 J/T", "mu_s [1.8548e-23, 4.63701e-24] J/T",
+        "couplings   14 bonds of a cell, up to 7.05e-21 J\n", " (Kc = 2e-24 J), site 1\n",
+        "e = (0, 0, 1) (K = 1.60218e-23 J)\n"})
+    EXPECT_TRUE(contains(crystal, part)) << crystal;
+  auto const film =
+      said("Ms = 8e5, A = '1.3e-11*(1+x)', Ku = 500, axis = [0, 0, 1], D_bulk = 1e-3",
+           "shape = [8, 4], spacing = [4e-9, 5e-9, 3e-9]",
+           "field = { anisotropy = { cubic = 4.8e4, axes = [[1, 0, 0], [0, 1, 0]] } }\n"
+           "torque = { zhang_li = { current_density = [1e12, 0, '1e12*t'], polarization = 0.4 }, "
+           "slonczewski = { field_like = 0.01, polarization = [0, 0, 1] } }");
+  for (std::string const part :
+       {"A = 1.3e-11*(1+x) J/m, Ku = 500 J/m^3, D_bulk = 0.001 J/m^2, alpha = 0.1 (Gilbert)",
+        "Lap(m), times 1.55425e+11 (1.3e-11*(1+x))\n", " (K = 500 J/m^3)\n",
+        " (Kc = 48000 J/m^3)\n", "torque      Zhang-Li, u = (-28.9755, ", ") m/s, xi = 0\n",
+        "torque      Slonczewski, damping-like 0, field-like 0.01 (T), p = (0, 0, 1)\n"})
+    EXPECT_TRUE(contains(film, part)) << film;
+}
+
 TEST_F(SiScene, RestartGivesTheBitsOfARunWithoutABreak) {
   auto const scene = [&](char const* steps) {
     return film(std::string("method = \"rkmk4\"\ndt = 1e-13\nsteps = ") + steps,

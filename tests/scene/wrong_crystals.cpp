@@ -367,31 +367,5 @@ TEST(WrongCrystal, BodiesHaveNoSites) {
                SceneError);
 }
 
-TEST(WrongCrystal, SiUnitsHaveNoneOfThisYet) {
-  constexpr std::string_view si_scene = R"toml(units = "SI"
-material = { mu_s = 1e-23, J = 1e-21, alpha = 0 }
-system = { kind = "llg" }
-lattice = { shape = [4], spacing = 1e-10 }
-initial = { uniform = [0, 0, 1] }
-integrator = { method = "rkmk4", dt = 1e-15, steps = 1 }
-)toml";
-  EXPECT_NO_THROW(parse_scene(std::string(si_scene), "si.toml"));
-  for (std::string const override :
-       {"lattice.crystal='bcc'", "lattice.cell=[[1,0,0],[0,1,0],[0,0,1]]",
-        "lattice.basis=[[0,0,0]]", "lattice.moments=1", "lattice.gyromagnetic=1",
-        "lattice.occupied='1'", "lattice.frozen='0'", "field.couplings=[{offset=[1,0,0],J=1}]",
-        "torque={slonczewski={field_like=1,polarization=[0,0,1]}}"})
-    try {
-      parse_scene(std::string(si_scene), "si.toml", {override});
-      ADD_FAILURE() << override << " was accepted";
-    } catch (SceneError const& error) {
-      std::string const message = error.what();
-      EXPECT_TRUE(message.starts_with("--set " + override + ": ")) << message;
-      EXPECT_NE(message.find("is for reduced units so far; accepted: no such key"),
-                std::string::npos)
-          << message;
-    }
-}
-
 }  // namespace
 }  // namespace cayspin::inline v0_1::io::test

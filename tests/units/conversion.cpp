@@ -33,7 +33,7 @@ TEST(Units, PermalloyHasTheFiguresOfTheGuide) {
                 "5.6491e-12", exact);
 }
 
-TEST(Units, AtomisticFiguresOfTheGuide) {
+TEST(Units, AtomisticFigures) {
   units::Atomistic const material(
       {.mu_s = 2 * units::bohr_magneton, .energy = 1e-21, .lattice_constant = 2.5e-10});
   constexpr double exact = 0;

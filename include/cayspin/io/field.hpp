@@ -112,8 +112,13 @@ struct SiteNumbers {
   std::string expression;
   std::filesystem::path file;
   GivenNumbers given;
+  double unit = 1;  ///< what each is multiplied by: they may be typed in SI
+  std::string key;  ///< in SI that of [material], where it stands in place of another
 
   bool there() const { return !expression.empty() || !file.empty() || given; }
+  std::string_view key_or(std::string_view other) const {
+    return key.empty() ? other : std::string_view(key);
+  }
 };
 
 /// H = constant (m.axis) axis.

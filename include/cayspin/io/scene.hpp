@@ -41,9 +41,10 @@ struct InertiaFile {
 /// The table [system].
 struct System {
   SystemKind kind = SystemKind::llg;
-  double damping = 0;      ///< llg: lambda >= 0
-  SiteNumbers dampings;    ///< llg: in place of it, which then is 0
-  bool precession = true;  ///< llg: false is the overdamped A = lambda m x H
+  double damping = 0;             ///< llg: lambda >= 0
+  SiteNumbers dampings;           ///< llg: in place of it, which then is 0
+  bool gilbert_of_sites = false;  ///< their torques are divided by 1 + damping^2
+  bool precession = true;         ///< llg: false is the overdamped A = lambda m x H
   std::variant<PrincipalMoments, InertiaTensor, InertiaFile> inertia;  ///< rigid_body
 };
 
@@ -160,10 +161,14 @@ struct Output {
 /// System, Lattice and Field.
 struct Material {
   bool atomistic = false;            ///< mu_s, J and K in place of Ms, A and Ku
-  double moment = 0;                 ///< Ms, A/m, or mu_s, J/T
+  double moment = 0;                 ///< Ms, A/m, or mu_s, J/T, of the first site
+  std::vector<double> moments;       ///< J/T, one for each site of the cell; empty: all alike
   std::optional<double> exchange;    ///< A, J/m, or J of a bond, J
   std::optional<double> anisotropy;  ///< Ku, J/m^3, or K of a site, J
-  std::optional<double> dmi;         ///< D, J/m^2, or D of a bond, J
+  std::optional<double> dmi;         ///< D, J/m^2, or D of a bond, J, of an interface
+  std::optional<double> bulk_dmi;    ///< the same of the bulk
+  SiteNumbers exchange_factors, anisotropy_factors, dmi_factors, alpha_factors;  ///< in SI
+  Triple axis = {}, normal = {};                                                 ///< unit vectors
   double alpha = 0;
   bool gilbert = true;  ///< Gilbert's equation, or that of Landau and Lifshitz
   double gamma = 0;     ///< rad/(s T)
@@ -176,6 +181,7 @@ struct Scene {
   std::optional<Material> material;  ///< with units = "SI"
   std::optional<std::array<AppliedComponent, 3>>
       applied_in_tesla;  ///< field.applied as typed, with t in s: with units = "SI"
+  Torque torque_in_si;   ///< with velocities in m/s, strengths in T and t in s: with units = "SI"
   System system;
   Lattice lattice;
   Field field;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "reader.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace cayspin::inline v0_1::io::detail {
+
+/// A unit that a table may name: { meV = number }.
+struct Unit {
+  std::string_view name;
+  double in_si;
+};
+
+/// What is typed, and what one of it is in SI.
+struct InUnit {
+  Item value;
+  double unit = 1;
+};
+
+constexpr std::string_view accepted_energy =
+    "a number in J, { meV = number }, { eV = number } or { mRy = number }";
+constexpr std::string_view accepted_moment = "a number in J/T, or { bohr_magnetons = number }";
+
+/// The entry of such a table, or the item itself. `accepted`: for messages.
+InUnit in_joules(Item const& item, Scene& scene, std::string_view accepted = accepted_energy);
+InUnit in_joules_per_tesla(Item const& item, Scene& scene,
+                           std::string_view accepted = accepted_moment);
+
+/// A number, with mu_s an energy; or numbers of sites, and then 1.
+double constant_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
+
+/// With mu_s an energy, otherwise the item itself.
+InUnit in_joules_of_atoms(Item const& item, Scene& scene);
+
+}  // namespace cayspin::inline v0_1::io::detail

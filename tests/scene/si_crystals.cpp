@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// units = "SI": crystals, sublattices, currents and constants of sites.
+#include "hdf5_file.hpp"
+#include "scene_file.hpp"
+
+#include <cayspin/io/expression.hpp>
+
+#include <cmath>
+#include <numeric>
+
+namespace cayspin::inline v0_1::io::test {
+namespace {
+
+// The tests do not take these from the library.
+constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11, mu_B = 9.2740100657e-24,
+                 meV = 1.602176634e-22, e = 1.602176634e-19, hbar = 1.054571817e-34;
+
+constexpr std::string_view iron = R"toml(units = "SI"
+[material]
+mu_s = { bohr_magnetons = 2.22 }
+alpha = 0
+[system]
+kind = "llg"
+[lattice]
+shape = [4, 3, 2]
+crystal = "bcc"
+spacing = 2.866e-10
+[field]
+couplings = { shells = [7.05e-21] }
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "rkmk4"
+dt = 1e-16
+steps = 10
+)toml";
+
+constexpr std::string_view permalloy = R"toml(units = "SI"
+[material]
+Ms = 8e5
+A = 1.3e-11
+alpha = 0.5
+damping_form = "gilbert"
+[system]
+kind = "llg"
+[lattice]
+shape = [4, 3, 2]
+spacing = [4e-9, 4e-9, 3e-9]
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "rkmk4"
+dt = 1e-14
+steps = 10
+)toml";
+
+Scene iron_with(std::vector<std::string> const& overrides) {
+  return parse_scene(std::string(iron), "iron.toml", overrides);
+}
+Scene permalloy_with(std::vector<std::string> const& overrides) {
+  return parse_scene(std::string(permalloy), "permalloy.toml", overrides);
+}
+
+void expect_close(double value, double expected) {
+  EXPECT_NEAR(value, expected, 8e-16 * std::abs(expected));
+}
+void expect_close(std::vector<double> const& values, std::vector<double> const& expected) {
+  ASSERT_EQ(values.size(), expected.size());
+  for (std::size_t i = 0; i < values.size(); ++i) expect_close(values[i], expected[i]);
+}
+
+SiteBox whole(Scene const& scene) { return {{0, 0, 0}, scene.lattice.shape}; }
+
+TEST(SiCrystals, IronHasItsUnits) {
+  auto const scene = iron_with({"thermal={temperature=300}", "material.alpha=0.1",
+                                "material.damping_form='landau_lifshitz'"});
+  // 7.05e-21 J over 2.22 Bohr magnetons, and over k 300 K; by hand.
+  EXPECT_NEAR(scene.units.field, 342.427, 1e-3);
+  EXPECT_NEAR(scene.units.time, 1.65846e-14, 1e-19);
+  EXPECT_NEAR(scene.thermal->temperature, 0.587510, 1e-6);
+  expect_close(scene.units.energy, 7.05e-21);
+  expect_close(scene.units.length, 2.866e-10);
+  EXPECT_TRUE(scene.lattice.moments.empty());
+  EXPECT_EQ(scene.lattice.spacing, (Triple{1, 1, 1}));
+  auto const bonds = couplings(scene);
+  ASSERT_EQ(bonds.size(), 8U);
+  for (auto const& bond : bonds)
+    EXPECT_EQ(bond.tensor, (std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+}
+
+TEST(SiCrystals, VampiresFileIsInJoules) {
+  auto const scene = iron_with({"field.couplings={file='" CAYSPIN_TEST_DATA "/bcc_iron.ucf'}"});
+  expect_close(scene.units.energy, 2.22 * mu_B);  // 1 T on a moment
+  auto const bonds = couplings(scene);
+  ASSERT_EQ(bonds.size(), 8U);
+  for (auto const& bond : bonds) expect_close(bond.tensor[4], 7.05e-21 / (2.22 * mu_B));
+  auto const scaled =
+      iron_with({"field.couplings={file='" CAYSPIN_TEST_DATA "/bcc_iron.ucf',scale=-2}",
+                 "material.K=1e-24", "material.axis=[0,0,1]"});
+  for (auto const& bond : couplings(scaled)) expect_close(bond.tensor[8], -2 * 7050);
+}
+
+TEST(SiCrystals, MomentsAreRelativeToTheFirst) {
+  for (std::string const typed :
+       {"[{bohr_magnetons=2}, {bohr_magnetons=0.5}]", "{bohr_magnetons=[2,0.5]}",
+        "[18.5480201314e-24,4.63700503285e-24]"}) {
+    auto const scene = iron_with({"material.mu_s=" + typed});
+    expect_close(scene.lattice.moments, {1, 0.25});
+    expect_close(scene.material->moments, {2 * mu_B, 0.5 * mu_B});
+    expect_close(scene.units.field, 7.05e-21 / (2 * mu_B));
+  }
+  EXPECT_TRUE(iron_with({"material.mu_s=[1e-23,1e-23]"}).lattice.moments.empty());
+  expect_close(iron_with({"lattice.gyromagnetic=[1,1.1]"}).lattice.gyromagnetic, {1, 1.1});
+}
+
+TEST(SiCrystals, CouplingsAreEnergiesOfABond) {
+  auto const scene =
+      iron_with({"field.couplings=[{between=[0,1],J={meV=10},D=[0,1e-22,0]},"
+                 "{offset=[1,0,0],tensor={meV=[[1,2,3],[4,5,6],[7,8,-20]]}},"
+                 "{between=[1,1],offset=[1,0,0],biquadratic={eV=0.001}},"
+                 "{between=[1,1],offset=[0,1,0],D={mRy=[0,0,1]},biquadratic=-1e-22}]"});
+  double const unit = 20 * meV;
+  expect_close(scene.units.energy, unit);
+  auto const bonds = couplings(scene);
+  ASSERT_EQ(bonds.size(), 4U);
+  expect_close(bonds[0].tensor[0], 0.5);
+  expect_close(bonds[0].tensor[2], -1e-22 / unit);
+  expect_close(bonds[0].tensor[6], 1e-22 / unit);
+  for (std::size_t i = 0; i < 8; ++i)
+    expect_close(bonds[1].tensor[i], static_cast<double>(i + 1) / 20);
+  expect_close(bonds[1].tensor[8], -1);
+  expect_close(bonds[2].biquadratic, 0.05);
+  expect_close(bonds[3].tensor[1], 2.1798723611030e-21 / unit);
+  expect_close(bonds[3].biquadratic, -1e-22 / unit);
+  auto const shells = iron_with({"field.couplings={shells={meV=[10,-4]}}"});
+  expect_close(shells.units.energy, 10 * meV);
+  double least = 0;
+  for (auto const& bond : couplings(shells)) least = std::min(least, bond.tensor[0]);
+  expect_close(least, -0.4);
+}
+
+TEST(SiCrystals, AnisotropiesAreEnergies) {
+  auto const scene =
+      iron_with({"field.anisotropy=[{constant=1e-23,axis=[0,0,1],site=1},{cubic={meV=0.1},axes=[[1,"
+                 "0,0],[0,1,0]],site=0},{constant={meV=1},axis=[1,0,0]}]",
+                 "material.K=2e-23", "material.axis=[0,3,0]"});
+  auto const& [uniaxial, cubic] =
+      std::tie(scene.field.anisotropies, scene.field.cubic_anisotropies);
+  ASSERT_EQ(uniaxial.size(), 3U);
+  expect_close(uniaxial[0].constant, 4e-23 / 7.05e-21);
+  EXPECT_EQ(uniaxial[0].axis, (Triple{0, 1, 0}));
+  EXPECT_EQ(uniaxial[0].site, -1);
+  expect_close(uniaxial[1].constant, 2e-23 / 7.05e-21);
+  EXPECT_EQ(uniaxial[1].site, 1);
+  expect_close(uniaxial[2].constant, 2 * meV / 7.05e-21);
+  ASSERT_EQ(cubic.size(), 1U);
+  expect_close(cubic[0].constant, 0.1 * meV / 7.05e-21);
+  EXPECT_EQ(cubic[0].site, 0);
+  auto const film =
+      permalloy_with({"field.anisotropy=[{cubic=4.8e4,axes=[[1,0,0],[0,1,0]]},"
+                      "{constant=500,axis=[0,1,0]}]"});
+  double const pressure = mu0 * 8e5 * 8e5;
+  expect_close(film.field.cubic_anisotropies.at(0).constant, 4.8e4 / pressure);
+  expect_close(film.field.anisotropies.at(0).constant, 1000 / pressure);
+}
+
+TEST(SiCrystals, ASlabHasTheMagnetizationOfTheCrystal) {
+  auto const strength = [](std::string const& lattice) {
+    return iron_with({lattice, "field.slab_demag={normal=[0,0,1],strength=0.5}"})
+        .field.slab_demag->strength;
+  };
+  double const moment = 2.22 * mu_B,
+               cube = 0.5 * mu0 * moment * moment / std::pow(2.866e-10, 3) / 7.05e-21;
+  expect_close(strength("lattice.crystal='bcc'"), 2 * cube);
+  expect_close(strength("lattice.crystal='fcc'"), 4 * cube);
+  EXPECT_NEAR(strength("lattice.crystal='honeycomb'"), 2 * cube / std::sqrt(0.75), 1e-15);
+}
+
+TEST(SiScenes, BulkDmiIsThatOfAnInterfaceWithoutItsNormal) {
+  auto const film = permalloy_with({"material.D_bulk=3e-3"});
+  ASSERT_TRUE(film.field.bulk_dmi);
+  EXPECT_FALSE(film.field.dmi);
+  expect_close(film.field.bulk_dmi->constant, 3e-3 / (mu0 * 8e5 * 8e5 * 4e-9));
+  auto const atoms = iron_with({"material.D_bulk={meV=1}", "lattice.crystal='bcc'",
+                                "lattice={shape=[4],spacing=3e-10}", "field={}"});
+  EXPECT_EQ(atoms.field.bulk_dmi->constant, 1);
+  expect_close(atoms.units.energy, meV);
+}
+
+TEST(SiScenes, ConstantsOfSitesAreInSi) {
+  Folder const folder;
+  std::vector<double> stored(24);
+  std::iota(stored.begin(), stored.end(), 500);
+  write_dataset(folder / "film.h5", "/values", {2, 3, 4}, stored);
+  auto const text = replaced(permalloy, "A = 1.3e-11\nalpha = 0.5",
+                             "A = '1.3e-11*(1+i)'\nKu = { file = 'film.h5' }\naxis = [0, 0, 1]\n"
+                             "D = '1e-3*j'\nnormal = [0, 0, 1]\nalpha = '0.1*(1+k)'");
+  auto const scene = read_text(folder, text);
+  check_files(scene);
+  auto const& field = scene.field;
+  double const pressure = mu0 * 8e5 * 8e5;
+  auto const values = [&](SiteNumbers const& numbers, std::string_view key) {
+    return numbers_of_sites(scene, numbers, key, whole(scene));
+  };
+  auto const A = values(field.exchange_factors, "field.exchange"),
+             K = values(field.anisotropies.at(0).factors, "field.anisotropy"),
+             D = values(field.dmi_factors, "field.dmi"),
+             alpha = values(scene.system.dampings, "system.damping");
+  for (std::size_t site = 0; site < 24; ++site) {
+    auto const i = static_cast<double>(site % 4), j = static_cast<double>(site / 4 % 3),
+               k = static_cast<double>(site / 12);
+    expect_close(A[site], 2 * 1.3e-11 * (1 + i) / (pressure * 16e-18));
+    expect_close(K[site], 2 * (500 + static_cast<double>(site)) / pressure);
+    expect_close(D[site], 1e-3 * j / (pressure * 4e-9));
+    expect_close(alpha[site], 0.1 * (1 + k));
+  }
+  EXPECT_EQ(field.exchange->constant, 1);
+  EXPECT_EQ(field.dmi->interfacial, 1);
+  EXPECT_EQ(field.anisotropies[0].constant, 1);
+  EXPECT_EQ(scene.system.damping, 0);
+  EXPECT_TRUE(scene.system.gilbert_of_sites);
+  expect_close(scene.units.time, 1 / (gamma * mu0 * 8e5));  // sites take 1 + alpha^2
+  auto const landau_lifshitz =
+      read_text(folder, replaced(text, "\"gilbert\"", "'landau_lifshitz'"));
+  EXPECT_FALSE(landau_lifshitz.system.gilbert_of_sites);
+}
+
+TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
+  auto const scene =
+      permalloy_with({"torque={zhang_li={velocity=[100,'50*sin(1e9*t)',0],nonadiabaticity=0.04}}"});
+  auto const& of = scene.field.torque.zhang_li.value();
+  // In cells over the turn of a spin by mu0 Ms, whatever the damping's form.
+  double const unit = 4e-9 * gamma * mu0 * 8e5;
+  expect_close(std::get<double>(of.velocity[0]), 100 / unit);
+  double const t = 1e-9 / scene.units.time;
+  expect_close(Expression(std::get<std::string>(of.velocity[1]), {"t"})(&t),
+               50 * std::sin(1.0) / unit);
+  EXPECT_EQ(of.nonadiabaticity, 0.04);
+  EXPECT_EQ(std::get<double>(scene.torque_in_si.zhang_li->velocity[0]), 100);
+}
+
+TEST(SiTorques, ElectronsOfPermalloyGoAgainstTheCurrent) {
+  auto const scene =
+      permalloy_with({"torque={zhang_li={current_density=[1e12,'-1e12*t',0],polarization=0.4}}"});
+  auto const& in_si = scene.torque_in_si.zhang_li.value();
+  // g mu_B P j / (2 e Ms), by hand.
+  EXPECT_NEAR(std::get<double>(in_si.velocity[0]), -28.9755, 1e-4);
+  double const t = 2;
+  EXPECT_NEAR(Expression(std::get<std::string>(in_si.velocity[1]), {"t"})(&t), 57.9510, 2e-4);
+  double const u = gamma * hbar * 0.4 * 1e12 / (2 * e * 8e5);
+  expect_close(std::get<double>(scene.field.torque.zhang_li->velocity[0]),
+               -u / (4e-9 * gamma * mu0 * 8e5));
+}
+
+TEST(SiTorques, StrengthsAreFields) {
+  auto const scene = permalloy_with(
+      {"torque={slonczewski={damping_like='0.1*t',field_like=0.02,polarization=[0,2,0]}}"});
+  auto const& of = scene.field.torque.slonczewski.value();
+  expect_close(std::get<double>(of.field_like), 0.02 / (mu0 * 8e5));
+  double const t = 3 / scene.units.time;
+  expect_close(Expression(std::get<std::string>(of.damping_like), {"t"})(&t), 0.3 / (mu0 * 8e5));
+  EXPECT_EQ(of.polarization, (Triple{0, 1, 0}));
+  auto const current = permalloy_with(
+      {"torque={slonczewski={current_density=1e12,efficiency=0.4,thickness=3e-9,field_like=0.01,"
+       "polarization=[0,1,0]}}"});
+  // hbar P j / (2 e Ms d), by hand.
+  EXPECT_NEAR(std::get<double>(current.torque_in_si.slonczewski->damping_like), 0.0548510, 1e-7);
+  expect_close(std::get<double>(current.field.torque.slonczewski->damping_like),
+               hbar * 0.4 * 1e12 / (2 * e * 8e5 * 3e-9) / (mu0 * 8e5));
+  expect_close(std::get<double>(current.field.torque.slonczewski->field_like), 0.01 / (mu0 * 8e5));
+  auto const atoms = iron_with({"torque={slonczewski={damping_like=2,polarization=[0,1,0]}}"});
+  expect_close(std::get<double>(atoms.field.torque.slonczewski->damping_like),
+               2 * 2.22 * mu_B / 7.05e-21);
+}
+
+TEST(SiScenes, ShapesAreOfEitherMaterial) {
+  for (auto const& scene :
+       {iron_with({"lattice.occupied='x<0.5'", "lattice.frozen='i==0'"}),
+        permalloy_with({"lattice.occupied='x<0.5'", "lattice.frozen='i==0'"})}) {
+    EXPECT_EQ(scene.lattice.occupied.expression, "x<0.5");
+    EXPECT_EQ(scene.lattice.frozen.expression, "i==0");
+  }
+}
+
+struct Wrong {
+  char const *override, *expected, *accepted;
+};
+
+void expect_refused(std::string_view text, Wrong const& wrong) {
+  SCOPED_TRACE(wrong.override);
+  try {
+    parse_scene(std::string(text), "si.toml", {wrong.override});
+    ADD_FAILURE() << "accepted";
+  } catch (SceneError const& error) {
+    std::string const message = error.what();
+    EXPECT_NE(message.find(wrong.expected), std::string::npos) << message;
+    auto const at = message.find("; accepted: ");
+    ASSERT_NE(at, std::string::npos) << message;
+    EXPECT_NE(message.find(wrong.accepted, at), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(WrongSiCrystal, IsRefusedInOneLine) {
+  for (auto const& wrong : std::vector<Wrong>{
+           {"lattice.moments=1", ": lattice.moments: belongs to reduced units", "material.mu_s"},
+           {"material.mu_s=[1e-23]", ": material.mu_s: has 1 entries", "2 of these, one for each"},
+           {"material.mu_s=[1e-23,0]", ": material.mu_s[1]: 0 is not positive", "> 0"},
+           {"material.mu_s=[1e-23,'x']", ": material.mu_s[1]: 'x' is a string", "J/T"},
+           {"material.mu_s={bohr_magnetons=[1,{bohr_magnetons=1}]}",
+            ": material.mu_s.bohr_magnetons[1]: is a table", "J/T"},
+           {"material.mu_s={bohr_magneton=1}", ": material.mu_s.bohr_magneton: unknown key",
+            "bohr_magnetons"},
+           {"material.J=1e-21", ": material.J: needs one site in a cell", "field.couplings with J"},
+           {"material.D_bulk=1e-21", ": material.D_bulk: needs one site in a cell",
+            "field.couplings with D"},
+           {"material={mu_s=1e-23,D=1e-21,normal=[0,0,1],alpha=0}",
+            ": material.D: needs one site in a cell", "field.couplings with D"},
+           {"field.exchange=1", ": field.exchange: belongs to reduced units", "material.A"},
+           {"field.dmi={bulk=1}", ": field.dmi: belongs to reduced units", "material.D_bulk"},
+           {"field.couplings={shells={meW=[1]}}", ": field.couplings.shells.meW: unknown key",
+            "meV, eV, mRy"},
+           {"field.couplings={shells={meV=1}}", ": field.couplings.shells.meV: 1 is an integer",
+            "the J of pairs"},
+           {"field.couplings=[{between=[0,1],J={meV=1,eV=1}}]",
+            ": field.couplings[0].J: is not one number with its unit", "{ eV = number }"},
+           {"field.anisotropy={constant={K=1},axis=[0,0,1]}",
+            ": field.anisotropy.constant.K: unknown key", "meV, eV, mRy"},
+           {"field.anisotropy={constant=true,axis=[0,0,1]}",
+            ": field.anisotropy.constant: true is a boolean", "an expression"},
+           {"field.anisotropy={cubic='x',axes=[[1,0,0],[0,1,0]]}",
+            ": field.anisotropy.cubic: 'x' is a string", "a finite number"},
+           {"torque={slonczewski={current_density=1e12,efficiency=0.4,thickness=1e-9,polarization="
+            "[0,0,1]}}",
+            ": torque.slonczewski.current_density: needs the magnetization of a continuum",
+            "damping_like, or material.Ms"}})
+    expect_refused(iron, wrong);
+  expect_refused(
+      replaced(iron, "bohr_magnetons = 2.22", "bohr_magnetons = [1, 2]"),
+      {"field.slab_demag={normal=[0,0,1]}", ": field.slab_demag: needs moments that are all alike",
+       "one number in material.mu_s"});
+}
+
+TEST(WrongSiContinuum, IsRefusedInOneLine) {
+  for (auto const& wrong : std::vector<Wrong>{
+           {"lattice.moments=1", ": lattice.moments: belongs to reduced units", "material.Ms"},
+           {"lattice.crystal='bcc'", ": lattice.crystal: is of atoms", "material.mu_s"},
+           {"lattice.cell=[[1,0,0],[0,1,0],[0,0,1]]", ": lattice.cell: is of atoms", "mu_s"},
+           {"lattice.basis=[[0,0,0]]", ": lattice.basis: is of atoms", "material.mu_s"},
+           {"field.couplings=[{offset=[1,0,0],J=1e-21}]", ": field.couplings: is of atoms",
+            "material.mu_s, or no such key"},
+           {"material.A='q'", ": material.A: expression \"q\"", ""},
+           {"material.A={meV=1}", ": material.A.meV: unknown key", "file"},
+           {"material.alpha='q'", ": material.alpha: expression \"q\"", ""},
+           {"torque={zhang_li={current_density=[1e12,0,0]}}",
+            ": torque.zhang_li.polarization: is missing", "a number"},
+           {"torque={zhang_li={current_density=1e12,polarization=0.4}}",
+            ": torque.zhang_li.current_density: 1000000000000.0 is a number", "three numbers"},
+           {"torque={zhang_li={current_density=[1e12,0,0],velocity=[1,0,0],polarization=0.4}}",
+            ": torque.zhang_li.current_density: stands beside velocity", "one of the two"},
+           {"torque={zhang_li={velocity=[1,0,0],polarization=0.4}}",
+            ": torque.zhang_li.polarization: stands without current_density", "both or neither"},
+           {"torque={slonczewski={current_density=1e12,thickness=1e-9,polarization=[0,0,1]}}",
+            ": torque.slonczewski.efficiency: is missing", "a number"},
+           {"torque={slonczewski={current_density=1e12,efficiency=0.4,polarization=[0,0,1]}}",
+            ": torque.slonczewski.thickness: is missing", "in m"},
+           {"torque={slonczewski={current_density=1e12,efficiency=0.4,thickness=0,polarization=[0,"
+            "0,1]}}",
+            ": torque.slonczewski.thickness: 0 is not positive", "> 0"},
+           {"torque={slonczewski={current_density=1e12,damping_like=1,efficiency=0.4,thickness=1e-"
+            "9,polarization=[0,0,1]}}",
+            ": torque.slonczewski.current_density: stands beside damping_like", "one of the two"},
+           {"torque={slonczewski={field_like=1,efficiency=0.4,polarization=[0,0,1]}}",
+            ": torque.slonczewski.efficiency: stands without current_density", "both or neither"}})
+    expect_refused(permalloy, wrong);
+  expect_refused(replaced(permalloy, "A = 1.3e-11", "D = 1e-3\nnormal = [0, 0, 1]"),
+                 {"material.D_bulk=1e-3", ": material.D_bulk: stands beside material.D",
+                  "D with normal, of an interface, or D_bulk"});
+  expect_refused(
+      replaced(permalloy, "alpha = 0.5", "alpha = '0.5'"),
+      {"material.damping_form=1", ": material.damping_form: 1 is an integer", "gilbert"});
+  expect_refused(llg_scene,
+                 {"torque={zhang_li={current_density=[1e12,0,0],polarization=0.4}}",
+                  ": torque.zhang_li.current_density: is in A/m^2", "velocity, or units = \"SI\""});
+}
+
+TEST(WrongSiContinuum, AFormOfDampingIsNeededForNumbersOfSites) {
+  auto const text = replaced(replaced(permalloy, "alpha = 0.5", "alpha = '0.5'"),
+                             "damping_form = \"gilbert\"\n", "");
+  expect_refused(text, {"lattice.frozen='0'", ": material.damping_form: is missing", "gilbert"});
+}
+
+TEST(WrongSiContinuum, MessagesOfSitesNameTheMaterial) {
+  auto const scene = permalloy_with({"material.A={file='/none.h5'}"});
+  try {
+    check_files(scene);
+    ADD_FAILURE() << "accepted";
+  } catch (SceneError const& error) {
+    EXPECT_NE(std::string(error.what()).find(": material.A: /none.h5"), std::string::npos)
+        << error.what();
+  }
+  auto const pole = permalloy_with({"material.alpha='1/(i-2)'"});
+  try {
+    numbers_of_sites(pole, pole.system.dampings, "system.damping", whole(pole));
+    ADD_FAILURE() << "accepted";
+  } catch (SceneError const& error) {
+    EXPECT_NE(std::string(error.what()).find(": material.alpha: "), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::inline v0_1::io::test
