@@ -4,6 +4,8 @@
 // scene -> lattice + field -> generator -> stepper (rotation, isotropy) -> observer -> files
 #include <cayspin/checkpoint.hpp>
 #include <cayspin/concepts.hpp>
+#include <cayspin/coupling.hpp>
+#include <cayspin/crystal.hpp>
 #include <cayspin/evaluate.hpp>
 #include <cayspin/exchange_memory.hpp>
 #include <cayspin/field/biquadratic.hpp>
@@ -12,10 +14,12 @@
 #include <cayspin/field/dear.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
+#include <cayspin/field/field_of_moments.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/interfacial_dmi.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
+#include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/field/site_dependent_exchange.hpp>
 #include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slab_demag.hpp>
@@ -40,6 +44,7 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
 #include <cayspin/scalars.hpp>
+#include <cayspin/shells.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>

@@ -205,6 +205,18 @@ auto prepare_term(Term const& term, Exec const& exec, Spins const& spins, double
   }
 }
 
+/// The same for a host loop that calls begin_row (detail/row_fields.hpp): a term may then leave its
+/// work to it.
+template <class Term, class Exec, class Spins>
+auto prepare_for_rows(Term const& term, Exec const& exec, Spins const& spins, double t) {
+  if constexpr (requires { term.prepare_for_rows(exec, spins, t); }) {
+    check_spins(term, spins);
+    return term.prepare_for_rows(exec, spins, t);
+  } else {
+    return prepare_term(term, exec, spins, t);
+  }
+}
+
 /// The same for the derivative of a term or generator along `rates`, the X = A x m of every spin.
 template <class Term, class Exec, class Spins>
 auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double t, double dt) {

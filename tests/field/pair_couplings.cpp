@@ -5,6 +5,8 @@
 
 #include <cayspin/crystal.hpp>
 #include <cayspin/field/pair_couplings.hpp>
+#include <cayspin/generator/landau_lifshitz.hpp>
+#include <cayspin/stepper/methods.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -134,6 +136,65 @@ TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
   auto const exchange = torque(Exchange(lattice, 1.5));
   for (std::size_t i = 0; i < pairs.size(); ++i)
     EXPECT_NEAR(pairs[i], exchange[i], 32 * epsilon<typename TypeParam::Real>);
+}
+
+/// The same couplings spin by spin: rows are not asked for.
+template <class Term>
+struct BySite {
+  Term term;
+
+  template <class Prepared>
+  struct Now {
+    Prepared prepared;
+    template <class Stencil>
+    KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {
+      return prepared.field(stencil);
+    }
+    template <class Stencil>
+    KOKKOS_FUNCTION typename Stencil::value_type energy_density(Stencil const& stencil) const {
+      return prepared.energy_density(stencil);
+    }
+  };
+  template <class Exec, class Spins>
+  auto prepare(Exec const& exec, Spins const& spins, double t) const {
+    auto prepared = term.prepare(exec, spins, t);
+    return Now<decltype(prepared)>{prepared};
+  }
+};
+
+template <class Backend>
+std::vector<double> after_steps(Lattice const& lattice, auto const& field) {
+  using Spins = typename Backend::Spins;
+  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 7));
+  LieHeun<Spins> stepper(spins);
+  typename Backend::Exec const exec;
+  auto const generator = LandauLifshitz(EffectiveField(field), 0.25);
+  for (int step = 0; step < 3; ++step) stepper.step(exec, generator, spins, 0, 0.01);
+  exec.fence();
+  return numbers_of(spins);
+}
+
+TYPED_TEST(Pairs, AlongRowsAreThoseSiteBySite) {
+  using Term = PairCouplings<typename TypeParam::MemorySpace>;
+  auto shells = shell_of_bcc(), tensors = shells, many = shells;
+  for (int site : {0, 1})
+    for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+      shells.push_back(Coupling::of({site, site}, offset, -0.5));
+  tensors.push_back(Coupling::of({0, 1}, {-3, 0, 1}, 0.5, {0.1, -0.2, 0.3}));
+  tensors.push_back({{1, 1}, {2, 1, 0}, {0.3, 0.1, -0.4, 0.7, -0.2, 0.5, 0.6, 0.9, 1.1}, 0.25});
+  for (int i = -3; i <= 3; ++i)
+    for (int j = -3; j <= 3; ++j)
+      for (int k = 1; k <= 6; ++k) many.push_back(Coupling::of({0, 0}, {i, j, k}, 0.01));
+  auto far = tensors;
+  far.push_back(Coupling::of({0, 1}, {19, 0, 0}, 0.5));
+  for (auto const& bonds : {shells, tensors, many, far})
+    for (Cells const& cells : {Cells{35, 3, 3}, {4, 1, 2}, {64, 2, 1}, {1, 5, 4}, {600, 2, 1}})
+      for (auto const& boundary : ends) {
+        auto const lattice = Crystal::bcc().lattice(cells, boundary);
+        Term const pairs(lattice, bonds);
+        EXPECT_EQ(after_steps<TypeParam>(lattice, pairs),
+                  after_steps<TypeParam>(lattice, BySite<Term>{pairs}));
+      }
 }
 
 TYPED_TEST(Pairs, ThatCannotBe) {

@@ -31,6 +31,11 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> inside(std::ptrdiff_t offset) const {
     return load_at<Value>(array.data + offset);
   }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* from) const {
+    return {load<Value>(from), load<Value>(from + array.stride),
+            load<Value>(from + 2 * array.stride)};
+  }
 
   /// The first site of the row that is dy and dz away, at most the extents; null past an open end.
   KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z) const {
@@ -43,38 +48,40 @@ struct DistantSites {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> along(Real const* row, std::int32_t x) const {
     constexpr std::int32_t lanes = lanes_of<Value>;
-    std::int32_t const before = -x, after = x + lanes - extent[0];
-    if (before <= 0 && after <= 0) return load_at<Value>(row + x);
-    if constexpr (lanes > 1) {
-      // A pack that leaves the row by one site is read as it lies there.
-      if (before <= 1 && after <= 1) {
-        std::int32_t const at = wrapped(before == 1 ? -1 : extent[0], 0);
-        auto const is_outside =
-            lane_numbers<Value>() == Value(scalar_t<Value>(before == 1 ? 0 : lanes - 1));
-        auto const replaced = [&](Real const* component) {
-          Value const other(at < 0 ? scalar_t<Value>(0)
-                                   : static_cast<scalar_t<Value>>(component[at]));
-          return select<Value>(is_outside, other, load<Value>(component + x));
-        };
-        return {replaced(row), replaced(row + array.stride), replaced(row + 2 * array.stride)};
-      }
-    }
-    return {lane_by_lane<Value>(row, x), lane_by_lane<Value>(row + array.stride, x),
-            lane_by_lane<Value>(row + 2 * array.stride, x)};
+    std::int32_t const nx = extent[0];
+    bool const is_before = x <= -lanes, is_after = x >= nx;
+    if (!periodic[0] && (is_before || is_after)) return zero<Value>();
+    x = is_before ? x + nx : is_after ? x - nx : x;
+    if (x >= 0 && x + lanes <= nx) return load_at<Value>(row + x);
+    if constexpr (lanes == 1)
+      return load_at<Value>(row + x);
+    else if (nx < lanes)
+      return {lane_by_lane<Value>(row, x), lane_by_lane<Value>(row + array.stride, x),
+              lane_by_lane<Value>(row + 2 * array.stride, x)};
+    else
+      return across_end<Value>(row, x);
   }
 
  private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> load_at(Real const* from) const {
-    return {load<Value>(from), load<Value>(from + array.stride),
-            load<Value>(from + 2 * array.stride)};
-  }
-
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t wrapped(std::int32_t i, int axis) const {
     bool const before = i < 0, after = i >= extent[axis];
     if (!before && !after) return i;
     if (!periodic[axis]) return -1;
     return before ? i + extent[axis] : i - extent[axis];
+  }
+
+  /// Of a pack with sites on both sides of an end of the row: some lanes from here, and the others
+  /// from where the row goes on. What lies past the row is read, and left out.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_end(Real const* row, std::int32_t x) const {
+    using Scalar = scalar_t<Value>;
+    bool const is_low = x < 0;
+    auto const below =
+        lane_numbers<Value>() < Value(static_cast<Scalar>(is_low ? -x : extent[0] - x));
+    auto const here = load_at<Value>(row + x);
+    auto const there = periodic[0] ? load_at<Value>(row + (is_low ? x + extent[0] : x - extent[0]))
+                                   : zero<Value>();
+    return is_low ? select<Value>(below, there, here) : select<Value>(below, here, there);
   }
 
   template <class Value>

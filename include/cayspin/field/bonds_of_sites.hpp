@@ -3,6 +3,7 @@
 
 #include <cayspin/coupling.hpp>
 #include <cayspin/detail/execution.hpp>
+#include <cayspin/detail/pack.hpp>
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
@@ -21,15 +22,18 @@
 // The bonds of each site of a cell, seen from that site, in the order in which kernels sum them.
 namespace cayspin::inline v0_1::detail {
 
-/// The way to the other site, and what it is in memory, in double and in single precision.
-struct Bond {
-  std::int32_t dx, dy, dz;
+/// A way in memory, in double and in single precision.
+struct WayInMemory {
   std::ptrdiff_t of_doubles, of_floats;
 
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t offset() const {
     return std::is_same_v<Real, double> ? of_doubles : of_floats;
   }
+};
+/// The way to the other site.
+struct Bond : WayInMemory {
+  std::int32_t dx, dy, dz;
 };
 /// Bonds of one exchange.
 struct Shell {
@@ -61,8 +65,12 @@ struct Reach {
   }
 };
 
+/// Bonds of one site of a cell: those of its shells, and after them those with a tensor.
 struct BondsOfSite {
-  std::int32_t first_shell, last_shell, first_tensor, last_tensor;
+  std::int32_t first_shell, last_shell, first_bond, first_tensor, last_bond;
+  std::int32_t to_tensor;  // from the number of a bond to that of its tensor
+  std::int32_t first_round;
+  std::int32_t farthest;  // the bond to the row that a pass through the lattice comes to last
   Reach reach;
 };
 
@@ -72,7 +80,8 @@ struct BondTable {
   Shell const* shells;
   Bond const* bonds;
   BondTensor const* tensors;
-  std::int32_t first_of_tensors, cell_sites;
+  WayInMemory const* rounds;
+  std::int32_t cell_sites;
   bool has_biquadratic;
 
   KOKKOS_FORCEINLINE_FUNCTION std::int32_t site_of_plane(std::int32_t z) const {
@@ -88,61 +97,30 @@ class BondLists {
   std::vector<Shell> shells;
   std::vector<Bond> bonds;
   std::vector<BondTensor> tensors;
-  std::int32_t first_of_tensors = 0;
+  /// All bonds of a site, along x round a periodic lattice, as they are at the first reach.low[0]
+  /// sites of a row and at the last reach.high[0].
+  std::vector<WayInMemory> rounds;
   bool has_biquadratic = false;
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> field_bounds;
 
   /// Throws std::invalid_argument as PairCouplings does.
-  BondLists(Lattice const& lattice, std::vector<Coupling> const& couplings)
-      : sites(static_cast<std::size_t>(lattice.cell_sites)) {
-    auto& of_shells = bonds;
-    std::vector<Bond> of_tensors;
+  BondLists(Lattice const& lattice, std::vector<Coupling> const& couplings) {
     for (int site = 0; site < static_cast<int>(lattice.cell_sites); ++site) {
-      auto& mine = sites[static_cast<std::size_t>(site)];
       auto seen = seen_from(site, lattice, couplings);
-      // By exchange or tensor, then along x: kernels foresee the ends of rows.
-      std::ranges::stable_sort(
-          seen, {}, [](Seen const& bond) { return std::pair(!bond.is_exchange(), bond.way[0]); });
-      mine.first_shell = static_cast<std::int32_t>(shells.size());
-      mine.first_tensor = static_cast<std::int32_t>(of_tensors.size());
+      std::ranges::stable_sort(seen, {}, [](Seen const& bond) { return bond.way[0]; });
+      auto& mine = sites.emplace_back();
+      add_shells(seen, lattice, mine);
+      add_tensors(seen, lattice, mine);
       double bound = 0;
       for (auto const& bond : seen) {
         mine.reach.include(bond.way);
         bound += bond.bound();
-        auto const rows = bond.way[1] + static_cast<std::ptrdiff_t>(lattice.shape[1]) * bond.way[2];
-        Bond const at{bond.way[0], bond.way[1], bond.way[2],
-                      rows * RowLayout::of<double>(lattice).pitch + bond.way[0],
-                      rows * RowLayout::of<float>(lattice).pitch + bond.way[0]};
-        if (!bond.is_exchange()) {
-          of_tensors.push_back(at);
-          tensors.push_back(bond.tensor);
-          has_biquadratic = has_biquadratic || bond.tensor.of[9] != 0;
-          continue;
-        }
-        auto const first = shells.begin() + mine.first_shell;
-        auto const mate = std::find_if(first, shells.end(), [&](Shell const& shell) {
-          return shell.exchange == bond.tensor.of[0];
-        });
-        // A shell's bonds lie together.
-        if (mate == shells.end()) {
-          auto const end = static_cast<std::int32_t>(of_shells.size());
-          shells.push_back({end, end + 1, bond.tensor.of[0]});
-          of_shells.push_back(at);
-        } else {
-          of_shells.insert(of_shells.begin() + mate->last, at);
-          ++mate->last;
-          for (auto later = mate + 1; later != shells.end(); ++later) ++later->first, ++later->last;
-        }
       }
-      mine.last_shell = static_cast<std::int32_t>(shells.size());
-      mine.last_tensor = static_cast<std::int32_t>(of_tensors.size());
       field_bounds.push_back(bound);
+      find_farthest(mine);
+      add_rounds(lattice, mine);
     }
-    first_of_tensors = static_cast<std::int32_t>(of_shells.size());
-    for (auto& mine : sites)
-      mine.first_tensor += first_of_tensors, mine.last_tensor += first_of_tensors;
-    of_shells.insert(of_shells.end(), of_tensors.begin(), of_tensors.end());
   }
 
   /// Over how many rows along y and cells along z bonds reach.
@@ -176,6 +154,72 @@ class BondLists {
       return std::sqrt(sum) + 2 * std::abs(tensor.of[9]);
     }
   };
+
+  static WayInMemory in_memory(Lattice const& lattice, std::int32_t x, std::int32_t y,
+                               std::int32_t z) {
+    auto const rows = y + static_cast<std::ptrdiff_t>(lattice.shape[1]) * z;
+    return {rows * RowLayout::of<double>(lattice).pitch + x,
+            rows * RowLayout::of<float>(lattice).pitch + x};
+  }
+  void add(Seen const& bond, Lattice const& lattice) {
+    auto const [x, y, z] = bond.way;
+    bonds.push_back({in_memory(lattice, x, y, z), x, y, z});
+  }
+  void find_farthest(BondsOfSite& mine) const {
+    mine.farthest = mine.first_bond;
+    auto const row = [&](std::int32_t b) {
+      auto const& bond = bonds[static_cast<std::size_t>(b)];
+      return std::pair(bond.dz, bond.dy);
+    };
+    for (std::int32_t b = mine.first_bond; b < mine.last_bond; ++b)
+      if (row(b) > row(mine.farthest)) mine.farthest = b;
+  }
+  void add_rounds(Lattice const& lattice, BondsOfSite& mine) {
+    mine.first_round = count(rounds);
+    auto const nx = static_cast<std::int32_t>(lattice.shape[0]);
+    auto const add_at = [&](std::int32_t site) {
+      for (std::int32_t b = mine.first_bond; b < mine.last_bond; ++b) {
+        auto const& bond = bonds[static_cast<std::size_t>(b)];
+        std::int32_t const there = site + bond.dx, way = (there < 0 ? nx : there < nx ? 0 : -nx);
+        rounds.push_back(in_memory(lattice, bond.dx + way, bond.dy, bond.dz));
+      }
+    };
+    if (lattice.boundary[0] != Boundary::periodic ||
+        std::max(mine.reach.low[0], mine.reach.high[0]) > host_lanes<float>)
+      return;  // nobody asks
+    for (std::int32_t site = 0; site < mine.reach.low[0]; ++site) add_at(site);
+    for (std::int32_t site = nx - mine.reach.high[0]; site < nx; ++site) add_at(site);
+  }
+  void add_shells(std::vector<Seen> const& seen, Lattice const& lattice, BondsOfSite& mine) {
+    std::vector<double> constants;
+    for (auto const& bond : seen)
+      if (bond.is_exchange() && std::ranges::find(constants, bond.tensor.of[0]) == constants.end())
+        constants.push_back(bond.tensor.of[0]);
+    mine.first_bond = count(bonds);
+    mine.first_shell = count(shells);
+    for (double const constant : constants) {
+      auto& shell = shells.emplace_back(count(bonds), 0, constant);
+      for (auto const& bond : seen)
+        if (bond.is_exchange() && bond.tensor.of[0] == constant) add(bond, lattice);
+      shell.last = count(bonds);
+    }
+    mine.last_shell = count(shells);
+  }
+  void add_tensors(std::vector<Seen> const& seen, Lattice const& lattice, BondsOfSite& mine) {
+    mine.first_tensor = count(bonds);
+    mine.to_tensor = count(tensors) - count(bonds);
+    for (auto const& bond : seen) {
+      if (bond.is_exchange()) continue;
+      add(bond, lattice);
+      tensors.push_back(bond.tensor);
+      has_biquadratic = has_biquadratic || bond.tensor.of[9] != 0;
+    }
+    mine.last_bond = count(bonds);
+  }
+  template <class Element>
+  static std::int32_t count(std::vector<Element> const& elements) {
+    return static_cast<std::int32_t>(elements.size());
+  }
 
   static std::vector<Seen> seen_from(int site, Lattice const& lattice,
                                      std::vector<Coupling> const& couplings) {
@@ -239,12 +283,12 @@ class BondsOfSites {
         shells_(table("shells", lists.shells)),
         bonds_(table("bonds", lists.bonds)),
         tensors_(table("tensors", lists.tensors)),
-        first_of_tensors_(lists.first_of_tensors),
+        rounds_(table("rounds", lists.rounds)),
         has_biquadratic_(lists.has_biquadratic) {}
 
   BondTable table() const {
-    return {sites_.data(),   shells_.data(),    bonds_.data(),
-            tensors_.data(), first_of_tensors_, static_cast<std::int32_t>(sites_.size()),
+    return {sites_.data(),   shells_.data(), bonds_.data(),
+            tensors_.data(), rounds_.data(), static_cast<std::int32_t>(sites_.size()),
             has_biquadratic_};
   }
 
@@ -266,7 +310,7 @@ class BondsOfSites {
   Table<Shell> shells_;
   Table<Bond> bonds_;
   Table<BondTensor> tensors_;
-  std::int32_t first_of_tensors_;
+  Table<WayInMemory> rounds_;
   bool has_biquadratic_;
 };
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -24,6 +26,10 @@ template <>
 class EffectiveField<> : public Forwarding<EffectiveField<>> {
  public:
   static constexpr int energy_terms = 0;
+
+  static constexpr int row_fields = 0;
+  template <class Real>
+  void begin_row(detail::Row const&, std::int32_t, std::int32_t, detail::RowFields<Real> const&) {}
 
   template <class Make>
   EffectiveField with_parts(Make const&) const {
@@ -71,6 +77,15 @@ class EffectiveField<First, Rest...>
 
   explicit EffectiveField(First first, Rest... rest)
       : first_(std::move(first)), rest_(std::move(rest)...) {}
+
+  // For stages over rows.
+  static constexpr int row_fields = detail::row_fields<First> + EffectiveField<Rest...>::row_fields;
+  template <class Real>
+  void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
+                 detail::RowFields<Real> const& fields) {
+    if constexpr (detail::row_fields<First> > 0) first_.begin_row(row, begin, end, fields);
+    rest_.begin_row(row, begin, end, fields.after(detail::row_fields<First>));
+  }
 
   // For Forwarding. What prepare_local returns has no terms without a local part.
   template <class Make>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -65,6 +66,14 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
       : field_(std::move(field)), factors_(factors) {}
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
+
+  // For stages over rows.
+  static constexpr int row_fields = detail::row_fields<Field>;
+  template <class Real>
+  void begin_row(Row const& row, std::int32_t begin, std::int32_t end,
+                 RowFields<Real> const& fields) {
+    if constexpr (row_fields > 0) field_.begin_row(row, begin, end, fields);
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(

@@ -3,9 +3,11 @@
 
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/effective_field.hpp>
+#include <cayspin/field/field_of_moments.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/local_part.hpp>
+#include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <stdexcept>
@@ -21,6 +23,15 @@ template <class MemorySpace>
 inline constexpr bool averages_layers<LayerAveragedSlabDemag<MemorySpace>> = true;
 template <class... Terms>
 inline constexpr bool averages_layers<EffectiveField<Terms...>> = (averages_layers<Terms> || ...);
+
+template <class Field>
+inline constexpr bool has_pairs = false;
+template <class MemorySpace>
+inline constexpr bool has_pairs<PairCouplings<MemorySpace>> = true;
+template <class Field, class MemorySpace>
+inline constexpr bool has_pairs<FieldOfMoments<Field, MemorySpace>> = has_pairs<Field>;
+template <class... Terms>
+inline constexpr bool has_pairs<EffectiveField<Terms...>> = (has_pairs<Terms> || ...);
 
 /// A stencil in which a vacant neighbour is a missing one: the spin itself stands for it.
 template <class Stencil, class Real>
@@ -158,6 +169,9 @@ template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
   static_assert(!detail::averages_layers<Field>,
                 "LayerAveragedSlabDemag counts the spins of vacant sites in its averages.");
+  static_assert(!detail::has_pairs<Field>,
+                "PairCouplings read the spins of vacant sites: where these are zero vectors, no "
+                "FieldWithVacancies is needed.");
 
  public:
   static constexpr int energy_terms = detail::energy_terms<Field>;

@@ -3,108 +3,17 @@
 
 #include <cayspin/coupling.hpp>
 #include <cayspin/detail/ghosts.hpp>
-#include <cayspin/detail/shifted_load.hpp>
 #include <cayspin/field/bonds_of_sites.hpp>
-#include <cayspin/optional_members.hpp>
+#include <cayspin/field/pair_field.hpp>
 #include <cayspin/spin_field.hpp>
-#include <cayspin/stencil.hpp>
 
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace cayspin::inline v0_1 {
-
-namespace detail {
-
-/// What kernels hold of PairCouplings.
-template <class Real>
-class PairField {
- public:
-  PairField(DistantSites<Real> const& spins, BondTable const& table)
-      : spins_(spins), table_(table) {}
-
-  /// H by its degree in the spins, and the site's energy: each has half of each of its bonds.
-  template <class Value>
-  struct Parts {
-    Vec3<Value> linear, cubic;
-
-    KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field() const { return linear + cubic; }
-    KOKKOS_FORCEINLINE_FUNCTION Value energy(Vec3<Value> const& m) const {
-      return Value(-0.25) * dot(m, Value(2) * linear + cubic);
-    }
-  };
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return parts(stencil).field();
-  }
-  /// Of couplings without a biquadratic part, which is left out.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return parts(stencil).linear;
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
-    return parts(stencil).energy(stencil.center());
-  }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Parts<typename Stencil::value_type> parts(
-      Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    auto const& site = stencil.site();
-    auto const& of_site = table_.sites[table_.site_of_plane(site.z())];
-    std::int32_t const x = site.x(), y = site.y(), z = site.z();
-    std::ptrdiff_t const offset = site.offset();
-    bool const holds_rows = of_site.reach.holds_rows(y, z, spins_.extent);
-    if (holds_rows && of_site.reach.holds_along_row(x, lanes_of<Value>, spins_.extent)) [[likely]]
-      return sum<Value>(of_site, stencil.center(), [&](Bond const& bond) {
-        return spins_.template inside<Value>(offset + bond.template offset<Real>());
-      });
-    return sum<Value>(of_site, stencil.center(), [&](Bond const& bond) {
-      Real const* const row =
-          holds_rows ? spins_.array.data + (offset + bond.template offset<Real>() - x - bond.dx)
-                     : spins_.row(y + bond.dy, z + bond.dz);
-      return row ? spins_.template along<Value>(row, x + bond.dx) : zero<Value>();
-    });
-  }
-
-  template <class Value, class Load>
-  KOKKOS_FORCEINLINE_FUNCTION Parts<Value> sum(BondsOfSite const& of_site, Vec3<Value> const& m,
-                                               Load const& load) const {
-    Parts<Value> sums{zero<Value>(), zero<Value>()};
-    for (std::int32_t g = of_site.first_shell; g < of_site.last_shell; ++g) {
-      auto const& shell = table_.shells[g];
-      Vec3<Value> all = load(table_.bonds[shell.first]);
-      for (std::int32_t b = shell.first + 1; b < shell.last; ++b) all = all + load(table_.bonds[b]);
-      sums.linear = multiply_add(as_value<Value>(shell.exchange), all, sums.linear);
-    }
-    for (std::int32_t b = of_site.first_tensor; b < of_site.last_tensor; ++b) {
-      Vec3<Value> const there = load(table_.bonds[b]);
-      double const* const t = table_.tensors[b - table_.first_of_tensors].of;
-      auto const row = [&](int i) {
-        return Vec3<Value>{as_value<Value>(t[i]), as_value<Value>(t[i + 1]),
-                           as_value<Value>(t[i + 2])};
-      };
-      sums.linear =
-          sums.linear + Vec3<Value>{dot(row(0), there), dot(row(3), there), dot(row(6), there)};
-      if (t[9] != 0)
-        sums.cubic =
-            multiply_add(Value(as_value<Value>(2 * t[9]) * dot(m, there)), there, sums.cubic);
-    }
-    return sums;
-  }
-
-  DistantSites<Real> spins_;
-  BondTable table_;
-};
-
-}  // namespace detail
 
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that
 /// H = T m' + 2 B (m.m') m', and T transposed the other way. Bonds past an open end are none. A

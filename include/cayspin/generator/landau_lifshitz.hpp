@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/row_fields.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/forwarding.hpp>
@@ -8,6 +9,7 @@
 #include <cayspin/stencil.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -62,6 +64,19 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
     return test(field_);
   }
   KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
+
+  // For stages over rows.
+  template <class Exec, class Spins>
+  auto prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
+    return with_parts(
+        [&](auto const& part) { return detail::prepare_for_rows(part, exec, spins, t); });
+  }
+  static constexpr int row_fields = detail::row_fields<Field>;
+  template <class Real>
+  void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
+                 detail::RowFields<Real> const& fields) {
+    if constexpr (row_fields > 0) field_.begin_row(row, begin, end, fields);
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(

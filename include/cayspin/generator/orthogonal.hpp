@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/row_fields.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace cayspin::inline v0_1 {
@@ -62,6 +64,14 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
     return test(generator_);
   }
   KOKKOS_FORCEINLINE_FUNCTION Generator const& part() const { return generator_; }
+
+  // For stages over rows.
+  static constexpr int row_fields = detail::row_fields<Generator>;
+  template <class Real>
+  void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
+                 detail::RowFields<Real> const& fields) {
+    if constexpr (row_fields > 0) generator_.begin_row(row, begin, end, fields);
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/row_fields.hpp>
+#include <cayspin/isotropy/energy.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/stage/arrays.hpp>
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 // A Runge-Kutta stage over the whole lattice: on hosts a pack of spins at a time along rows, on
 // devices a site per thread.
@@ -45,29 +49,49 @@ CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
   return planes;
 }
 
-/// The one compiled body of a stage on host spaces: every caller gets the same bits. The packs at
-/// the ends of a row have a loop of their own, so that the others ask nothing.
+/// Sites begin .. end - 1 of a row, whole packs. Those at the ends of the row have a loop of their
+/// own, so that the others ask nothing.
+template <class Kernel>
+KOKKOS_FORCEINLINE_FUNCTION void run_along(Kernel const& kernel, PlanesOf<Kernel> const& planes,
+                                           typename Kernel::RowArrays const& rows, Row const& row,
+                                           std::ptrdiff_t begin, std::ptrdiff_t end) {
+  using Real = typename Kernel::value_type;
+  constexpr std::ptrdiff_t lanes = host_lanes<Real>;
+  std::ptrdiff_t const last = (row.nx + lanes - 1) / lanes * lanes - lanes;
+  std::ptrdiff_t const first_at_end = begin > 0 ? last : 0, to_last = last > 0 ? last : lanes;
+  std::ptrdiff_t const inner_begin = Kokkos::max(begin, lanes), inner_end = Kokkos::min(end, last);
+  for (std::ptrdiff_t x = inner_begin; x < inner_end; x += lanes) {
+    std::ptrdiff_t const here = opaque(x);
+    if (planes.from_memory)
+      for_each_input<typename Kernel::Flow>(rows, Prefetch<Real>{here + row.pitch});
+    kernel(Site<Pack<Real>, false>(row, here), rows);
+  }
+  for (std::ptrdiff_t x = first_at_end; x < end; x += to_last)
+    kernel(Site<Pack<Real>, true>(row, opaque(x)), rows);
+}
+
+/// The one compiled body of a stage on host spaces: every caller gets the same bits.
 template <class Kernel>
 CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                        RowLayout const& layout, RowBlock block) {
   using Real = typename Kernel::value_type;
-  constexpr std::ptrdiff_t lanes = host_lanes<Real>;
-  std::ptrdiff_t const begin = block.pack_begin * lanes, end = block.pack_end * lanes;
-  std::ptrdiff_t const last = (pack_count<Real>(layout) - 1) * lanes;
-  std::ptrdiff_t const first_at_end = begin > 0 ? last : 0, to_last = last > 0 ? last : lanes;
-  std::ptrdiff_t const inner_begin = Kokkos::max(begin, lanes), inner_end = Kokkos::min(end, last);
-  Kernel const local = kernel;
+  constexpr std::int32_t lanes = host_lanes<Real>;
+  constexpr int fields = row_fields<decltype(kernel.generator)>;
+  std::int32_t const begin = block.pack_begin * lanes, end = block.pack_end * lanes;
+  [[maybe_unused]] RowFieldMemory<Real, Kokkos::max(fields, 1)> memory;
+  Kernel local = kernel;
   for (std::int32_t y = block.y_begin; y < block.y_end; ++y) {
     typename Kernel::RowArrays const rows = planes.rows(y);
     Row const row(layout, planes.y.wrapped(y), block.z);
-    for (std::ptrdiff_t x = inner_begin; x < inner_end; x += lanes) {
-      std::ptrdiff_t const here = opaque(x);
-      if (planes.from_memory)
-        for_each_input<typename Kernel::Flow>(rows, Prefetch<Real>{here + layout.pitch});
-      local(Site<Pack<Real>, false>(row, here), rows);
+    if constexpr (fields == 0) {
+      run_along(local, planes, rows, row, begin, end);
+    } else {
+      for (std::int32_t x = begin; x < end; x += sites_per_piece) {
+        std::int32_t const after = Kokkos::min(x + sites_per_piece, end);
+        local.generator.begin_row(row, x, after, memory.all());
+        run_along(local, planes, rows, row, x, after);
+      }
     }
-    for (std::ptrdiff_t x = first_at_end; x < end; x += to_last)
-      local(Site<Pack<Real>, true>(row, opaque(x)), rows);
   }
 }
 
@@ -122,6 +146,15 @@ struct StageOnSite {
     kernel(site, fields);
   }
 };
+
+/// The generator for a stage of run_pass. isotropy::Energy looks at energies, which no row has.
+template <class Isotropy, class Generator, class Exec, class Spins>
+auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& spins, double t) {
+  if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)
+    return prepare_for_rows(generator, exec, spins, t);
+  else
+    return prepare_term(generator, exec, spins, t);
+}
 
 template <class Exec, class Kernel>
 void run_pass(Exec const& exec, std::string const& label, RowLayout const& layout,

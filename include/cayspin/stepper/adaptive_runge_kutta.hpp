@@ -270,8 +270,8 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
       detail::run_pass(exec, label, memory_.begin.layout(), kernel, fields<Kernel>());
     };
     auto const prepared = [&] {
-      return detail::prepare_term(generator, exec, memory_.level_of(Stage),
-                                  t + Tableau::c[Stage] * dt);
+      return detail::prepare_stage<Isotropy>(generator, exec, memory_.level_of(Stage),
+                                             t + Tableau::c[Stage] * dt);
     };
     if constexpr (Stage == 0)
       run(labels_[Stage], first_stage(dt));

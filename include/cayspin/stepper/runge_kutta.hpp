@@ -171,8 +171,8 @@ class RungeKutta : public detail::StepperBase<Spins> {
   template <int Stage, class Exec, class Generator>
   void stages_from(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                    double dt) {
-    auto prepared = detail::prepare_term(generator, exec, memory_.template level<Stage>(spins),
-                                         t + Tableau::c[Stage] * dt);
+    auto prepared = detail::prepare_stage<Isotropy>(
+        generator, exec, memory_.template level<Stage>(spins), t + Tableau::c[Stage] * dt);
     detail::run_pass(exec, labels_[Stage], spins.layout(), kernel<Stage>(std::move(prepared), dt),
                      fields<Stage>(spins));
     if constexpr (Stage + 1 < stages) stages_from<Stage + 1>(exec, generator, spins, t, dt);
