@@ -27,7 +27,7 @@
 namespace cayspin::simulation {
 namespace {
 
-/// Writes H and E of every site.
+/// Writes H and E of every site, or H along a row.
 template <class Real>
 struct EvaluateInPass {
   PassTerms<Real> terms;
@@ -39,14 +39,43 @@ struct EvaluateInPass {
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    auto found = terms(Stencil<Site, Real>(site, spins));
-    if (dampings.data) {
-      auto const turned = site.load(dampings) * cross(site.load(spins), found.field);
-      found.field = precession ? found.field + turned : turned;
-    }
-    if (moves.data) found.field = site.load(moves) * found.field;
-    site.store(found.field, field);
+    auto const found = terms(Stencil<Site, Real>(site, spins));
+    site.store(turning(site, found.field), field);
     site.store(found.energy, energies);
+  }
+
+  static void along_row(void const* kernel, cayspin::detail::Row const& row, std::int32_t begin,
+                        std::int32_t end, cayspin::detail::RowFields<Real> const& to) {
+    EvaluateInPass const& self = *static_cast<EvaluateInPass const*>(kernel);
+    using Value = cayspin::detail::Pack<Real>;
+    using Site = cayspin::detail::Site<Value>;
+    auto const& terms = self.terms;
+    if (terms.has_pairs) terms.pairs.evaluate_row(row, begin, end, to);
+    bool const is_few = terms.has_few() && !self.dampings.data && !self.moves.data;
+    for (std::int32_t x = begin; x < end; x += Site::lanes) {
+      Site const site(row, x);
+      auto const of_pairs = terms.has_pairs ? to.template load<Value>(x - begin) : zero<Value>();
+      if (is_few) {
+        to.store(terms.few_beside_pairs(site.z(), site.load(self.spins), of_pairs), x - begin);
+        continue;
+      }
+      auto const found =
+          terms.beside_pairs(Stencil<Site, Real>(site, self.spins), {of_pairs, Value(0)});
+      to.store(self.turning(site, found.field), x - begin);
+    }
+  }
+
+ private:
+  /// With what dampings of sites add, and zero where a spin is frozen.
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION auto turning(Site const& site,
+                                           Vec3<typename Site::value_type> h) const {
+    if (dampings.data) {
+      auto const turned = site.load(dampings) * cross(site.load(spins), h);
+      h = precession ? h + turned : turned;
+    }
+    if (moves.data) h = site.load(moves) * h;
+    return h;
   }
 };
 
@@ -100,6 +129,7 @@ Sites sites_of(io::Scene const& scene) {
     auto const is_here = [&](int site) { return site < 0 || site == static_cast<int>(number); };
     auto& site = all.sites.emplace_back();
     site.moment = of_site(scene.lattice.moments, number);
+    site.per_moment = 1 / site.moment;
     site.gyromagnetic = of_site(scene.lattice.gyromagnetic, number);
     for (auto const& term : field.anisotropies)
       if (is_here(term.site) && !term.factors.there()) site.quadratic.add(term.constant, term.axis);
@@ -142,8 +172,8 @@ class FieldInPass<Spins>::Terms {
   Terms(io::Scene const& scene, Lattice const& lattice);
 
   template <class Exec>
-  void evaluate(Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
-                FieldFor purpose) const;
+  EvaluateInPass<Real> kernel(Exec const& exec, SceneFieldNow<Real> const& usual,
+                              Spins const& spins, double t, FieldFor purpose) const;
 
  private:
   friend FieldInPass;
@@ -167,7 +197,7 @@ class FieldInPass<Spins>::Terms {
   Torques torques_;
   Table<CellSite> sites_;
   Table<CubicAnisotropy> cubics_;
-  bool has_pairs_, has_bulk_dmi_, has_vacancies_, is_affine_;
+  bool has_lattice_terms_ = false, has_pairs_, has_bulk_dmi_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
   std::optional<ScalarField<Real, Memory>> rates_;  // moves_ over Gilbert's 1 + damping^2
   std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
@@ -179,6 +209,7 @@ class FieldInPass<Spins>::Terms {
   std::vector<double> noise_of_sites_;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
+  mutable std::optional<EvaluateInPass<Real>> along_rows_;  // of the stage that is being run
 };
 
 template <class Spins>
@@ -229,7 +260,9 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   // Of the energy of a site, to which its round-off is proportional.
   auto const uniform = io::without_numbers_of_sites(scene.field);
   io::for_each_lattice_term(uniform, [&](auto const& term) {
-    if (term) none_.magnitude += term->energy_magnitude(lattice);
+    if (!term) return;
+    none_.magnitude += term->energy_magnitude(lattice);
+    has_lattice_terms_ = true;
   });
   none_.magnitude +=
       0.5 * std::ranges::max(pairs_.field_bounds()) + 3 * std::abs(bulk_constant(scene));
@@ -300,42 +333,43 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
 
 template <class Spins>
 template <class Exec>
-void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
-                                         Spins const& spins, double t, FieldFor purpose) const {
-  Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
-  // Bonds reach further than the ghosts that a stage before this one has kept up to date. The field
-  // of ghosts is nobody's concern: what a stage makes of it is replaced before the next look.
-  cayspin::detail::update_ghosts(exec, lattice_, spins);
+auto FieldInPass<Spins>::Terms::kernel(Exec const& exec, SceneFieldNow<Real> const& usual,
+                                       Spins const& spins, double t, FieldFor purpose) const
+    -> EvaluateInPass<Real> {
   auto others = usual;
   others.zeeman = {};
   others.has_applied = false;
   auto const velocity = torques_.velocity ? (*torques_.velocity)(t) : Vec3<double>{0, 0, 0};
   auto const strengths = torques_.strengths ? (*torques_.strengths)(t) : Vec3<double>{0, 0, 0};
-  EvaluateInPass<Real> kernel{{others,
-                               pairs_.prepare(exec, spins, t),
-                               bulk_dmi_,
-                               {lattice_, velocity, torques_.nonadiabaticity},
-                               {strengths.x, strengths.y, torques_.polarization},
-                               usual.zeeman,
-                               sites_.data(),
-                               cubics_.data(),
-                               {},
-                               {},
-                               anisotropies_.data(),
-                               static_cast<std::int32_t>(sites_.size()),
-                               static_cast<std::int32_t>(anisotropies_.size()),
-                               has_pairs_,
-                               has_bulk_dmi_,
-                               torques_.velocity.has_value(),
-                               torques_.strengths.has_value(),
-                               has_vacancies_,
-                               purpose == FieldFor::energy},
-                              spins.array(),
-                              {},
-                              {},
-                              precession_,
-                              field_.output(false),
-                              energies_.output(false)};
+  bool const has_usual =
+      has_lattice_terms_ || others.quadratic.present() || others.has_layers || others.has_stored;
+  EvaluateInPass<Real> kernel{
+      .terms = {.usual = others,
+                .pairs = pairs_.prepare(exec, spins, t),
+                .bulk_dmi = bulk_dmi_,
+                .zhang_li = {lattice_, velocity, torques_.nonadiabaticity},
+                .slonczewski = {strengths.x, strengths.y, torques_.polarization},
+                .applied = usual.zeeman,
+                .sites = sites_.data(),
+                .cubics = cubics_.data(),
+                .exchange_of_sites = {},
+                .dmi_of_sites = {},
+                .anisotropies_of_sites = anisotropies_.data(),
+                .anisotropies = static_cast<std::int32_t>(anisotropies_.size()),
+                .has_usual = has_usual,
+                .has_cubics = cubics_.size() > 0,
+                .has_pairs = has_pairs_,
+                .has_bulk_dmi = has_bulk_dmi_,
+                .has_zhang_li = torques_.velocity.has_value(),
+                .has_slonczewski = torques_.strengths.has_value(),
+                .has_vacancies = has_vacancies_,
+                .is_gradient = purpose == FieldFor::energy},
+      .spins = spins.array(),
+      .moves = {},
+      .dampings = {},
+      .precession = precession_,
+      .field = field_.output(false),
+      .energies = energies_.output(false)};
   if (exchange_of_sites_)
     kernel.terms.exchange_of_sites = exchange_of_sites_->prepare(exec, spins, t);
   if (dmi_of_sites_) {
@@ -347,8 +381,7 @@ void FieldInPass<Spins>::Terms::evaluate(Exec const& exec, SceneFieldNow<Real> c
     kernel.dampings = dampings_->array();
     if (rates_) kernel.moves = rates_->array();
   }
-  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel,
-                                       spins.layout().own);
+  return kernel;
 }
 
 template <class Spins>
@@ -360,7 +393,13 @@ template <class Exec>
 SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
     FieldFor purpose) const {
-  terms_->evaluate(exec, usual, spins, t, purpose);
+  Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
+  // Bonds reach further than the ghosts that a stage before this one has kept up to date. The field
+  // of ghosts is nobody's concern: what a stage makes of it is replaced before the next look.
+  cayspin::detail::update_ghosts(exec, terms_->lattice_, spins);
+  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(),
+                                       terms_->kernel(exec, usual, spins, t, purpose),
+                                       spins.layout().own);
   auto now = nothing();
   now.stored = {terms_->field_.array(), -0.5};
   now.has_stored = true;
@@ -368,6 +407,23 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate(
   now.lattice_terms.magnitude +=
       terms_->largest_moment_ * std::sqrt(dot(usual.zeeman.applied, usual.zeeman.applied));
   return now;
+}
+
+template <class Spins>
+template <class Exec>
+SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::along_rows(
+    Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
+    FieldFor purpose) const {
+  if constexpr (cayspin::detail::is_host_execution<Exec>) {
+    if (terms_->lattice_.part == nullptr) {
+      terms_->along_rows_ = terms_->kernel(exec, usual, spins, t, purpose);
+      auto now = nothing();
+      now.has_stored = true;
+      now.along_rows = {&EvaluateInPass<Real>::along_row, &*terms_->along_rows_};
+      return now;
+    }
+  }
+  return evaluate(exec, usual, spins, t, purpose);
 }
 
 template <class Spins>
@@ -406,14 +462,17 @@ auto FieldInPass<Spins>::moves() const -> std::optional<ScalarField<Real, Memory
   return terms_->moves_;
 }
 
-#define CAYSPIN_INSTANTIATE(Space, Real)                                                     \
-  template class FieldInPass<SpinField<Real, Space::memory_space>>;                          \
-  template SceneFieldNow<Real> FieldInPass<SpinField<Real, Space::memory_space>>::evaluate(  \
-      Space const&, SceneFieldNow<Real> const&, SpinField<Real, Space::memory_space> const&, \
-      double, FieldFor) const;                                                               \
-  template Vec3<double> FieldInPass<SpinField<Real, Space::memory_space>>::magnetization(    \
-      Space const&, SpinField<Real, Space::memory_space> const&) const;                      \
-  template double FieldInPass<SpinField<Real, Space::memory_space>>::norm_defect(            \
+#define CAYSPIN_INSTANTIATE(Space, Real)                                                      \
+  template class FieldInPass<SpinField<Real, Space::memory_space>>;                           \
+  template SceneFieldNow<Real> FieldInPass<SpinField<Real, Space::memory_space>>::evaluate(   \
+      Space const&, SceneFieldNow<Real> const&, SpinField<Real, Space::memory_space> const&,  \
+      double, FieldFor) const;                                                                \
+  template SceneFieldNow<Real> FieldInPass<SpinField<Real, Space::memory_space>>::along_rows( \
+      Space const&, SceneFieldNow<Real> const&, SpinField<Real, Space::memory_space> const&,  \
+      double, FieldFor) const;                                                                \
+  template Vec3<double> FieldInPass<SpinField<Real, Space::memory_space>>::magnetization(     \
+      Space const&, SpinField<Real, Space::memory_space> const&) const;                       \
+  template double FieldInPass<SpinField<Real, Space::memory_space>>::norm_defect(             \
       Space const&, SpinField<Real, Space::memory_space> const&) const;
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)

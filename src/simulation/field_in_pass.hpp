@@ -36,6 +36,11 @@ class FieldInPass {
   SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                Spins const& spins, double t, FieldFor purpose) const;
 
+  /// The same without energies for a host loop over rows, which then evaluates H as it goes.
+  template <class Exec>
+  SceneFieldNow<Real> along_rows(Exec const& exec, SceneFieldNow<Real> const& usual,
+                                 Spins const& spins, double t, FieldFor purpose) const;
+
   /// Is H affine in the spins?
   bool is_affine() const;
 

@@ -17,7 +17,7 @@ namespace cayspin::simulation {
 
 /// What a site of a cell has of its own.
 struct CellSite {
-  double moment = 1, gyromagnetic = 1;
+  double moment = 1, per_moment = 1, gyromagnetic = 1;
   QuadraticTerms quadratic;
   std::int32_t first_cubic = 0, last_cubic = 0;
 };
@@ -109,8 +109,8 @@ struct PassTerms {
   cayspin::detail::ExchangeOfSites<Real> exchange_of_sites;  // without data: none
   DmiOfSites<Real> dmi_of_sites;                             // the same
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
-  std::int32_t cell_sites, anisotropies;
-  bool has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies;
+  std::int32_t anisotropies;
+  bool has_usual, has_cubics, has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies;
   bool is_gradient;  // -dE/dm, without moments, gyromagnetic ratios and torques
 
   template <class Value>
@@ -123,27 +123,59 @@ struct PassTerms {
   KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    if (!has_vacancies) return among(stencil);
-    auto found = among(StencilAmongSpins<Stencil>(stencil));
+    Result<Value> of_pairs{zero<Value>(), Value(0)};
+    if (has_pairs) {
+      auto const parts = pairs.parts(stencil);
+      of_pairs = {parts.field(), parts.energy(stencil.center())};
+    }
+    return beside_pairs(stencil, of_pairs);
+  }
+  /// Is there nothing but couplings, one axis for each site of a cell, and an applied field?
+  bool has_few() const {
+    return !has_usual && !has_bulk_dmi && !has_zhang_li && !has_slonczewski && !is_gradient &&
+           !exchange_of_sites.constants.data && !dmi_of_sites.constants.data && anisotropies == 0 &&
+           !has_cubics;
+  }
+  /// Then H of a spin in plane z.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> few_beside_pairs(std::int32_t z, Vec3<Value> const& m,
+                                                           Vec3<Value> const& of_pairs) const {
+    auto const& mine = sites[pairs.site_of_plane(z)];
+    return seen_by_moment(mine, mine.quadratic.add_field(m, of_pairs));
+  }
+  /// The same with what the pairs contribute.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> beside_pairs(
+      Stencil const& stencil, Result<typename Stencil::value_type> const& of_pairs) const {
+    using Value = typename Stencil::value_type;
+    if (!has_vacancies) return among(stencil, of_pairs);
+    auto found = among(StencilAmongSpins<Stencil>(stencil), of_pairs);
     Value const none(0), square = dot(stencil.center(), stencil.center());
     found.energy = cayspin::detail::select<Value>(square == none, none, found.energy);
     return found;
   }
 
  private:
+  /// Of -dE/dm.
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> seen_by_moment(CellSite const& site,
+                                                         Vec3<Value> const& h) const {
+    return as_value<Value>(site.gyromagnetic) *
+           multiply_add(as_value<Value>(site.per_moment), h, as_value<Value>(applied.applied));
+  }
+
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> among(
-      Stencil const& stencil) const {
+      Stencil const& stencil, Result<typename Stencil::value_type> const& of_pairs) const {
     using Value = typename Stencil::value_type;
     auto const& m = stencil.center();
-    auto const& mine = sites[stencil.site().z() % cell_sites];
+    auto const& mine = sites[pairs.site_of_plane(stencil.site().z())];
     // -dE/dm, of which each moment sees its own part.
-    Vec3<Value> h = usual.field(stencil);
-    Value e = usual.energy_density(stencil);
-    if (has_pairs) {
-      auto const parts = pairs.parts(stencil);
-      h = h + parts.field();
-      e = e + parts.energy(m);
+    Vec3<Value> h = of_pairs.field;
+    Value e = of_pairs.energy;
+    if (has_usual) {
+      h = h + usual.field(stencil);
+      e = e + usual.energy_density(stencil);
     }
     if (has_bulk_dmi) {
       Vec3<Value> const of_bulk = bulk_dmi.field(stencil);
@@ -175,8 +207,7 @@ struct PassTerms {
     auto const moment = as_value<Value>(mine.moment);
     e = e + moment * applied.energy_density(stencil);
     if (is_gradient) return {multiply_add(moment, applied.field(stencil), h), e};
-    h = multiply_add(as_value<Value>(1 / mine.moment), h, applied.field(stencil));
-    h = as_value<Value>(mine.gyromagnetic) * h;
+    h = seen_by_moment(mine, h);
     // Torques are no derivatives of an energy.
     if (has_zhang_li) h = h + zhang_li.field(stencil);
     if (has_slonczewski) h = h + slonczewski.field(stencil);

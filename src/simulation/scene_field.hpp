@@ -56,13 +56,13 @@ class SceneField {
   /// Throws NumbersFailed when an applied field is not finite at t.
   template <class Exec>
   SceneFieldNow<Real> prepare(Exec const& exec, Spins const& spins, double t) const {
-    auto now = without_others(t);
-    now.has_layers = layers_.has_value();
-    now.has_stored = stored_ || dear_;
-    if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
-    if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
-    if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
+    auto const now = usual_terms(exec, spins, t);
     return pass_ ? pass_->evaluate(exec, now, spins, t, purpose_) : now;
+  }
+  template <class Exec>
+  SceneFieldNow<Real> prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
+    auto const now = usual_terms(exec, spins, t);
+    return pass_ ? pass_->along_rows(exec, now, spins, t, purpose_) : now;
   }
   /// Looks at no spin: without the terms that do.
   template <class Exec>
@@ -92,6 +92,16 @@ class SceneField {
   }
 
  private:
+  template <class Exec>
+  SceneFieldNow<Real> usual_terms(Exec const& exec, Spins const& spins, double t) const {
+    auto now = without_others(t);
+    now.has_layers = layers_.has_value();
+    now.has_stored = stored_ || dear_;
+    if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
+    if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
+    if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
+    return now;
+  }
   SceneFieldNow<Real> without_others(double t) const {
     SceneFieldNow<Real> now{lattice_terms_,     quadratic_, {},   {}, {},
                             applied_.present(), false,      false};

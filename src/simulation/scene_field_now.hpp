@@ -3,10 +3,13 @@
 
 #include "lattice_terms.hpp"
 
+#include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/io/field.hpp>
+
+#include <cstdint>
 
 namespace cayspin::simulation {
 
@@ -68,6 +71,16 @@ class QuadraticTerms {
   Form form_ = Form::none;
 };
 
+/// H along a piece of a row, by a function that is compiled once for all methods; none where
+/// `evaluate` is null.
+template <class Real>
+struct FieldAlongRows {
+  using Fields = cayspin::detail::RowFields<Real>;
+  void (*evaluate)(void const* terms, cayspin::detail::Row const& row, std::int32_t begin,
+                   std::int32_t end, Fields const& to) = nullptr;
+  void const* terms = nullptr;
+};
+
 /// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
 /// once per pack of spins, so that a kernel is compiled once for all scenes.
 template <class Real>
@@ -79,6 +92,16 @@ struct SceneFieldNow {
   cayspin::detail::StoredField<Real> stored;
   bool has_applied, has_layers, has_stored;
   cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
+  FieldAlongRows<Real> along_rows = {};
+
+  static constexpr int row_fields = 1;
+  void begin_row(cayspin::detail::Row const& row, std::int32_t begin, std::int32_t end,
+                 cayspin::detail::RowFields<Real> const& fields) {
+    if (!along_rows.evaluate) [[likely]]
+      return;
+    along_rows.evaluate(along_rows.terms, row, begin, end, fields);
+    stored.array = {fields.data - (row.offset + begin), fields.stride};
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(

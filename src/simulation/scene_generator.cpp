@@ -50,6 +50,15 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare(Exec const& exec, Spins 
 
 template <class Spins>
 template <class Exec>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_for_rows(Exec const& exec,
+                                                                 Spins const& spins,
+                                                                 double t) const {
+  return {llg_.prepare_for_rows(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_,
+          orthogonal_};
+}
+
+template <class Spins>
+template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_local(Exec const& exec, Spins const& spins,
                                                               double t) const {
   return {llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_,
@@ -67,6 +76,9 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, S
 #define CAYSPIN_INSTANTIATE(Space, Real)                                        \
   template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
   SceneGenerator<SpinField<Real, Space::memory_space>>::prepare(                \
+      Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
+  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
+  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_for_rows(       \
       Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
   template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
   SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_local(          \

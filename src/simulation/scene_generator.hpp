@@ -8,6 +8,8 @@
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <cstdint>
+
 namespace cayspin::inline v0_1::io {
 struct Scene;
 }
@@ -21,6 +23,12 @@ struct SceneGeneratorNow {
   LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
   SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
   bool is_llg, orthogonal;
+
+  static constexpr int row_fields = cayspin::detail::row_fields<decltype(llg)>;
+  void begin_row(cayspin::detail::Row const& row, std::int32_t begin, std::int32_t end,
+                 cayspin::detail::RowFields<typename Spins::value_type> const& fields) {
+    llg.begin_row(row, begin, end, fields);
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
@@ -122,6 +130,8 @@ class SceneGenerator {
   /// Compiled in scene_generator.cpp alone, for the spaces of space.hpp.
   template <class Exec>
   SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
+  template <class Exec>
+  SceneGeneratorNow<Spins> prepare_for_rows(Exec const& exec, Spins const& spins, double t) const;
   template <class Exec>
   SceneGeneratorNow<Spins> prepare_local(Exec const& exec, Spins const& spins, double t) const;
   template <class Exec>
