@@ -19,11 +19,8 @@ constexpr double first_shell = 1, second_shell = 0.3, damping = 0.1;
 constexpr int edges[] = {16, 32, 64, 96};
 
 cayspin::Lattice bcc(int n) {
-  auto lattice = cayspin::Lattice::cubic(n, n, 2 * n);
-  lattice.boundary = {cayspin::Boundary::periodic, cayspin::Boundary::periodic,
-                      cayspin::Boundary::periodic};
-  lattice.cell_sites = 2;
-  return lattice;
+  constexpr auto periodic = cayspin::Boundary::periodic;
+  return cayspin::Crystal::bcc().lattice({n, n, n}, {periodic, periodic, periodic});
 }
 
 template <bool SecondShell>

@@ -2,8 +2,9 @@
 #include "field_in_pass.hpp"
 
 #include "applied_field.hpp"
-#include "pass_terms.hpp"
+#include "evaluate_in_pass.hpp"
 #include "ranks.hpp"
+#include "sites_of_cell.hpp"
 #include "space.hpp"
 
 #include <cayspin/detail/ghosts.hpp>
@@ -27,73 +28,6 @@
 namespace cayspin::simulation {
 namespace {
 
-/// Writes H and E of every site, or H along a row.
-template <class Real>
-struct EvaluateInPass {
-  PassTerms<Real> terms;
-  cayspin::detail::SiteArray<Real, 3> spins;
-  cayspin::detail::SiteArray<Real, 1> moves, dampings;  // without data: all do, and none
-  bool precession;
-  cayspin::detail::OutputArray<Real, 3> field;
-  cayspin::detail::OutputArray<Real, 1> energies;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    auto const found = terms(Stencil<Site, Real>(site, spins));
-    site.store(turning(site, found.field), field);
-    site.store(found.energy, energies);
-  }
-
-  static void along_row(void const* kernel, cayspin::detail::Row const& row, std::int32_t begin,
-                        std::int32_t end, cayspin::detail::RowFields<Real> const& to) {
-    EvaluateInPass const& self = *static_cast<EvaluateInPass const*>(kernel);
-    using Value = cayspin::detail::Pack<Real>;
-    using Site = cayspin::detail::Site<Value>;
-    auto const& terms = self.terms;
-    if (terms.has_pairs) terms.pairs.evaluate_row(row, begin, end, to);
-    bool const is_few = terms.has_few() && !self.dampings.data && !self.moves.data;
-    for (std::int32_t x = begin; x < end; x += Site::lanes) {
-      Site const site(row, x);
-      auto const of_pairs = terms.has_pairs ? to.template load<Value>(x - begin) : zero<Value>();
-      if (is_few) {
-        to.store(terms.few_beside_pairs(site.z(), site.load(self.spins), of_pairs), x - begin);
-        continue;
-      }
-      auto const found =
-          terms.beside_pairs(Stencil<Site, Real>(site, self.spins), {of_pairs, Value(0)});
-      to.store(self.turning(site, found.field), x - begin);
-    }
-  }
-
- private:
-  /// With what dampings of sites add, and zero where a spin is frozen.
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION auto turning(Site const& site,
-                                           Vec3<typename Site::value_type> h) const {
-    if (dampings.data) {
-      auto const turned = site.load(dampings) * cross(site.load(spins), h);
-      h = precession ? h + turned : turned;
-    }
-    if (moves.data) h = site.load(moves) * h;
-    return h;
-  }
-};
-
-/// NormDefectOfSites where there is a moment.
-template <class Real>
-struct NormDefectOfMoments {
-  cayspin::detail::SiteArray<Real, 3> spins;
-  cayspin::detail::SiteArray<Real, 1> moments;
-
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    using cayspin::detail::select;
-    cayspin::detail::off_the_sphere(Vec3<Value>(site.load(spins)), values);
-    Value const none(0.0), moment = site.load(moments);
-    for (int i = 0; i < 2; ++i) values[i] = select<Value>(moment == none, none, values[i]);
-  }
-};
-
 template <class Element, class Memory>
 Kokkos::View<Element*, Memory> table_of(char const* name, std::vector<Element> const& from) {
   Kokkos::View<Element*, Memory> table(
@@ -104,42 +38,10 @@ Kokkos::View<Element*, Memory> table_of(char const* name, std::vector<Element> c
   return table;
 }
 
-Vec3<double> vector(io::Triple const& v) { return {v[0], v[1], v[2]}; }
-
 // That of all sites alike.
 double bulk_constant(io::Scene const& scene) {
   auto const& field = scene.field;
   return field.bulk_dmi && !field.dmi_factors.there() ? field.bulk_dmi->constant : 0;
-}
-
-// A number per site of the cell; none are all 1.
-double of_site(std::vector<double> const& numbers, std::size_t site) {
-  return numbers.empty() ? 1 : numbers[site];
-}
-
-struct Sites {
-  std::vector<CellSite> sites;
-  std::vector<CubicAnisotropy> cubics;
-};
-
-Sites sites_of(io::Scene const& scene) {
-  Sites all;
-  auto const& field = scene.field;
-  for (std::size_t number = 0; number < scene.lattice.basis.size(); ++number) {
-    auto const is_here = [&](int site) { return site < 0 || site == static_cast<int>(number); };
-    auto& site = all.sites.emplace_back();
-    site.moment = of_site(scene.lattice.moments, number);
-    site.per_moment = 1 / site.moment;
-    site.gyromagnetic = of_site(scene.lattice.gyromagnetic, number);
-    for (auto const& term : field.anisotropies)
-      if (is_here(term.site) && !term.factors.there()) site.quadratic.add(term.constant, term.axis);
-    site.first_cubic = static_cast<std::int32_t>(all.cubics.size());
-    for (auto const& term : field.cubic_anisotropies)
-      if (is_here(term.site))
-        all.cubics.emplace_back(term.constant, vector(term.axes[0]), vector(term.axes[1]));
-    site.last_cubic = static_cast<std::int32_t>(all.cubics.size());
-  }
-  return all;
 }
 
 // The largest of all parts: of doubles >= 0 their words are in the same order.
@@ -236,7 +138,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
         "torque.slonczewski");
     torques_.polarization = vector(of->polarization);
   }
-  auto const [sites, cubics] = sites_of(scene);
+  auto const [sites, cubics] = sites_of_cell(scene);
   for (auto const& site : sites) {
     noise_of_sites_.push_back(site.gyromagnetic / site.moment);
     largest_moment_ = std::max(largest_moment_, site.moment);

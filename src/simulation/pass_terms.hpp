@@ -130,7 +130,20 @@ struct PassTerms {
     }
     return beside_pairs(stencil, of_pairs);
   }
-  /// Is there nothing but couplings, one axis for each site of a cell, and an applied field?
+  /// The same with what the pairs contribute.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> beside_pairs(
+      Stencil const& stencil, Result<typename Stencil::value_type> const& of_pairs) const {
+    using Value = typename Stencil::value_type;
+    if (!has_vacancies) return among(stencil, of_pairs);
+    auto found = among(StencilAmongSpins<Stencil>(stencil), of_pairs);
+    Value const none(0), square = dot(stencil.center(), stencil.center());
+    found.energy = cayspin::detail::select<Value>(square == none, none, found.energy);
+    return found;
+  }
+
+  /// Is there nothing but couplings, axes of the cell's sites, and an applied field? In most scenes
+  /// of crystals, which need not ask for the rest at each site.
   bool has_few() const {
     return !has_usual && !has_bulk_dmi && !has_zhang_li && !has_slonczewski && !is_gradient &&
            !exchange_of_sites.constants.data && !dmi_of_sites.constants.data && anisotropies == 0 &&
@@ -142,17 +155,6 @@ struct PassTerms {
                                                            Vec3<Value> const& of_pairs) const {
     auto const& mine = sites[pairs.site_of_plane(z)];
     return seen_by_moment(mine, mine.quadratic.add_field(m, of_pairs));
-  }
-  /// The same with what the pairs contribute.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> beside_pairs(
-      Stencil const& stencil, Result<typename Stencil::value_type> const& of_pairs) const {
-    using Value = typename Stencil::value_type;
-    if (!has_vacancies) return among(stencil, of_pairs);
-    auto found = among(StencilAmongSpins<Stencil>(stencil), of_pairs);
-    Value const none(0), square = dot(stencil.center(), stencil.center());
-    found.energy = cayspin::detail::select<Value>(square == none, none, found.energy);
-    return found;
   }
 
  private:
