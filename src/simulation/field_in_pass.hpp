@@ -20,8 +20,9 @@ namespace cayspin::simulation {
 enum class FieldFor { generator, itself, energy };
 
 /// The field of a scene whose terms are those of few scenes: couplings, sublattices, currents,
-/// vacancies. One pass evaluates all terms into memory before each stage, and the kernels of the
-/// methods load what it wrote; so there is one such kernel, and not one for each method.
+/// vacancies. One pass evaluates all terms into memory before each stage, or on a host along each
+/// row as a Runge-Kutta stage comes to it, and the kernels of the methods load what it wrote; so
+/// there is one such kernel, and not one for each method.
 /// Compiled in field_in_pass.cpp, for the spaces of space.hpp. A handle.
 template <class Spins>
 class FieldInPass {
