@@ -3,17 +3,14 @@
 
 #include <cayspin/detail/sites_of_row.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 // Terms with many neighbours are summed faster for all sites of a row than spin by spin. The host
-// loop of a stage lets them do so, piece by piece of a row, before it goes along that piece. Such a
-// term, and what is made of terms, has
+// loop of a stage lets them do so, piece by piece of a row, before it goes along that piece. What
+// such a term's prepare_for_rows returns, and what is made of such terms, has
 //   static constexpr int row_fields                       how many fields it keeps
 //   void begin_row(row, begin, end, RowFields<Real>)      H of sites begin .. end - 1
-// Where nobody calls begin_row it finds H spin by spin.
 namespace cayspin::inline v0_1::detail {
 
 /// Sites of a piece: few enough for the first cache.

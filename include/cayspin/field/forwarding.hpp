@@ -24,6 +24,11 @@ class Forwarding {
         [&](auto const& part) { return detail::prepare_term(part, exec, spins, t); });
   }
   template <class Exec, class Spins>
+  auto prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
+    return derived().with_parts(
+        [&](auto const& part) { return detail::prepare_for_rows(part, exec, spins, t); });
+  }
+  template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     return derived().with_parts(
         [&](auto const& part) { return detail::prepare_rate(part, exec, rates, t, dt); });

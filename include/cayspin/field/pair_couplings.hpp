@@ -40,6 +40,14 @@ class PairCouplings {
                                                         double) const {
     return {{spins.array(), spins.layout()}, bonds_.table()};
   }
+  template <class Exec, class Spins>
+  auto prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
+    using Real = typename Spins::value_type;
+    if constexpr (detail::host_lanes<Real> > 1)
+      return detail::PairFieldAlongRows<Real>({spins.array(), spins.layout()}, bonds_.table());
+    else
+      return prepare(exec, spins, t);
+  }
 
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> const& field_bounds() const { return field_bounds_; }

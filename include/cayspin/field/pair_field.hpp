@@ -18,8 +18,6 @@ namespace cayspin::inline v0_1::detail {
 template <class Real>
 class PairField {
  public:
-  static constexpr int row_fields = host_lanes<Real> > 1 ? 1 : 0;
-
   PairField(DistantSites<Real> const& spins, BondTable const& table)
       : spins_(spins), table_(table) {}
 
@@ -41,11 +39,6 @@ class PairField {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    if constexpr (!one_at_a_time<Value>) {
-      if (row_field_.data) [[likely]]
-        return row_field_.template load<Value>(stencil.site().x() - row_begin_);
-    }
     return parts(stencil).field();
   }
   /// Of couplings without a biquadratic part, which is left out.
@@ -76,12 +69,6 @@ class PairField {
     return sum_at_edge(of_site, stencil.center(), x, y, z);
   }
 
-  void begin_row(Row const& row, std::int32_t begin, std::int32_t end,
-                 RowFields<Real> const& memory) {
-    evaluate_row(row, begin, end, memory);
-    row_field_ = memory;
-    row_begin_ = begin;
-  }
   /// H of sites begin .. end - 1 of a row, whole packs.
   CAYSPIN_DETAIL_NOINLINE void evaluate_row(Row const& row, std::int32_t begin, std::int32_t end,
                                             RowFields<Real> const& to) const {
@@ -290,8 +277,31 @@ class PairField {
 
   DistantSites<Real> spins_;
   BondTable table_;
-  RowFields<Real> row_field_;  // of a piece of a row that begins at row_begin_
-  std::int32_t row_begin_ = 0;
+};
+
+/// The same for a loop over rows, which calls begin_row. A type of its own: with H site by site in
+/// the same kernel g++ keeps the spins in memory.
+template <class Real>
+class PairFieldAlongRows : public PairField<Real> {
+ public:
+  static constexpr int row_fields = 1;
+
+  using PairField<Real>::PairField;
+
+  void begin_row(Row const& row, std::int32_t begin, std::int32_t end,
+                 RowFields<Real> const& memory) {
+    this->evaluate_row(row, begin, end, memory);
+    fields_ = memory;
+    begin_ = begin;
+  }
+  template <class Stencil>
+  Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {
+    return fields_.template load<typename Stencil::value_type>(stencil.site().x() - begin_);
+  }
+
+ private:
+  RowFields<Real> fields_;  // of a piece of a row, from begin_ on
+  std::int32_t begin_ = 0;
 };
 
 }  // namespace cayspin::inline v0_1::detail

@@ -66,11 +66,6 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   KOKKOS_FORCEINLINE_FUNCTION Field const& part() const { return field_; }
 
   // For stages over rows.
-  template <class Exec, class Spins>
-  auto prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
-    return with_parts(
-        [&](auto const& part) { return detail::prepare_for_rows(part, exec, spins, t); });
-  }
   static constexpr int row_fields = detail::row_fields<Field>;
   template <class Real>
   void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
