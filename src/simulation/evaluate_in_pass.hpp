@@ -36,14 +36,11 @@ struct EvaluateInPass {
     using Site = cayspin::detail::Site<Value>;
     auto const& terms = self.terms;
     if (terms.has_pairs) terms.pairs.evaluate_row(row, begin, end, to);
-    bool const is_few = terms.has_few() && !self.dampings.data && !self.moves.data;
+    if (terms.has_pairs && terms.has_few() && !self.dampings.data && !self.moves.data)
+      return terms.add_few({self.spins.data + row.offset, self.spins.stride}, row, begin, end, to);
     for (std::int32_t x = begin; x < end; x += Site::lanes) {
       Site const site(row, x);
       auto const of_pairs = terms.has_pairs ? to.template load<Value>(x - begin) : zero<Value>();
-      if (is_few) {
-        to.store(terms.few_beside_pairs(site.z(), site.load(self.spins), of_pairs), x - begin);
-        continue;
-      }
       auto const found =
           terms.beside_pairs(Stencil<Site, Real>(site, self.spins), {of_pairs, Value(0)});
       to.store(self.turning(site, found.field), x - begin);

@@ -149,21 +149,30 @@ struct PassTerms {
            !exchange_of_sites.constants.data && !dmi_of_sites.constants.data && anisotropies == 0 &&
            !has_cubics;
   }
-  /// Then H of a spin in plane z.
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> few_beside_pairs(std::int32_t z, Vec3<Value> const& m,
-                                                           Vec3<Value> const& of_pairs) const {
-    auto const& mine = sites[pairs.site_of_plane(z)];
-    return seen_by_moment(mine, mine.quadratic.add_field(m, of_pairs));
+  /// Then H of sites begin .. end - 1 of a row, in place of what the pairs contribute.
+  CAYSPIN_DETAIL_NOINLINE void add_few(cayspin::detail::RowInput<Real> spins,
+                                       cayspin::detail::Row const& row, std::int32_t begin,
+                                       std::int32_t end,
+                                       cayspin::detail::RowFields<Real> fields) const {
+    using Value = cayspin::detail::Pack<Real>;
+    using Site = cayspin::detail::Site<Value>;
+    CellSite const mine = sites[pairs.site_of_plane(row.z)];
+    Vec3<double> const of_field = applied.applied;
+    for (std::int32_t x = begin; x < end; x += Site::lanes) {
+      auto h = fields.template load<Value>(x - begin);
+      if (mine.quadratic.present()) h = mine.quadratic.add_field(Site(row, x).load(spins), h);
+      fields.store(seen_by_moment(mine, of_field, h), x - begin);
+    }
   }
 
  private:
   /// Of -dE/dm.
   template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> seen_by_moment(CellSite const& site,
-                                                         Vec3<Value> const& h) const {
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
+                                                                Vec3<double> const& applied,
+                                                                Vec3<Value> const& h) {
     return as_value<Value>(site.gyromagnetic) *
-           multiply_add(as_value<Value>(site.per_moment), h, as_value<Value>(applied.applied));
+           multiply_add(as_value<Value>(site.per_moment), h, as_value<Value>(applied));
   }
 
   template <class Stencil>
@@ -209,7 +218,7 @@ struct PassTerms {
     auto const moment = as_value<Value>(mine.moment);
     e = e + moment * applied.energy_density(stencil);
     if (is_gradient) return {multiply_add(moment, applied.field(stencil), h), e};
-    h = seen_by_moment(mine, h);
+    h = seen_by_moment(mine, applied.applied, h);
     // Torques are no derivatives of an energy.
     if (has_zhang_li) h = h + zhang_li.field(stencil);
     if (has_slonczewski) h = h + slonczewski.field(stencil);

@@ -106,11 +106,15 @@ struct SceneFieldNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
+    if (along_rows.evaluate) [[unlikely]]
+      return stored.field(stencil);
     return add_demagnetization(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
       Stencil const& stencil) const {
+    if (along_rows.evaluate) [[unlikely]]
+      return stored.field(stencil);
     return add_demagnetization(stencil,
                                lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }
@@ -171,7 +175,7 @@ struct SceneFieldNow {
  private:
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_demagnetization(Stencil const& stencil, Vector h) const {
-    if (has_layers || has_stored) [[unlikely]] {
+    if (has_layers | has_stored) [[unlikely]] {
       if (has_layers) h = h + layers.field(stencil);
       if (has_stored) h = h + stored.field(stencil);
     }

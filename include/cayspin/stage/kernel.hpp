@@ -143,7 +143,7 @@ struct RungeKuttaStage {
     if constexpr (Flow::reads_start)
       return site.load(rows.start);
     else
-      return m;
+      return {m.x, m.y, m.z};  // g++ copies a whole vector through memory
   }
 
   // A, or what turns the spin of it where the update asks for no more.
