@@ -106,15 +106,11 @@ struct SceneFieldNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
       Stencil const& stencil) const {
-    if (along_rows.evaluate) [[unlikely]]
-      return stored.field(stencil);
     return add_demagnetization(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
       Stencil const& stencil) const {
-    if (along_rows.evaluate) [[unlikely]]
-      return stored.field(stencil);
     return add_demagnetization(stencil,
                                lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }

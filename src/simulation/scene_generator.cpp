@@ -53,7 +53,8 @@ template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_for_rows(Exec const& exec,
                                                                  Spins const& spins,
                                                                  double t) const {
-  return {llg_.prepare_for_rows(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_,
+  auto const llg = llg_.prepare_for_rows(exec, spins, t);
+  return {llg, bodies_.prepare(exec, spins, t), is_llg_ && !llg.part().along_rows.evaluate,
           orthogonal_};
 }
 

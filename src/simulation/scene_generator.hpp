@@ -22,7 +22,7 @@ template <class Spins>
 struct SceneGeneratorNow {
   LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
   SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
-  bool is_llg, orthogonal;
+  bool is_llg, orthogonal;  // is_llg: and H is not found along rows
 
   static constexpr int row_fields = cayspin::detail::row_fields<decltype(llg)>;
   void begin_row(cayspin::detail::Row const& row, std::int32_t begin, std::int32_t end,
@@ -34,13 +34,13 @@ struct SceneGeneratorNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    Vec3<Value> const a = is_llg ? llg(stencil) : bodies(stencil);
+    Vec3<Value> const a = is_llg ? llg(stencil) : rare(stencil);
     return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
       Stencil const& stencil) const {
-    return is_llg ? llg.turning_part(stencil) : bodies(stencil);
+    return is_llg ? llg.turning_part(stencil) : rare(stencil);
   }
   /// Of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
   /// rigid body is its own.
@@ -96,6 +96,16 @@ struct SceneGeneratorNow {
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
       Stencil const& stencil) const {
     return is_llg ? llg.energy_magnitude(stencil) : Kokkos::abs(bodies.energy_density(stencil));
+  }
+
+ private:
+  /// Of bodies, or of an H that begin_row has found, all terms in it.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> rare(
+      Stencil const& stencil) const {
+    auto const& field = llg.part();
+    if (field.along_rows.evaluate) return llg.generator_at(stencil, field.stored.field(stencil));
+    return bodies(stencil);
   }
 };
 
