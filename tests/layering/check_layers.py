@@ -15,6 +15,7 @@ LIBRARY = [
     ("spins", ["spin_field.hpp", "stencil.hpp"]),
     ("contracts", ["concepts.hpp", "checkpoint.hpp", "optional_members.hpp", "step.hpp", "field/local_part.hpp"]),
     ("field terms", ["field/"]),
+    ("demagnetization", ["demagnetization/"]),
     ("generators", ["generator/"]),
     ("rotations", ["rotation/"]),
     ("isotropies", ["isotropy/", "isotropy.hpp"]),
