@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A permalloy film with a demagnetising field of its own, by FFTs over all ranks. The printed
 // numbers have the same bits on any number of ranks.
-#include "../standard_problem_4/newell.hpp"
 #include "film_demagnetising_field.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -26,7 +25,7 @@ void run(MPI_Comm comm) {
   auto const& local = domain.local();
   Spins spins("spins", local);
   cayspin::HostField<Spins, FilmDemagnetisingField> const demag(
-      spins, FilmDemagnetisingField(domain, newell::tensor));
+      spins, FilmDemagnetisingField(domain, cayspin::demagnetizing_tensor));
   cayspin::EffectiveField const field(cayspin::Exchange(local, exchange), demag,
                                       cayspin::Zeeman{{0.05, 0.02, 0}});
   cayspin::LandauLifshitz const generator(field, 0.5);

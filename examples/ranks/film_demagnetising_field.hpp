@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "../standard_problem_4/tensor.hpp"
-
+#include <cayspin/demagnetization/tensor.hpp>
 #include <cayspin/mpi/domain.hpp>
 
 #include <fftw3.h>
@@ -26,7 +25,7 @@ class FilmDemagnetisingField {
  public:
   static constexpr int degree = 2;  // H is linear in m: E = -m.H/2
 
-  FilmDemagnetisingField(cayspin::mpi::Domain const& domain, TensorOfCells& tensor)
+  FilmDemagnetisingField(cayspin::mpi::Domain const& domain, cayspin::TensorOfCells& tensor)
       : film_(std::make_shared<Film>(domain, tensor)) {}
 
   template <class HostSpins>
@@ -58,7 +57,7 @@ class FilmDemagnetisingField {
 
   class Film {
    public:
-    Film(cayspin::mpi::Domain const& domain, TensorOfCells& tensor)
+    Film(cayspin::mpi::Domain const& domain, cayspin::TensorOfCells& tensor)
         : comm_(domain.comm()), rank_(static_cast<std::size_t>(domain.rank())) {
       auto const& film = domain.whole();
       auto const open = cayspin::Boundary::open;
@@ -111,7 +110,7 @@ class FilmDemagnetisingField {
     void multiply_by_kernel() {
       std::size_t const component = columns() * 2 * ny_;
       for (std::size_t i = 0; i < component; ++i) {
-        Tensor const& n = kernel_[i];
+        cayspin::DemagnetizingTensor const& n = kernel_[i];
         Complex const x = column_[i], y = column_[component + i], z = column_[2 * component + i];
         column_[i] = n.xx * x + n.xy * y;  // in the film's plane N has no xz and no yz
         column_[component + i] = n.xy * x + n.yy * y;
@@ -199,7 +198,7 @@ class FilmDemagnetisingField {
     }
 
     /// The spectrum of -N, which is real: N is even along x and y, but for xy, which is odd.
-    void find_kernel(cayspin::Lattice const& film, TensorOfCells& tensor) {
+    void find_kernel(cayspin::Lattice const& film, cayspin::TensorOfCells& tensor) {
       kernel_.resize(columns() * 2 * ny_);
       for (bool const odd : {false, true}) {
         transform_tensors(film, tensor, odd);
@@ -209,19 +208,21 @@ class FilmDemagnetisingField {
             auto const at = [&](std::size_t c) {
               return column_[(c * columns() + k) * 2 * ny_ + y].real();
             };
-            Tensor& n = kernel_[k * 2 * ny_ + y];
-            n = odd ? Tensor{n.xx, n.yy, n.zz, at(0), 0, 0} : Tensor{at(0), at(1), at(2), 0, 0, 0};
+            cayspin::DemagnetizingTensor& n = kernel_[k * 2 * ny_ + y];
+            n = odd ? cayspin::DemagnetizingTensor{n.xx, n.yy, n.zz, at(0), 0, 0}
+                    : cayspin::DemagnetizingTensor{at(0), at(1), at(2), 0, 0, 0};
           }
         }
       }
     }
-    void transform_tensors(cayspin::Lattice const& film, TensorOfCells& tensor, bool odd) {
+    void transform_tensors(cayspin::Lattice const& film, cayspin::TensorOfCells& tensor, bool odd) {
       double const scale = -1.0 / static_cast<double>(4 * nx_ * ny_);
       auto const& size = film.spacing;
       transform([&](double* row, std::size_t c, std::size_t y) {
         for (std::size_t x = 0; x < nx_; ++x) {
           double const distance = static_cast<double>(y_.begin[rank_] + y) * size[1];
-          Tensor const n = tensor({static_cast<double>(x) * size[0], distance, 0}, size);
+          cayspin::DemagnetizingTensor const n =
+              tensor({static_cast<double>(x) * size[0], distance, 0}, size);
           row[x] = scale * (odd ? n.xy : c == 0 ? n.xx : c == 1 ? n.yy : n.zz);
           if (x > 0) row[2 * nx_ - x] = odd ? -row[x] : row[x];
         }
@@ -242,7 +243,7 @@ class FilmDemagnetisingField {
     std::vector<double> row_, results_;
     std::vector<Complex> row_spectrum_, of_rows_, of_columns_, column_;
     Plan forward_x_, backward_x_, forward_y_, backward_y_;
-    std::vector<Tensor> kernel_;
+    std::vector<cayspin::DemagnetizingTensor> kernel_;
   };
 
   std::shared_ptr<Film> film_;

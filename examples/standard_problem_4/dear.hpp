@@ -19,7 +19,8 @@ class DearProblem4 {
  public:
   using Problem = StandardProblem4;
   using Spins = cayspin::SpinField<double>;
-  using DearTerm = cayspin::Dear<Spins, cayspin::HostField<Spins, DemagnetisingField>>;
+  using DearTerm =
+      cayspin::Dear<Spins, cayspin::HostField<Spins, cayspin::DemagnetizingField<double>>>;
   static constexpr int looks_per_nanosecond = 50;
 
   /// `problem`: at rest.

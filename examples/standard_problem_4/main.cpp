@@ -7,7 +7,6 @@
 //   example_standard_problem_4 dear     200 x 50 cells, the demagnetising field once a step
 //   example_standard_problem_4 adaptive the same beside adaptive methods; dear10: over 10 ns
 #include "dear.hpp"
-#include "newell.hpp"
 #include "problem.hpp"
 #include "quadrature.hpp"
 
@@ -32,7 +31,7 @@ bool agree(char const* what, Vector const& m, Vector const& other, double limit)
 }
 
 /// test/standardproblem4.mx3 and standardproblem4b.mx3 of mumax3.
-bool agrees_with_mumax3(TensorOfCells& tensor, double limit_of_field_1) {
+bool agrees_with_mumax3(cayspin::TensorOfCells& tensor, double limit_of_field_1) {
   StandardProblem4 problem(128, 32, tensor);
   bool fine =
       agree("at rest", problem.relax(1e-9), {0.9669684171676636, 0.1252732127904892, 0}, 1e-4);
@@ -48,7 +47,7 @@ bool agrees_with_mumax3(TensorOfCells& tensor, double limit_of_field_1) {
 
 /// micromagnetics_examples/std4/oommf.txt of fidimag. OOMMF has Newell's tensor.
 bool agrees_with_oommf() {
-  StandardProblem4 problem(200, 50, newell::tensor);
+  StandardProblem4 problem(200, 50);
   auto const rest = problem.relax(1e-6);
   auto const reversal = problem.reverse(field_1, 2800);
   std::printf("at rest          %9.6f %9.6f %9.6f\n", rest.x, rest.y, rest.z);
@@ -62,7 +61,7 @@ bool agrees_with_oommf() {
 
 /// The demagnetising field evaluated once a step, beside rkmk4 which evaluates it in each stage.
 bool follows_with_a_dear_field(bool with_adaptive_methods) {
-  StandardProblem4 problem(200, 50, newell::tensor);
+  StandardProblem4 problem(200, 50);
   problem.relax(1e-6);
   DearProblem4 dear(problem, field_1, 1);
   auto const converged = dear.rkmk4(2800);
@@ -88,7 +87,7 @@ bool follows_with_a_dear_field(bool with_adaptive_methods) {
 
 /// The energy law over 10 ns, until the film is at rest.
 bool falls_for_10_nanoseconds() {
-  StandardProblem4 problem(200, 50, newell::tensor);
+  StandardProblem4 problem(200, 50);
   problem.relax(1e-6);
   DearProblem4 dear(problem, field_1, 10);
   auto const run = dear.multirate<3>(9000, 3);
@@ -109,5 +108,5 @@ int main(int argc, char** argv) {
   if (std::strcmp(beside, "mumax3") == 0)
     return agrees_with_mumax3(quadrature::tensor, 1e-3) ? 0 : 1;
   // m_y changes by 8e-3 in a picosecond then.
-  return agrees_with_mumax3(newell::tensor, 6e-3) ? 0 : 1;
+  return agrees_with_mumax3(cayspin::demagnetizing_tensor, 6e-3) ? 0 : 1;
 }

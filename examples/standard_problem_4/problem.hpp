@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "demagnetising_field.hpp"
-
 #include <cayspin/cayspin.hpp>
+#include <cayspin/demagnetization/demagnetizing_field.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -21,11 +20,12 @@ class StandardProblem4 {
     return 1e-9 * gamma0 * saturation / (1 + damping * damping);
   }
 
-  StandardProblem4(std::int64_t nx, std::int64_t ny, TensorOfCells& tensor)
+  StandardProblem4(std::int64_t nx, std::int64_t ny,
+                   cayspin::TensorOfCells& tensor = cayspin::demagnetizing_tensor)
       : film_{.shape = {nx, ny, 1},
               .spacing = {500. / static_cast<double>(nx), 125. / static_cast<double>(ny), 3}},
         spins_("spins", film_),
-        demag_(spins_, DemagnetisingField(film_, tensor)) {}
+        demag_(spins_, cayspin::DemagnetizingField<double>(film_, {.tensor = &tensor})) {}
 
   /// The S state: from (1, 0.1, 0), without precession, until |m'| < torque everywhere.
   Vector relax(double torque) {
@@ -97,6 +97,6 @@ class StandardProblem4 {
   Exec exec_;
   cayspin::Lattice film_;
   Spins spins_;
-  cayspin::HostField<Spins, DemagnetisingField> demag_;
+  cayspin::HostField<Spins, cayspin::DemagnetizingField<double>> demag_;
   std::vector<double> at_rest_;
 };

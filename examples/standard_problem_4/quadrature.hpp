@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "tensor.hpp"
+#include <cayspin/demagnetization/tensor.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,8 @@ inline double middle(double edge, int pieces, int index) {
   return edge * ((index + 0.5) / pieces - 0.5);
 }
 
-inline Tensor tensor(std::array<double, 3> const& distance, std::array<double, 3> const& size) {
+inline cayspin::DemagnetizingTensor tensor(std::array<double, 3> const& distance,
+                                           std::array<double, 3> const& size) {
   // Between the nearest faces; the shortest edge for cells that touch.
   double gap = 0;
   for (std::size_t a = 0; a < 3; ++a)

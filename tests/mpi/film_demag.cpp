@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The demagnetising field of examples/ranks, by FFTs over all ranks, against that of one rank.
 #include "../../examples/ranks/film_demagnetising_field.hpp"
-#include "../../examples/standard_problem_4/demagnetising_field.hpp"
-#include "../../examples/standard_problem_4/newell.hpp"
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
+#include <cayspin/demagnetization/demagnetizing_field.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -27,16 +26,16 @@ TEST(FilmDemagnetisingField, IsThatOfOneRank) {
                                    m.begin() + static_cast<std::ptrdiff_t>(first + own));
     HostSpins const whole_spins = spins_of<HostSpins>(film, m), whole_field("field", film);
     HostSpins const spins = spins_of<HostSpins>(local, part), field("field", local);
-    DemagnetisingField const of_one_rank(film, newell::tensor);
+    DemagnetizingField<double> const of_one_rank(film);
     of_one_rank(whole_spins, whole_field, 0);
-    FilmDemagnetisingField const of_all(domain, newell::tensor);
+    FilmDemagnetisingField const of_all(domain, demagnetizing_tensor);
     for (int again = 0; again < 2; ++again) of_all(spins, field, 0);
     auto const expected = copy_to_host(whole_field), found = copy_to_host(field);
     for (std::size_t i = 0; i < own; ++i) EXPECT_NEAR(found[i], expected[first + i], 1e-14) << i;
   }
   EXPECT_THROW(FilmDemagnetisingField(
                    mpi::Domain(MPI_COMM_WORLD, Lattice::cubic(4, 8, 2), 1, {.y = ranks, .z = 1}),
-                   newell::tensor),
+                   demagnetizing_tensor),
                std::invalid_argument);
 }
 

@@ -16,6 +16,10 @@ struct DemagnetizingTensor {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
+/// Such a tensor of a position and of the edges of a cell.
+using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,
+                                          std::array<double, 3> const& cell);
+
 namespace detail {
 
 using Lengths = std::array<double, 3>;

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+# The target cayspin::fftw, where FFTW 3 is found in both precisions (Debian: libfftw3-dev). FFTW is
+# under the GPL: what links it is to be passed on under the GPL, too, or with a licence bought from
+# its authors.
+find_path(CAYSPIN_FFTW_INCLUDE_DIR fftw3.h)
+find_library(CAYSPIN_FFTW_DOUBLE fftw3)
+find_library(CAYSPIN_FFTW_SINGLE fftw3f)
+mark_as_advanced(CAYSPIN_FFTW_INCLUDE_DIR CAYSPIN_FFTW_DOUBLE CAYSPIN_FFTW_SINGLE)
+if(NOT TARGET cayspin::fftw
+   AND CAYSPIN_FFTW_INCLUDE_DIR
+   AND CAYSPIN_FFTW_DOUBLE
+   AND CAYSPIN_FFTW_SINGLE)
+  add_library(cayspin::fftw INTERFACE IMPORTED)
+  target_include_directories(cayspin::fftw INTERFACE ${CAYSPIN_FFTW_INCLUDE_DIR})
+  target_link_libraries(cayspin::fftw INTERFACE cayspin::cayspin ${CAYSPIN_FFTW_DOUBLE}
+                                                ${CAYSPIN_FFTW_SINGLE})
+endif()

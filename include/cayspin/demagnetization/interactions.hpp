@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/demagnetization/tensor.hpp>
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/lattice.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+namespace cayspin::inline v0_1 {
+
+struct DemagnetizationOptions {
+  double strength = 1;
+  /// More images on each side than the nearest one, along the axes that have any.
+  std::array<int, 3> periodic_images{};
+  TensorOfCells* tensor = demagnetizing_tensor;
+};
+
+namespace detail {
+
+/// -strength N between the cells of a lattice, on the octant of distances that are not negative.
+class InteractionsOfCells {
+ public:
+  InteractionsOfCells(Lattice const& lattice, DemagnetizationOptions const& options)
+      : cell_(lattice.spacing), options_(options) {
+    lattice.validate();
+    if (!std::isfinite(options.strength))
+      throw std::invalid_argument("cayspin::DemagnetizingField: the strength is not finite");
+    if (lattice.cell_sites != 1 || lattice.part != nullptr)
+      throw std::invalid_argument(
+          "cayspin::DemagnetizingField: a lattice must be whole, with one site in a cell");
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (images(axis) < 0)
+        throw std::invalid_argument(
+            "cayspin::DemagnetizingField: the number of images is negative");
+      cells_[axis] = static_cast<int>(lattice.shape[axis]);
+      period_[axis] = images(axis) > 0 ? cells_[axis] : good_length(2 * cells_[axis] - 1);
+    }
+  }
+
+  std::array<int, 3> const& cells() const { return cells_; }
+  /// Of the convolution, which is cyclic: room for all distances, or the lattice itself.
+  std::array<int, 3> const& period() const { return period_; }
+  /// Distances 0 .. octant - 1 along each axis stand for all.
+  int octant(std::size_t axis) const { return period_[axis] / 2 + 1; }
+
+  /// Of all distances of the octant, x first; those that no two cells have are 0.
+  std::vector<DemagnetizingTensor> all() const {
+    std::vector<DemagnetizingTensor> found(static_cast<std::size_t>(octant(0)) *
+                                           static_cast<std::size_t>(octant(1)) *
+                                           static_cast<std::size_t>(octant(2)));
+    // Near ones take longest: dealt out one by one.
+    auto const count = static_cast<std::int64_t>(found.size());
+    Kokkos::parallel_for(
+        "cayspin::DemagnetizingField: tensors",
+        Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, TaskIndex,
+                            Kokkos::Schedule<Kokkos::Dynamic>>(0, count, Kokkos::ChunkSize(64)),
+        Find{*this, found.data()});
+    Kokkos::DefaultHostExecutionSpace().fence("cayspin::DemagnetizingField: tensors");
+    return found;
+  }
+
+ private:
+  /// With a number of factors 2, 3, 5 and 7, for which FFTs are fast.
+  static int good_length(int least) {
+    for (int length = least;; ++length) {
+      int rest = length;
+      for (int const factor : {2, 3, 5, 7})
+        while (rest % factor == 0) rest /= factor;
+      if (rest == 1) return length;
+    }
+  }
+
+  struct Find {
+    InteractionsOfCells const& of;
+    DemagnetizingTensor* found;
+
+    void operator()(std::int64_t i) const {
+      auto const nx = of.octant(0), ny = of.octant(1);
+      found[i] = of.between({static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
+                             static_cast<int>(i / nx / ny)});
+    }
+  };
+
+  int images(std::size_t axis) const { return options_.periodic_images[axis]; }
+
+  DemagnetizingTensor between(std::array<int, 3> const& distance) const {
+    DemagnetizingTensor sum;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (images(axis) == 0 && distance[axis] >= cells_[axis]) return sum;
+    for (int i = -images(0); i <= images(0); ++i)
+      for (int j = -images(1); j <= images(1); ++j)
+        for (int k = -images(2); k <= images(2); ++k)
+          add(sum, -options_.strength,
+              options_.tensor(
+                  {place(0, distance[0], i), place(1, distance[1], j), place(2, distance[2], k)},
+                  cell_));
+    // Half a period away there are two nearest images, one on each side.
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (images(axis) > 0 && 2 * distance[axis] == period_[axis]) {
+        if (axis != 2) sum.xy = 0;
+        if (axis != 1) sum.xz = 0;
+        if (axis != 0) sum.yz = 0;
+      }
+    return sum;
+  }
+  double place(std::size_t axis, int distance, int image) const {
+    return (distance + static_cast<double>(image) * period_[axis]) * cell_[axis];
+  }
+
+  std::array<double, 3> cell_;
+  DemagnetizationOptions options_;
+  std::array<int, 3> cells_{}, period_{};
+};
+
+}  // namespace detail
+}  // namespace cayspin::inline v0_1

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace cayspin::inline v0_1::detail {
+
+/// Host threads with memory of their own, which goes from task to task.
+template <class Number>
+class Workers {
+ public:
+  /// For so many tasks, or fewer, with `numbers` each.
+  Workers(std::string const& label, std::int64_t tasks, std::size_t numbers)
+      : label_(label),
+        count_(std::min<std::int64_t>(tasks, Kokkos::DefaultHostExecutionSpace().concurrency())),
+        numbers_(whole_lines(numbers)),
+        memory_(label, static_cast<std::size_t>(count_) * numbers_) {}
+
+  /// body(task, memory) for all tasks. The memory is 0 before the first.
+  template <class Body>
+  void run(std::int64_t tasks, Body const& body) const {
+    Kokkos::parallel_for(
+        label_,
+        Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, TaskIndex>(
+            Kokkos::DefaultHostExecutionSpace(), 0, count_),
+        Run<Body>{body, tasks, count_, numbers_, memory_.data()});
+    Kokkos::DefaultHostExecutionSpace().fence(label_);
+  }
+
+  static std::size_t whole_lines(std::size_t numbers) {
+    constexpr std::size_t per_line = 64 / sizeof(Number);
+    return (numbers + per_line - 1) / per_line * per_line;
+  }
+
+ private:
+  template <class Body>
+  struct Run {
+    Body const& body;
+    std::int64_t tasks, count;
+    std::size_t numbers;
+    Number* memory;
+
+    void operator()(std::int64_t worker) const {
+      std::int64_t const end = tasks * (worker + 1) / count;
+      for (std::int64_t task = tasks * worker / count; task < end; ++task)
+        body(task, memory + static_cast<std::size_t>(worker) * numbers);
+    }
+  };
+
+  std::string label_;
+  std::int64_t count_;
+  std::size_t numbers_;
+  Kokkos::View<Number*, Kokkos::HostSpace> memory_;
+};
+
+}  // namespace cayspin::inline v0_1::detail
