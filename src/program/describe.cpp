@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "simulation/dear_method.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
@@ -209,6 +210,15 @@ std::string slab_text(io::Field const& field) {
                                     : "");
 }
 
+std::string demag_text(io::Scene const& scene) {
+  auto const& demag = *scene.field.demag;
+  auto const& [x, y, z] = demag.periodic_images;
+  return fmt::format("H = -{:.6g} N m, of all cells on all cells by FFTs{}{}",
+                     scene.field.mu0 * demag.strength,
+                     x + y + z > 0 ? fmt::format(", images {}, {}, {}", x, y, z) : "",
+                     has_dear_field(scene) ? ", dear: once a step" : "");
+}
+
 std::string thermal_text(io::Scene const& scene) {
   auto const& [temperature, seed] = *scene.thermal;
   auto const typed = fmt::format("{:.6g}", typed_temperature(scene));
@@ -261,6 +271,7 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
     if (field.applied) lines.emplace_back("applied", applied_text(scene));
     if (!field.applied_in_turn.empty()) lines.emplace_back("applied", list_text(scene));
     if (field.slab_demag) lines.emplace_back("slab demag", slab_text(field));
+    if (field.demag) lines.emplace_back("demag", demag_text(scene));
   }
   if (scene.thermal) lines.emplace_back("temperature", thermal_text(scene));
   lines.emplace_back("start", initial_text(scene.initial));

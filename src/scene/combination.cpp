@@ -101,9 +101,13 @@ void check_two_colours(Scene const& scene) {
              "an even extent, an open boundary, or another method");
   }
   if (is_nonlocal(scene.field))
-    refuse(scene, scene.field.own.nonlocal ? "field" : "field.slab_demag",
+    refuse(scene,
+           scene.field.own.nonlocal ? "field"
+           : scene.field.demag      ? "field.demag"
+                                    : "field.slab_demag",
            fmt::format("method \"{}\" needs a field of the neighbours alone", method),
            scene.field.own.nonlocal ? "no nonlocal field, or another method"
+           : scene.field.demag      ? "no such key, or another method"
                                     : "neither average nor where, or another method");
 }
 
@@ -153,6 +157,8 @@ void check_pass(Scene const& scene) {
   if (field.slab_demag && field.slab_demag->dear)
     refuse(scene, "field.slab_demag.dear", "does not go with terms such as couplings",
            "no such key");
+  if (field.demag && field.demag->dear.value_or(false))
+    refuse(scene, "field.demag.dear", "does not go with terms such as couplings", "no such key");
 }
 
 }  // namespace
@@ -162,6 +168,8 @@ void check_combination(Scene const& scene) {
   if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->on_host)
     refuse(scene, "field.slab_demag", "where = \"host\" does not go with a program's own field",
            "no such key");
+  if (scene.field.own.nonlocal && scene.field.demag)
+    refuse(scene, "field.demag", "does not go with a program's own field", "no such key");
   if (scene.field.own.uniform && scene.field.applied)
     refuse(scene, "field.applied", "the program has a uniform field of its own", "no such key");
   auto const& integrator = scene.integrator;

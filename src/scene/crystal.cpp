@@ -116,6 +116,7 @@ void check_crystal(Scene const& scene) {
          "field.couplings with D");
   refuse(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
          "no such key");
+  refuse(field.demag.has_value(), "field.demag", "no such key");
   refuse(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
 }
 

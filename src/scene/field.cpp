@@ -82,7 +82,7 @@ std::vector<std::string_view> field_keys() {
   std::vector<std::string_view> keys;
   for_each_lattice_term(Field{},
                         [&]<class Term>(std::optional<Term> const&) { keys.push_back(Term::key); });
-  keys.insert(keys.end(), {"couplings", "anisotropy", "applied", "slab_demag", "mu0"});
+  keys.insert(keys.end(), {"couplings", "anisotropy", "applied", "slab_demag", "demag", "mu0"});
   return keys;
 }
 
@@ -203,6 +203,31 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   return slab;
 }
 
+// `demag = true`, or a table.
+std::optional<Demagnetization> read_demag(Item const& item, Scene& scene) {
+  if (item.node->is_boolean()) {
+    if (boolean(item)) return Demagnetization();
+    return std::nullopt;
+  }
+  constexpr std::string_view accepted = "true, or { strength, periodic_images, dear }";
+  if (!item.node->is_table()) item.wrong_type(accepted);
+  Table const table(item, scene);
+  table.accept_only({"strength", "periodic_images", "dear"});
+  Demagnetization demag;
+  if (auto const strength = table.find("strength")) demag.strength = number(*strength);
+  if (auto const images = table.find("periodic_images")) {
+    constexpr std::string_view three = "three numbers of images, 0 to 1000";
+    auto const of_axes = entries(*images, 3, 3, three);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      auto const count = integer(of_axes[axis], 0, three);
+      if (count > 1000) of_axes[axis].fail(fmt::format("{} images are too many", count), three);
+      demag.periodic_images[axis] = static_cast<int>(count);
+    }
+  }
+  if (auto const dear = table.find("dear")) demag.dear = boolean(*dear);
+  return demag;
+}
+
 // A material says in SI what these say in reduced units.
 void refuse_reduced_keys(Table const& table) {
   constexpr std::pair<std::string_view, std::string_view> replaced[] = {
@@ -233,6 +258,11 @@ Field read_field(Table const& root, SystemKind kind) {
   if (auto const item = table.find("applied")) read_applied(*item, field);
   if (auto const item = table.find("slab_demag")) {
     field.slab_demag = read_slab_demag(*item, root.scene());
+  }
+  if (auto const item = table.find("demag")) {
+    field.demag = read_demag(*item, root.scene());
+    if (field.demag && field.slab_demag)
+      item->fail("is the whole demagnetising field, and slab_demag a part of it", "one of the two");
   }
   if (auto const item = table.find("mu0")) field.mu0 = number(*item);
   return field;
@@ -268,7 +298,7 @@ bool has_torque(Field const& field) { return field.torque.zhang_li || field.torq
 
 bool is_nonlocal(Field const& field) {
   auto const& slab = field.slab_demag;
-  return field.own.nonlocal || (slab && (slab->average_layer || slab->on_host));
+  return field.own.nonlocal || field.demag || (slab && (slab->average_layer || slab->on_host));
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -154,9 +154,9 @@ void check_si(Scene const& scene) {
          {"lattice.crystal", "lattice.cell", "lattice.basis", "field.couplings"})
       refuse(key, "is of atoms, and material.Ms of a continuum", "material.mu_s, or no such key");
   auto const& moments = scene.material->moments;
-  if (field.slab_demag &&
-      std::ranges::adjacent_find(moments, std::not_equal_to<>()) != moments.end())
-    refuse("field.slab_demag", "needs moments that are all alike", "one number in material.mu_s");
+  if (std::ranges::adjacent_find(moments, std::not_equal_to<>()) != moments.end())
+    for (auto const* const key : {"field.slab_demag", "field.demag"})
+      refuse(key, "needs moments that are all alike", "one number in material.mu_s");
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

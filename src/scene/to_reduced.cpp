@@ -111,6 +111,7 @@ void convert_field(Scene& scene, auto const& units) {
   convert_torque(scene, units);
   if (field.slab_demag)
     field.slab_demag->strength = units.demagnetization(field.slab_demag->strength);
+  if (field.demag) field.demag->strength = units.demagnetization(field.demag->strength);
   for (auto& in_turn : field.applied_in_turn)
     for (double& component : in_turn) component = units.applied(component);
   scene.applied_in_tesla = field.applied;

@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -91,13 +93,38 @@ class DearMethod final : public OpenMethod {
   throw io::scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
 }
 
+bool takes_dear_fields(io::Integrator const& integrator, Variant const& variant) {
+  auto const& method = *integrator.method;
+  bool const sees_each_stage = method.differentiates_field ||
+                               integrator.isotropy == io::Isotropy::energy ||
+                               integrator.isotropy == io::Isotropy::analytic ||
+                               integrator.isotropy == io::Isotropy::finite_difference;
+  return method.has_equal_steps() && !variant.remembers && variant.evaluations && !sees_each_stage;
+}
+
+bool is_dear(io::Demagnetization const& demag, io::Scene const& scene) {
+  if (demag.dear) return *demag.dear;
+  if (scene.integrator.energy_control || is_thermal(scene) || io::needs_pass(scene)) return false;
+  return scene.integrator.method->automatic ||
+         takes_dear_fields(scene.integrator, find_variant(scene));
+}
+
 }  // namespace
 
 int order_of_dear(Variant const& variant) { return variant.order > 4 ? 4 : 3; }
 
 bool has_dear_field(io::Scene const& scene) {
-  auto const& slab = scene.field.slab_demag;
-  return (slab && slab->dear) || (scene.field.own.nonlocal && scene.integrator.substeps > 1);
+  auto const& [slab, demag] = std::tie(scene.field.slab_demag, scene.field.demag);
+  return (slab && slab->dear) || (demag && is_dear(*demag, scene)) ||
+         (scene.field.own.nonlocal && scene.integrator.substeps > 1);
+}
+
+std::string without_dear(io::Scene const& scene) {
+  if (!scene.field.demag) return "field.slab_demag.dear=false";
+  // `demag = true` has no keys.
+  bool const is_table = std::ranges::any_of(
+      scene.places, [](auto const& place) { return place.first.starts_with("field.demag."); });
+  return is_table ? "field.demag.dear=false" : "field.demag={dear=false}";
 }
 
 void require_dear_field_fits(io::Scene const& scene, Variant const& variant) {
@@ -106,17 +133,13 @@ void require_dear_field_fits(io::Scene const& scene, Variant const& variant) {
   if (!has_dear_field(scene)) {
     if (integrator.substeps > 1)
       refuse(scene, "integrator.substeps", "no term of the field is dear",
-             "1, or slab_demag.dear = true, or a program's own nonlocal field");
+             "1, or demag, or slab_demag.dear = true, or a program's own nonlocal field");
     return;
   }
   if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->dear)
     refuse(scene, "field.slab_demag.dear", "the program's own field is the dear one",
            "no such key");
-  bool const sees_each_stage = method.differentiates_field ||
-                               integrator.isotropy == io::Isotropy::energy ||
-                               integrator.isotropy == io::Isotropy::analytic ||
-                               integrator.isotropy == io::Isotropy::finite_difference;
-  if (!method.has_equal_steps() || variant.remembers || !variant.evaluations || sees_each_stage)
+  if (!takes_dear_fields(integrator, variant))
     refuse(scene, "integrator.method",
            fmt::format("\"{}\" takes no dear field: it chooses or remembers steps, iterates, or "
                        "differentiates the field",

@@ -9,16 +9,20 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 namespace cayspin::simulation {
 
-/// Is a term of the scene's field dear? slab_demag.dear says so, and a program's own nonlocal field
-/// is where there are substeps.
+/// Is a term of the scene's field dear? slab_demag.dear says so, demag is where the method can, and
+/// a program's own nonlocal field where there are substeps.
 bool has_dear_field(io::Scene const& scene);
 
 /// Throws io::SceneError for substeps without a dear field, and for a dear field with what has to
 /// see it at each stage, or remembers the stages of steps before.
 void require_dear_field_fits(io::Scene const& scene, Variant const& variant);
+
+/// An override by which no term is dear.
+std::string without_dear(io::Scene const& scene);
 
 /// The order in time of its interpolation: 4 for methods of a higher order, otherwise 3, which
 /// stands longer steps.

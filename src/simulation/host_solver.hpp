@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "demagnetization.hpp"
+
 #include <cayspin/field/slab_demag_on_host.hpp>
 #include <cayspin/io/own_field.hpp>
 
@@ -22,7 +24,8 @@ io::HostVectors host_vectors(HostSpins const& spins) {
           {layout.ny * layout.pitch, layout.pitch, 1, array.stride}};
 }
 
-/// A scene's field that is computed on the host: a slab's, or a program's own.
+/// A scene's field that is computed on the host: a slab's, the whole demagnetising field, or a
+/// program's own.
 class HostSolver {
  public:
   static constexpr int degree = 2;
@@ -30,17 +33,21 @@ class HostSolver {
 
   explicit HostSolver(SlabDemagOnHost slab) : solver_(std::move(slab)) {}
   explicit HostSolver(Own own) : solver_(std::move(own)) {}
+  template <class Real>
+  explicit HostSolver(FieldOnHost<Real> field) : solver_(std::move(field)) {}
 
   template <class HostSpins>
   void operator()(HostSpins const& spins, HostSpins const& field, double t) const {
     if (auto const* own = std::get_if<Own>(&solver_))
       (*own)(host_vectors(spins), host_vectors(field), t);
+    else if (auto const* found = std::get_if<FieldOnHost<typename HostSpins::value_type>>(&solver_))
+      (*found)(spins, field);
     else
       std::get<SlabDemagOnHost>(solver_)(spins, field, t);
   }
 
  private:
-  std::variant<SlabDemagOnHost, Own> solver_;
+  std::variant<SlabDemagOnHost, Own, FieldOnHost<double>, FieldOnHost<float>> solver_;
 };
 
 }  // namespace cayspin::simulation

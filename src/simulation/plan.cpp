@@ -3,6 +3,7 @@
 
 #include "applied_field.hpp"
 #include "dear_method.hpp"
+#include "demagnetization.hpp"
 #include "failure.hpp"
 #include "files/available_memory.hpp"
 #include "ranks.hpp"
@@ -176,6 +177,7 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
     if (term) bound += term->field_bound(lattice);
   });
   if (field.slab_demag) bound += std::abs(field.mu0 * field.slab_demag->strength);
+  if (field.demag) bound += std::abs(field.mu0 * field.demag->strength);
   double const applied = largest(AppliedField(field), "field.applied", scene, times);
   if (!io::needs_pass(scene)) {
     for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
@@ -224,6 +226,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     std::int64_t const words = lattice.part == nullptr ? 1 : 1 + cayspin::detail::ExactSum::words;
     if (slab->average_layer) memory.field += 8 * words * std::ranges::max(whole(lattice).shape);
   }
+  if (scene.field.demag)
+    memory.field += memory.spins + demagnetization_bytes<Real>(*scene.field.demag, lattice);
   if (has_dear_field(scene)) {
     memory.work += work_fields_of_dear(variant) * memory.spins;
     memory.field += memory.spins;
@@ -266,6 +270,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
 std::int64_t available_memory() { return io::available_memory(); }
 
 Plan make_plan(io::Scene const& scene, Precision precision) {
+  require_demagnetization(scene);
   auto const lattice = make_lattice(scene);
   auto const& integrator = scene.integrator;
   Plan plan{lattice,

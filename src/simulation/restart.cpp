@@ -14,8 +14,6 @@
 namespace cayspin::simulation {
 namespace {
 
-bool is_dear(std::optional<io::SlabDemagnetization> const& slab) { return slab && slab->dear; }
-
 // Did the scene run by the same method as the plan's? One that cannot be read counts as such.
 bool ran_alike(std::string const& scene_as_run, io::Scene const& scene, Plan const& plan) {
   try {
@@ -23,7 +21,7 @@ bool ran_alike(std::string const& scene_as_run, io::Scene const& scene, Plan con
     return !before.integrator.method->automatic && &find_variant(before) == &plan.variant &&
            before.integrator.energy_control == scene.integrator.energy_control &&
            before.integrator.substeps == scene.integrator.substeps &&
-           is_dear(before.field.slab_demag) == is_dear(scene.field.slab_demag);
+           has_dear_field(before) == has_dear_field(scene);
   } catch (io::SceneError const&) {
     return true;
   }

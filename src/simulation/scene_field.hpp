@@ -33,6 +33,9 @@ class SceneField {
     if (!pass_)
       for (auto const& term : field.anisotropies) quadratic_.add(term.constant, term.axis);
     if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);
+    if (field.demag)
+      stored_.emplace(lattice,
+                      HostSolver(demagnetization_on_host<Real>(*field.demag, field.mu0, lattice)));
     if (field.own.nonlocal) stored_.emplace(lattice, HostSolver(field.own.nonlocal));
     if (has_dear) {
       dear_.emplace(lattice, *stored_);

@@ -31,6 +31,7 @@ Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
     slab->dear = false;
     slab->on_host = true;
   }
+  if (auto& demag = without_steps.field.demag) demag->dear = false;
   auto plan = make_plan(without_steps, precision);
   auto const states = static_cast<std::int64_t>(io::fields_in_turn(scene).size());
   plan.frames *= states;

@@ -39,6 +39,7 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
   if (field.applied) add("applied").applied = field.applied;
   if (field.own.uniform) add("applied").own.uniform = field.own.uniform;
   if (field.slab_demag) add("slab_demag").slab_demag = field.slab_demag;
+  if (field.demag) add("demag").demag = field.demag;
   if (field.own.nonlocal) add("nonlocal").own.nonlocal = field.own.nonlocal;
   for (auto& [name, alone] : terms) {
     auto& of_alone = alone.field;

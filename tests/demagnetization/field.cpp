@@ -32,16 +32,23 @@ struct Film {
 };
 
 Film const films[] = {
-    {{7, 5, 3}, {}, {1, 1.3, 0.4}},        {{6, 4, 4}, {}, {1, 1, 1}},
-    {{9, 17, 1}, {}, {2, 1.5, 0.02}},      {{11, 1, 1}, {}, {1, 2, 3}},
-    {{1, 9, 1}, {}, {3, 1, 2}},            {{1, 1, 8}, {}, {2, 3, 1}},
-    {{1, 1, 1}, {}, {1, 1, 2}},            {{1, 12, 5}, {}, {1, 1, 1}},
-    {{6, 5, 4}, {2, 0, 0}, {1, 1.3, 0.4}}, {{5, 6, 2}, {0, 1, 3}, {1, 1, 1}},
-    {{4, 5, 1}, {3, 2, 0}, {1, 1, 0.1}},   {{2, 3, 1}, {1, 1, 1}, {1, 2, 1}},
+    {{7, 5, 3}, {}, {1, 1.3, 0.4}},
+    {{6, 4, 4}, {}, {1, 1, 1}},
+    {{9, 17, 1}, {}, {2, 1.5, 0.02}},
+    {{11, 1, 1}, {}, {1, 2, 3}},
+    {{1, 9, 1}, {}, {3, 1, 2}},
+    {{1, 1, 8}, {}, {2, 3, 1}},
+    {{1, 1, 1}, {}, {1, 1, 2}},
+    {{1, 12, 5}, {}, {1, 1, 1}},
+    {{6, 5, 4}, {2, 0, 0}, {1, 1.3, 0.4}},
+    {{5, 6, 2}, {0, 1, 3}, {1, 1, 1}},
+    {{4, 5, 1}, {3, 2, 0}, {1, 1, 0.1}},
+    {{2, 3, 1}, {1, 1, 1}, {1, 2, 1}},
 };
 
 /// Distances along an axis at which a cell sees another one, and the weight of each.
-std::vector<std::pair<double, double>> seen(Film const& film, std::size_t axis, std::int64_t apart) {
+std::vector<std::pair<double, double>> seen(Film const& film, std::size_t axis,
+                                            std::int64_t apart) {
   int const n = static_cast<int>(film.shape[axis]), images = film.images[axis];
   auto nearest = static_cast<int>(apart);
   if (images == 0) return {{nearest * film.spacing[axis], 1}};

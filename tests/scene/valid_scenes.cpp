@@ -121,6 +121,25 @@ TEST(Scene, DearFieldsAndSubsteps) {
   EXPECT_EQ(read_text(folder, text).integrator.substeps, 1);
 }
 
+TEST(Scene, TheWholeDemagnetizingField) {
+  Folder const folder;
+  auto const with = [&](std::string const& typed) {
+    auto const text =
+        replaced(llg_scene, "slab_demag = { normal = [1, 0, 0], strength = 2 }", typed);
+    return read_text(folder, text).field.demag;
+  };
+  auto const demag = with("demag = true").value();
+  EXPECT_EQ(demag.strength, 1);
+  EXPECT_EQ(demag.periodic_images, (std::array{0, 0, 0}));
+  EXPECT_FALSE(demag.dear.has_value());
+  EXPECT_FALSE(with("demag = false"));
+  auto const typed =
+      with("demag = { strength = 0.5, periodic_images = [3, 0, 1], dear = false }").value();
+  EXPECT_EQ(typed.strength, 0.5);
+  EXPECT_EQ(typed.periodic_images, (std::array{3, 0, 1}));
+  EXPECT_EQ(typed.dear, false);
+}
+
 TEST(Scene, WholeNumbersServeAsNumbers) {
   Folder const folder;
   auto const scene = read_text(folder, llg_scene,

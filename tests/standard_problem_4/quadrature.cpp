@@ -25,8 +25,8 @@ TEST(Quadrature, ErrsLittle) {
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) {
       std::array<double, 3> const r{x * thin[0], y * thin[1], 0};
-      largest = std::fmax(largest,
-                          largest_difference(quadrature::tensor(r, thin), cayspin::demagnetizing_tensor(r, thin)));
+      largest = std::fmax(largest, largest_difference(quadrature::tensor(r, thin),
+                                                      cayspin::demagnetizing_tensor(r, thin)));
     }
   EXPECT_LT(largest, 2.5e-4);
   EXPECT_GT(largest, 2e-4);

@@ -40,8 +40,17 @@ class Convolution {
                      whole(row_waves()) * 2 + std::size_t(rows_at_once_ * period_[0])),
         plane_workers_("cayspin::DemagnetizingField: planes", octant_[0], 3 * padded_plane_),
         spectrum_("cayspin::DemagnetizingField: spectrum", 3 * plane_ * std::size_t(octant_[0])),
-        kernel_("cayspin::DemagnetizingField: interactions", 6 * octant_plane() * std::size_t(octant_[0])) {
+        kernel_("cayspin::DemagnetizingField: interactions",
+                6 * octant_plane() * std::size_t(octant_[0])) {
     find_kernel(interactions);
+  }
+
+  /// Less what each thread has of its own: three planes and some rows.
+  static std::int64_t work_bytes(InteractionsOfCells const& interactions) {
+    std::int64_t const ny = interactions.cells()[1], nz = interactions.cells()[2];
+    std::int64_t const waves = interactions.octant(0);
+    std::int64_t const octant = waves * interactions.octant(1) * interactions.octant(2);
+    return (6 * waves * ny * nz + 6 * octant) * static_cast<std::int64_t>(sizeof(Real));
   }
 
   template <class HostSpins>
@@ -58,7 +67,8 @@ class Convolution {
           std::copy_n(rows.waves + k * rows_at_once_, rows.count, in_spectrum(k, c, rows.first));
       });
     });
-    plane_workers_.run(octant_[0], [&](std::int64_t k, Complex* planes) { convolve(int(k), planes); });
+    plane_workers_.run(octant_[0],
+                       [&](std::int64_t k, Complex* planes) { convolve(int(k), planes); });
     row_workers_.run(blocks(), [&](std::int64_t block, Real* memory) {
       for_each_component(block, memory, [&](BlockOfRows const& rows, std::size_t c) {
         for (int k = 0; k < octant_[0]; ++k) {
@@ -178,15 +188,19 @@ class Convolution {
       std::array<bool, 3> is_odd;
     };
     std::size_t c = 0;
-    for (auto const& component : {Component{&N::xx, {}}, {&N::yy, {}}, {&N::zz, {}},
-                                  {&N::xy, {true, true, false}}, {&N::xz, {true, false, true}},
+    for (auto const& component : {Component{&N::xx, {}},
+                                  {&N::yy, {}},
+                                  {&N::zz, {}},
+                                  {&N::xy, {true, true, false}},
+                                  {&N::xz, {true, false, true}},
                                   {&N::yz, {false, true, true}}}) {
       std::vector<double> values(tensors.size());
       for (std::size_t i = 0; i < values.size(); ++i) values[i] = tensors[i].*component.of;
       transform(values, component.is_odd);
       for (std::size_t i = 0; i < values.size(); ++i) {
         std::size_t const x = i % std::size_t(octant_[0]), yz = i / std::size_t(octant_[0]);
-        kernel_(std::size_t((x * 6 + c) * octant_plane() + yz)) = static_cast<Real>(scale * values[i]);
+        kernel_(std::size_t((x * 6 + c) * octant_plane() + yz)) =
+            static_cast<Real>(scale * values[i]);
       }
       ++c;
     }

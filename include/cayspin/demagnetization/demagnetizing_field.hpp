@@ -5,6 +5,7 @@
 #include <cayspin/demagnetization/interactions.hpp>
 #include <cayspin/lattice.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <type_traits>
 
@@ -27,6 +28,12 @@ class DemagnetizingField {
       : lattice_(lattice),
         convolution_(std::make_shared<detail::Convolution<Real> const>(
             detail::InteractionsOfCells(lattice, options))) {}
+
+  /// Of such a field: the spectrum and the interactions.
+  static std::int64_t work_bytes(Lattice const& lattice,
+                                 DemagnetizationOptions const& options = {}) {
+    return detail::Convolution<Real>::work_bytes({lattice, options});
+  }
 
   /// `field`: H of the spins. Throws std::invalid_argument for another lattice.
   template <class HostSpins>

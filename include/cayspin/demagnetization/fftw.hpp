@@ -9,8 +9,8 @@
 #include <type_traits>
 
 // Transforms of a demagnetising field by FFTW, in both precisions. Plans come from FFTW_ESTIMATE,
-// which takes the same one each time, and with it the same bits; it looks at no number. Arrays begin
-// on a cache line, as Kokkos allocates them.
+// which takes the same one each time, and with it the same bits; it looks at no number. Arrays
+// begin on a cache line, as Kokkos allocates them.
 namespace cayspin::inline v0_1::detail {
 
 template <class Real>
@@ -49,7 +49,9 @@ class FftwPlan {
   explicit FftwPlan(typename Functions::Plan plan) : plan_(plan) {
     if (!plan_) throw std::runtime_error("cayspin::DemagnetizingField: FFTW has no plan");
   }
-  static auto complex(Complex* data) { return reinterpret_cast<typename Functions::Complex*>(data); }
+  static auto complex(Complex* data) {
+    return reinterpret_cast<typename Functions::Complex*>(data);
+  }
 
   struct Destroy {
     void operator()(typename Functions::Plan plan) const { Functions::destroy(plan); }
@@ -98,8 +100,7 @@ class RowTransforms {
             alignas(64) Real rows;
             alignas(64) Complex waves;
             return Functions::plan_forward(1, &length, count, &rows, nullptr, 1, length,
-                                           Base::complex(&waves), nullptr, count, 1,
-                                           FFTW_ESTIMATE);
+                                           Base::complex(&waves), nullptr, count, 1, FFTW_ESTIMATE);
           }()) {}
     void operator()(Real* rows, Complex* waves) const {
       Functions::run_forward(this->plan_.get(), rows, Base::complex(waves));
@@ -113,8 +114,7 @@ class RowTransforms {
             alignas(64) Real rows;
             alignas(64) Complex waves;
             return Functions::plan_backward(1, &length, count, Base::complex(&waves), nullptr,
-                                            count, 1, &rows, nullptr, 1, length,
-                                            FFTW_ESTIMATE);
+                                            count, 1, &rows, nullptr, 1, length, FFTW_ESTIMATE);
           }()) {}
     void operator()(Complex* waves, Real* rows) const {
       Functions::run_backward(this->plan_.get(), Base::complex(waves), rows);

@@ -82,8 +82,8 @@ class InteractionsOfCells {
 
     void operator()(std::int64_t i) const {
       auto const nx = of.octant(0), ny = of.octant(1);
-      found[i] = of.between({static_cast<int>(i % nx), static_cast<int>(i / nx % ny),
-                             static_cast<int>(i / nx / ny)});
+      found[i] = of.between(
+          {static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny)});
     }
   };
 

@@ -33,9 +33,9 @@ class TransformOfOctant {
     RowTransforms<double> const transforms(length, 1);
     std::ptrdiff_t const step = axis == 0 ? 1 : axis == 1 ? octant_[0] : octant_[0] * octant_[1];
     auto const lines = static_cast<std::int64_t>(values.size()) / count;
-    Workers<double> const workers("cayspin::DemagnetizingField: lines", lines,
-                                  static_cast<std::size_t>(length) +
-                                      2 * static_cast<std::size_t>(count) + 8);
+    Workers<double> const workers(
+        "cayspin::DemagnetizingField: lines", lines,
+        static_cast<std::size_t>(length) + 2 * static_cast<std::size_t>(count) + 8);
     workers.run(lines, [&](std::int64_t line, double* line_values) {
       auto* const waves = reinterpret_cast<std::complex<double>*>(line_values);
       double* const whole = line_values + (2 * count + 7) / 8 * 8;

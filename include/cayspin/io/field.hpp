@@ -173,6 +173,13 @@ struct SlabDemagnetization {
   bool dear = false;           ///< evaluated once or twice a step, between substeps of the rest
 };
 
+/// The field of all cells on all cells: H = -strength sum N m.
+struct Demagnetization {
+  double strength = 1;
+  std::array<int, 3> periodic_images{};  ///< beside the nearest one, on each side
+  std::optional<bool> dear;              ///< by default where the method can
+};
+
 /// Only terms that stand in the scene have a value.
 struct Field {
   std::optional<Exchange> exchange;
@@ -188,7 +195,8 @@ struct Field {
   std::optional<std::array<AppliedComponent, 3>> applied;
   std::vector<Triple> applied_in_turn;  ///< of `cayspin relax`: one state of rest for each
   std::optional<SlabDemagnetization> slab_demag;
-  double mu0 = 1;  ///< multiplies applied and slab_demag; NOT yet multiplied into them
+  std::optional<Demagnetization> demag;
+  double mu0 = 1;  ///< multiplies applied, slab_demag and demag; NOT yet multiplied into them
   OwnField own;    ///< empty, unless a program sets it
 
   static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi};

@@ -109,6 +109,7 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
   auto& integrator = scene.integrator;
   candidate.put_into(integrator);
   if (scene.field.slab_demag) scene.field.slab_demag->dear = candidate.substeps > 0;
+  if (scene.field.demag) scene.field.demag->dear = candidate.substeps > 0;
   integrator.until_torque.reset();
   integrator.error.reset();
   integrator.energy_control = false;

@@ -62,7 +62,7 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
                     {}};
   resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
   if (has_dear_field(scene) && advice.candidate.substeps == 0)
-    resolved.overrides.emplace_back("field.slab_demag.dear=false");
+    resolved.overrides.emplace_back(without_dear(scene));
   auto const keep = [&](char const* key, std::int64_t every) {
     if (!scene.places.contains(std::string("output.") + key)) return;
     resolved.overrides.push_back(
@@ -107,7 +107,7 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
   std::vector overrides{io::as_override(resolved_before, "integrator"),
                         fmt::format("integrator.steps={}", steps(scene.integrator.steps))};
   if (has_dear_field(scene) && !has_dear_field(resolved))
-    overrides.emplace_back("field.slab_demag.dear=false");
+    overrides.emplace_back(without_dear(scene));
   auto const keep = [&](char const* key, std::int64_t every) {
     if (scene.places.contains(std::string("output.") + key))
       overrides.push_back(

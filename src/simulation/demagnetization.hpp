@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/scene.hpp>
+#include <cayspin/spin_field.hpp>
+
+#include <cstdint>
+#include <functional>
+
+// A scene's field.demag. Compiled in demagnetization.cpp, which alone knows FFTW.
+namespace cayspin::simulation {
+
+/// Writes H of the spins into a field.
+template <class Real>
+using FieldOnHost = std::function<void(SpinField<Real, Kokkos::HostSpace> const& spins,
+                                       SpinField<Real, Kokkos::HostSpace> const& field)>;
+
+/// `mu0`: multiplies the strength.
+template <class Real>
+FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
+                                          Lattice const& lattice);
+
+/// What its transforms keep.
+template <class Real>
+std::int64_t demagnetization_bytes(io::Demagnetization const& demag, Lattice const& lattice);
+
+/// Throws io::SceneError for a demagnetising field in a build without FFTW.
+void require_demagnetization(io::Scene const& scene);
+
+}  // namespace cayspin::simulation

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Scenes with the field of all cells on all cells, beside the library's.
+#include "scenes_of_text.hpp"
+#include "simulation/dear_method.hpp"
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/demagnetization/demagnetizing_field.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cayspin::simulation::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+io::Scene film(std::string const& integrator, std::vector<std::string> const& overrides = {}) {
+  return io::parse_scene(R"toml(
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [9, 6, 2]
+spacing = [1.0, 1.5, 0.5]
+[field]
+exchange = 0.5
+applied = [0.1, 0, 0.2]
+demag = { strength = 0.8 }
+[initial]
+random = { seed = 5 }
+[integrator]
+)toml" + integrator,
+                         "scene.toml", overrides);
+}
+
+template <class Real>
+std::vector<double> end_by_library(io::Scene const& scene, std::array<int, 3> const& images) {
+  using Spins = SpinField<Real>;
+  Kokkos::DefaultExecutionSpace const exec;
+  Lattice const lattice{.shape = scene.lattice.shape, .spacing = scene.lattice.spacing};
+  Spins spins("spins", lattice);
+  copy_from_host(io::initial_spins(scene), spins);
+  HostField const demag(spins, DemagnetizingField<Real>(lattice, {0.8, images}));
+  LandauLifshitz const generator(
+      EffectiveField(Exchange(lattice, 0.5), demag, Zeeman{{0.1, 0, 0.2}}), 0.1);
+  LieHeun<Spins> stepper(spins);
+  integrate(exec, stepper, generator, spins,
+            Times{0, scene.integrator.dt, scene.integrator.steps});
+  auto const end = copy_to_host(spins);
+  return {end.begin(), end.end()};
+}
+
+TEST(Demagnetization, OfScenesIsThatOfTheLibrary) {
+  for (auto const precision : precisions)
+    for (auto const& images : {std::array{0, 0, 0}, {2, 1, 0}}) {
+      auto const scene =
+          film("method='heun'\ndt=0.05\nsteps=40",
+               {"field.demag.dear=false", fmt::format("field.demag.periodic_images=[{},{},{}]",
+                                                      images[0], images[1], images[2])});
+      auto const expected = precision == Precision::double_precision
+                                ? end_by_library<double>(scene, images)
+                                : end_by_library<float>(scene, images);
+      EXPECT_LT(largest_distance(end_of(scene, precision), expected), 200 * epsilon(precision));
+    }
+}
+
+TEST(Demagnetization, IsDearWhereTheMethodCan) {
+  std::string const steps = "dt=0.05\nsteps=40\n";
+  for (char const* const method : {"heun", "rkmk4", "rkmk8", "projected_rk4"})
+    EXPECT_TRUE(has_dear_field(film(fmt::format("method='{}'\n{}", method, steps)))) << method;
+  for (std::string const& integrator :
+       {"method='tsit5'\ntolerance=1e-4\nend=1", "method='ab2'\ndt=0.1\nsteps=9",
+        "method='implicit_midpoint'\ndt=0.1\nsteps=9"})
+    EXPECT_FALSE(has_dear_field(film(integrator))) << integrator;
+  EXPECT_FALSE(has_dear_field(film("method='heun'\n" + steps, {"thermal={temperature=0.1}"})));
+  EXPECT_FALSE(has_dear_field(film("method='heun'\n" + steps, {"field.demag.dear=false"})));
+  EXPECT_TRUE(has_dear_field(film("method='auto'\nerror=1e-3\n" + steps)));
+}
+
+TEST(Demagnetization, OnceAStepConvergesToThatOfEachStage) {
+  auto const exact =
+      end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", {"field.demag.dear=false"}),
+             Precision::double_precision);
+  double errors[2];
+  for (int i = 0; i < 2; ++i) {
+    int const steps = 40 << i;
+    errors[i] = largest_distance(
+        end_of(film(fmt::format("method='rkmk4'\nsubsteps=2\ndt={}\nsteps={}", 1. / steps, steps)),
+               Precision::double_precision),
+        exact);
+  }
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 3, 0.3);
+  EXPECT_LT(errors[1], 1e-5);
+}
+
+TEST(Demagnetization, GoesOnWithTheSameBits) {
+  auto const file = fs::path(testing::TempDir()) / fmt::format("demag_{}.h5", ::getpid());
+  for (auto const precision : precisions)
+    for (char const* const integrator :
+         {"method='rkmk4'\nsubsteps=3\ndt=0.05\nsteps=20", "method='ab2'\ndt=0.05\nsteps=20"}) {
+      auto const scene = film(integrator);
+      auto const first = SceneRun::open(scene, {.precision = precision});
+      first->advance(7);
+      first->save(file);
+      auto const second = SceneRun::open(scene, {.precision = precision, .restart = file});
+      second->advance(13);
+      EXPECT_EQ(spins_of(*second), end_of(scene, precision)) << integrator;
+    }
+  fs::remove(file);
+}
+
+TEST(Demagnetization, IsRefusedInOneLine) {
+  struct Wrong {
+    std::string integrator;
+    std::vector<std::string> overrides;
+    std::string message;
+  };
+  std::string const heun = "method='heun'\ndt=0.05\nsteps=40\n";
+  for (auto const& [integrator, overrides, message] :
+       {Wrong{"method='tsit5'\ntolerance=1e-4\nend=1", {"field.demag.dear=true"},
+              "takes no dear field"},
+        {"method='red_black2'\ndt=0.1\nsteps=9", {}, "field.demag: method \"red_black2\""},
+        {heun, {"lattice.crystal='bcc'"}, "field."}}) {
+    try {
+      make_plan(film(integrator, overrides), Precision::double_precision);
+      ADD_FAILURE() << integrator << ": taken";
+    } catch (io::SceneError const& error) {
+      std::string const text = error.what();
+      EXPECT_NE(text.find(message), std::string::npos) << text;
+      EXPECT_NE(text.find("; accepted: "), std::string::npos) << text;
+      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::simulation::test
