@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <tuple>
 
 namespace cayspin::inline v0_1::io::detail {
 namespace {
@@ -141,7 +140,6 @@ bool read_is_si(Table const& root) {
 }
 
 void check_si(Scene const& scene) {
-  auto const& [lattice, field] = std::tie(scene.lattice, scene.field);
   auto const refuse = [&](std::string_view key, std::string_view wrong, std::string_view accepted) {
     if (scene.places.contains(key))
       throw scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
