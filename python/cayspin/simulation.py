@@ -201,7 +201,7 @@ class Simulation:
 
     def energies(self) -> dict[str, float]:
         """The energy of each term of the scene: exchange, dmi, anisotropy, applied, slab_demag,
-        nonlocal; of rigid bodies: rotation."""
+        demag, nonlocal; of rigid bodies: rotation."""
         return self._run.energies()
 
     def magnetization(self) -> np.ndarray:

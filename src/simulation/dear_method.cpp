@@ -4,6 +4,7 @@
 #include "thermal.hpp"
 
 #include <cayspin/exchange_memory.hpp>
+#include <cayspin/io/relax.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
 #include <fmt/format.h>
@@ -104,6 +105,7 @@ bool takes_dear_fields(io::Integrator const& integrator, Variant const& variant)
 
 bool is_dear(io::Demagnetization const& demag, io::Scene const& scene) {
   if (demag.dear) return *demag.dear;
+  if (io::is_to_relax(scene)) return false;
   if (scene.integrator.energy_control || is_thermal(scene) || io::needs_pass(scene)) return false;
   return scene.integrator.method->automatic ||
          takes_dear_fields(scene.integrator, find_variant(scene));

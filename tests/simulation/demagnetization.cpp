@@ -49,8 +49,7 @@ std::vector<double> end_by_library(io::Scene const& scene, std::array<int, 3> co
   LandauLifshitz const generator(
       EffectiveField(Exchange(lattice, 0.5), demag, Zeeman{{0.1, 0, 0.2}}), 0.1);
   LieHeun<Spins> stepper(spins);
-  integrate(exec, stepper, generator, spins,
-            Times{0, scene.integrator.dt, scene.integrator.steps});
+  integrate(exec, stepper, generator, spins, Times{0, scene.integrator.dt, scene.integrator.steps});
   auto const end = copy_to_host(spins);
   return {end.begin(), end.end()};
 }
@@ -58,10 +57,10 @@ std::vector<double> end_by_library(io::Scene const& scene, std::array<int, 3> co
 TEST(Demagnetization, OfScenesIsThatOfTheLibrary) {
   for (auto const precision : precisions)
     for (auto const& images : {std::array{0, 0, 0}, {2, 1, 0}}) {
-      auto const scene =
-          film("method='heun'\ndt=0.05\nsteps=40",
-               {"field.demag.dear=false", fmt::format("field.demag.periodic_images=[{},{},{}]",
-                                                      images[0], images[1], images[2])});
+      auto const scene = film(
+          "method='heun'\ndt=0.05\nsteps=40",
+          {"field.demag.dear=false",
+           fmt::format("field.demag.periodic_images=[{},{},{}]", images[0], images[1], images[2])});
       auto const expected = precision == Precision::double_precision
                                 ? end_by_library<double>(scene, images)
                                 : end_by_library<float>(scene, images);
@@ -83,9 +82,8 @@ TEST(Demagnetization, IsDearWhereTheMethodCan) {
 }
 
 TEST(Demagnetization, OnceAStepConvergesToThatOfEachStage) {
-  auto const exact =
-      end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", {"field.demag.dear=false"}),
-             Precision::double_precision);
+  auto const exact = end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", {"field.demag.dear=false"}),
+                            Precision::double_precision);
   double errors[2];
   for (int i = 0; i < 2; ++i) {
     int const steps = 40 << i;
@@ -122,7 +120,8 @@ TEST(Demagnetization, IsRefusedInOneLine) {
   };
   std::string const heun = "method='heun'\ndt=0.05\nsteps=40\n";
   for (auto const& [integrator, overrides, message] :
-       {Wrong{"method='tsit5'\ntolerance=1e-4\nend=1", {"field.demag.dear=true"},
+       {Wrong{"method='tsit5'\ntolerance=1e-4\nend=1",
+              {"field.demag.dear=true"},
               "takes no dear field"},
         {"method='red_black2'\ndt=0.1\nsteps=9", {}, "field.demag: method \"red_black2\""},
         {heun, {"lattice.crystal='bcc'"}, "field."}}) {
