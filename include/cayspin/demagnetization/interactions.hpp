@@ -100,13 +100,6 @@ class InteractionsOfCells {
               options_.tensor(
                   {place(0, distance[0], i), place(1, distance[1], j), place(2, distance[2], k)},
                   cell_));
-    // Half a period away there are two nearest images, one on each side.
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (images(axis) > 0 && 2 * distance[axis] == period_[axis]) {
-        if (axis != 2) sum.xy = 0;
-        if (axis != 1) sum.xz = 0;
-        if (axis != 0) sum.yz = 0;
-      }
     return sum;
   }
   double place(std::size_t axis, int distance, int image) const {

@@ -45,9 +45,8 @@ class TransformOfOctant {
         whole[i] = value;
         if (i > 0) whole[length - i] = is_odd ? -value : value;
       }
-      // Half a period away, and at 0, an odd function is 0.
-      if (is_odd) whole[0] = 0;
-      if (is_odd && length % 2 == 0) whole[length / 2] = 0;
+      // Half a period away there are two nearest images, whose odd parts cancel: into the imaginary
+      // part goes neither that number nor the first.
       transforms.forward(whole, waves);
       for (int i = 0; i < count; ++i) here[i * step] = is_odd ? waves[i].imag() : waves[i].real();
     });
