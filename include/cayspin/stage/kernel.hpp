@@ -99,7 +99,7 @@ struct RungeKuttaStage {
     Stencil<Site, Real, decltype(rows.level)> const stencil(site, rows.level);
     Vec3<Value> const& m = stencil.center();
     Vec3<Value> const xi = stage_generator(stencil);
-    Vec3<Value> const m0 = spin_at_start(site, rows, m);
+    auto const& m0 = spin_at_start(site, rows, m);
     if constexpr (Flow::recovers) {
       site.store(on_chart(site, rows, xi, m, m0), rows.next);
       return;
@@ -138,12 +138,13 @@ struct RungeKuttaStage {
 
  private:
   template <class Site, class Arrays, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> spin_at_start(Site const& site, Arrays const& rows,
-                                                               Vec3<Value> const& m) {
+  KOKKOS_FORCEINLINE_FUNCTION static decltype(auto) spin_at_start(Site const& site,
+                                                                  Arrays const& rows,
+                                                                  Vec3<Value> const& m) {
     if constexpr (Flow::reads_start)
       return site.load(rows.start);
     else
-      return {m.x, m.y, m.z};  // g++ copies a whole vector through memory
+      return (m);  // itself: g++ would copy it through memory
   }
 
   // A, or what turns the spin of it where the update asks for no more.
