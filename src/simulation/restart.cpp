@@ -17,7 +17,8 @@ namespace {
 // Did the scene run by the same method as the plan's? One that cannot be read counts as such.
 bool ran_alike(std::string const& scene_as_run, io::Scene const& scene, Plan const& plan) {
   try {
-    auto const before = io::parse_scene(scene_as_run, scene.path, {}, scene.given);
+    auto before = io::parse_scene(scene_as_run, scene.path, {}, scene.given);
+    before.field.own = scene.field.own;  // no text has it
     return !before.integrator.method->automatic && &find_variant(before) == &plan.variant &&
            before.integrator.energy_control == scene.integrator.energy_control &&
            before.integrator.substeps == scene.integrator.substeps &&

@@ -142,6 +142,20 @@ TEST(DearFields, GoOnWithTheSameBits) {
   fs::remove(file);
 }
 
+TEST(DearFields, OfAProgramGoOnWithTheSameBits) {
+  auto const file =
+      fs::path(testing::TempDir()) / ("own_dear_" + std::to_string(::getpid()) + ".h5");
+  auto const calls = std::make_shared<int>(0);
+  auto const scene = with_own_field("method='rkmk4'\nsubsteps=3\ndt=0.05\nsteps=20", calls);
+  auto const first = SceneRun::open(scene, {});
+  first->advance(7);
+  first->save(file);
+  auto const second = SceneRun::open(scene, {.restart = file});
+  second->advance(13);
+  EXPECT_EQ(packed<double>(second->spins().vectors), end_of(scene, 20));
+  fs::remove(file);
+}
+
 TEST(DearFields, AreRefusedInOneLine) {
   struct Wrong {
     std::string integrator;
