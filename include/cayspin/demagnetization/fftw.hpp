@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <type_traits>
 
@@ -40,44 +41,58 @@ struct Fftw<float> {
   static constexpr auto run_backward = fftwf_execute_dft_c2r;
 };
 
+/// FFTW makes and destroys one plan at a time.
+inline std::mutex fftw_planner;
+
 template <class Real>
 class FftwPlan {
- protected:
-  using Complex = std::complex<Real>;
   using Functions = Fftw<Real>;
+  using Plan = typename Functions::Plan;
 
-  explicit FftwPlan(typename Functions::Plan plan) : plan_(plan) {
+ public:
+  /// make(): of FFTW.
+  template <class Make>
+  explicit FftwPlan(Make const& make) {
+    std::scoped_lock const alone(fftw_planner);
+    plan_.reset(make());
     if (!plan_) throw std::runtime_error("cayspin::DemagnetizingField: FFTW has no plan");
   }
-  static auto complex(Complex* data) {
-    return reinterpret_cast<typename Functions::Complex*>(data);
-  }
+  Plan get() const { return plan_.get(); }
 
+ private:
   struct Destroy {
-    void operator()(typename Functions::Plan plan) const { Functions::destroy(plan); }
+    void operator()(Plan plan) const {
+      std::scoped_lock const alone(fftw_planner);
+      Functions::destroy(plan);
+    }
   };
-  std::unique_ptr<std::remove_pointer_t<typename Functions::Plan>, Destroy> plan_;
+  std::unique_ptr<std::remove_pointer_t<Plan>, Destroy> plan_;
 };
+
+template <class Real>
+auto as_fftw(std::complex<Real>* data) {
+  return reinterpret_cast<typename Fftw<Real>::Complex*>(data);
+}
 
 /// Complex transforms in place, `count` of them, `distance` from one to the next. Unscaled.
 template <class Real>
-class ComplexTransforms : FftwPlan<Real> {
-  using Base = FftwPlan<Real>;
-  using typename Base::Complex, typename Base::Functions;
-
+class ComplexTransforms {
  public:
   enum Direction { forward = FFTW_FORWARD, backward = FFTW_BACKWARD };
 
   ComplexTransforms(Direction direction, int length, int stride, int count, int distance)
-      : Base([&] {
-          alignas(64) Complex like;
-          auto* const data = Base::complex(&like);
-          return Functions::plan_complex(1, &length, count, data, nullptr, stride, distance, data,
-                                         nullptr, stride, distance, direction, FFTW_ESTIMATE);
-        }()) {}
-  void operator()(Complex* data) const {
-    Functions::run_complex(this->plan_.get(), Base::complex(data), Base::complex(data));
+      : plan_([&] {
+          alignas(64) std::complex<Real> like;
+          return Fftw<Real>::plan_complex(1, &length, count, as_fftw(&like), nullptr, stride,
+                                          distance, as_fftw(&like), nullptr, stride, distance,
+                                          direction, FFTW_ESTIMATE);
+        }) {}
+  void operator()(std::complex<Real>* data) const {
+    Fftw<Real>::run_complex(plan_.get(), as_fftw(data), as_fftw(data));
   }
+
+ private:
+  FftwPlan<Real> plan_;
 };
 
 /// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
@@ -85,43 +100,30 @@ class ComplexTransforms : FftwPlan<Real> {
 template <class Real>
 class RowTransforms {
  public:
-  RowTransforms(int length, int count) : forward_(length, count), backward_(length, count) {}
+  RowTransforms(int length, int count)
+      : forward_([&] {
+          alignas(64) Real rows;
+          alignas(64) std::complex<Real> waves;
+          return Fftw<Real>::plan_forward(1, &length, count, &rows, nullptr, 1, length,
+                                          as_fftw(&waves), nullptr, count, 1, FFTW_ESTIMATE);
+        }),
+        backward_([&] {
+          alignas(64) Real rows;
+          alignas(64) std::complex<Real> waves;
+          return Fftw<Real>::plan_backward(1, &length, count, as_fftw(&waves), nullptr, count, 1,
+                                           &rows, nullptr, 1, length, FFTW_ESTIMATE);
+        }) {}
 
-  void forward(Real* rows, std::complex<Real>* waves) const { forward_(rows, waves); }
+  void forward(Real* rows, std::complex<Real>* waves) const {
+    Fftw<Real>::run_forward(forward_.get(), rows, as_fftw(waves));
+  }
   /// Overwrites `waves`.
-  void backward(std::complex<Real>* waves, Real* rows) const { backward_(waves, rows); }
+  void backward(std::complex<Real>* waves, Real* rows) const {
+    Fftw<Real>::run_backward(backward_.get(), as_fftw(waves), rows);
+  }
 
  private:
-  struct Forward : FftwPlan<Real> {
-    using Base = FftwPlan<Real>;
-    using typename Base::Complex, typename Base::Functions;
-    Forward(int length, int count)
-        : Base([&] {
-            alignas(64) Real rows;
-            alignas(64) Complex waves;
-            return Functions::plan_forward(1, &length, count, &rows, nullptr, 1, length,
-                                           Base::complex(&waves), nullptr, count, 1, FFTW_ESTIMATE);
-          }()) {}
-    void operator()(Real* rows, Complex* waves) const {
-      Functions::run_forward(this->plan_.get(), rows, Base::complex(waves));
-    }
-  };
-  struct Backward : FftwPlan<Real> {
-    using Base = FftwPlan<Real>;
-    using typename Base::Complex, typename Base::Functions;
-    Backward(int length, int count)
-        : Base([&] {
-            alignas(64) Real rows;
-            alignas(64) Complex waves;
-            return Functions::plan_backward(1, &length, count, Base::complex(&waves), nullptr,
-                                            count, 1, &rows, nullptr, 1, length, FFTW_ESTIMATE);
-          }()) {}
-    void operator()(Complex* waves, Real* rows) const {
-      Functions::run_backward(this->plan_.get(), Base::complex(waves), rows);
-    }
-  };
-  Forward forward_;
-  Backward backward_;
+  FftwPlan<Real> forward_, backward_;
 };
 
 }  // namespace cayspin::inline v0_1::detail

@@ -24,11 +24,10 @@ class Workers {
   /// body(task, memory) for all tasks. The memory is 0 before the first.
   template <class Body>
   void run(std::int64_t tasks, Body const& body) const {
-    Kokkos::parallel_for(label_,
-                         Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, TaskIndex>(
-                             Kokkos::DefaultHostExecutionSpace(), 0, count_),
-                         Run<Body>{body, tasks, count_, numbers_, memory_.data()});
-    Kokkos::DefaultHostExecutionSpace().fence(label_);
+    Kokkos::DefaultHostExecutionSpace const exec;
+    for_each_task(exec, label_, count_, tasks * static_cast<std::int64_t>(numbers_),
+                  Run<Body>{body, tasks, count_, numbers_, memory_.data()});
+    exec.fence(label_);
   }
 
   static std::size_t whole_lines(std::size_t numbers) {
