@@ -55,7 +55,8 @@ class SiteDependent : public GradientTest<Backend> {
         for (auto const& [ny, nz] : {std::pair{1, 1}, {3, 2}, {1, 4}}) {
           auto lattice = Lattice::cubic(nx, ny, nz, 0.8, boundary);
           auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
-          auto const h = one(lattice), g = other(lattice);
+          auto const h = one(lattice);
+          auto const g = other(lattice);
           auto const a = evaluated(exec, h, spins), b = evaluated(exec, g, spins);
           double largest = 0;
           for (std::size_t i = 0; i < a.size(); ++i)

@@ -152,6 +152,13 @@ class Tree:
             if name.startswith("include/") and set(NAMESPACE.findall(text)) - {expected}:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
+    def check_members_without_address(self):
+        """Plain ones have another size in device code: see detail/no_unique_address.hpp."""
+        for name in self.includes:
+            text = (self.root / name).read_text(encoding="utf-8")
+            if "[[no_unique_address]]" in text and not name.endswith("/no_unique_address.hpp"):
+                self.problems.append(f"{name}: write CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS, for nvcc")
+
 
 def problems_of(root):
     tree = Tree(root.resolve())
@@ -163,6 +170,7 @@ def problems_of(root):
     tree.check_cycles()
     tree.check_names_in_detail()
     tree.check_versioned_namespace()
+    tree.check_members_without_address()
     return tree.problems
 
 

@@ -2,6 +2,8 @@
 // The known answers that the authors of Philox4x32-10 publish with Random123.
 #include <cayspin/detail/philox.hpp>
 
+#include <Kokkos_Core.hpp>
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -32,14 +34,16 @@ TEST(Philox, GivesTheKnownAnswersInEveryLane) {
                         draw = words(counter[2], counter[3]);
     PhiloxKeys const keys(words(key[0], key[1]));
     Philox<1> alone(number, draw);
-    Philox<8> fourth(number - 3, draw), first(number, draw);
     encrypt(keys, alone);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(alone.word[i] & all, expected[i]);
+#if !defined(KOKKOS_ENABLE_CUDA)  // nvcc takes no vectors in functions for host and device
+    Philox<8> fourth(number - 3, draw), first(number, draw);
     encrypt(keys, fourth, first);
     for (std::size_t i = 0; i < 4; ++i) {
-      EXPECT_EQ(alone.word[i] & all, expected[i]);
       EXPECT_EQ(fourth.word[i][3] & all, expected[i]);
       EXPECT_EQ(first.word[i][0] & all, expected[i]);
     }
+#endif
   }
 }
 

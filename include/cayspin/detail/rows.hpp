@@ -37,7 +37,7 @@ struct Axis {
   bool wraps = false;
 
   Axis() = default;
-  Axis(RowLayout const& layout, int axis)
+  KOKKOS_FUNCTION Axis(RowLayout const& layout, int axis)
       : extent(axis == 1 ? layout.ny : layout.nz), wraps(layout.periodic[axis] && extent > 1) {}
 
   /// The neighbours of i; at an open end i itself.
@@ -76,8 +76,9 @@ struct PlaneRows {
 
 /// Plane z of a field. `low` and `high` lead to the same rows one period away.
 template <class Real>
-CAYSPIN_DETAIL_NOINLINE PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array,
-                                                   RowLayout const& layout, std::int32_t z) {
+CAYSPIN_DETAIL_NOINLINE KOKKOS_FUNCTION PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array,
+                                                                   RowLayout const& layout,
+                                                                   std::int32_t z) {
   Real* const plane = array.data + std::ptrdiff_t(z) * layout.ny * layout.pitch;
   return {plane + layout.ny * layout.pitch, plane, plane, 0, layout.ny, layout.pitch, array.stride};
 }

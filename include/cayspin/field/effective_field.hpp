@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/no_unique_address.hpp>
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -202,7 +203,7 @@ class EffectiveField<First, Rest...>
   }
 
   First first_;
-  [[no_unique_address]] EffectiveField<Rest...> rest_;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS EffectiveField<Rest...> rest_;
 };
 
 template <class... Terms>

@@ -75,11 +75,11 @@ class TimeDependentZeeman {
 
   template <class Exec, class Spins>
   Zeeman prepare(Exec const&, Spins const&, double t) const {
-    return {applied_(t)};
+    return Zeeman{applied_(t)};
   }
   template <class Exec, class Rates>
   detail::AppliedRate prepare_rate(Exec const&, Rates const&, double t, double dt) const {
-    return {detail::time_derivative(applied_, t, dt)};
+    return detail::AppliedRate{detail::time_derivative(applied_, t, dt)};
   }
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/device_site.hpp>
+#include <cayspin/detail/no_unique_address.hpp>
 #include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 #include <cayspin/detail/unrolled.hpp>
@@ -133,17 +134,16 @@ struct ToPlane {
   RowLayout const& layout;
   std::int32_t z;
 
-  PlaneRows<Real> input(SiteArray<Real, 3> const& array) const {
+  KOKKOS_FUNCTION PlaneRows<Real> input(SiteArray<Real, 3> const& array) const {
     return plane_rows(array, layout, z);
   }
-  typename Planes<Real>::Spins spins(SiteArray<Real, 3> const& array) const {
+  KOKKOS_FUNCTION typename Planes<Real>::Spins spins(SiteArray<Real, 3> const& array) const {
     Axis const along_z(layout, 2);
-    auto const at = [&](std::int32_t plane) {
-      return plane_rows(array, layout, along_z.wrapped(plane));
-    };
-    return {at(along_z.previous(z)), at(z), at(along_z.next(z))};
+    return {plane_rows(array, layout, along_z.wrapped(along_z.previous(z))),
+            plane_rows(array, layout, z),
+            plane_rows(array, layout, along_z.wrapped(along_z.next(z)))};
   }
-  typename Planes<Real>::Output output(OutputArray<Real, 3> const& array) const {
+  KOKKOS_FUNCTION typename Planes<Real>::Output output(OutputArray<Real, 3> const& array) const {
     return {plane_rows<Real>(array, layout, z), array.streaming};
   }
 };
@@ -221,14 +221,14 @@ struct DeviceArrays {
     If<(count > 0)> used_[std::size_t{count > 0 ? count : 1}];
   };
 
-  [[no_unique_address]] If<Flow::reads_start> start;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS If<Flow::reads_start> start;
   ComponentPointers<Real> level;
-  [[no_unique_address]] Increments increments;
-  [[no_unique_address]] If<Flow::reads_sum> sum_before;
-  [[no_unique_address]] If<Flow::writes_sum> sum;
-  [[no_unique_address]] If<Flow::stores_increment> increment;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS Increments increments;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS If<Flow::reads_sum> sum_before;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS If<Flow::writes_sum> sum;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS If<Flow::stores_increment> increment;
   ComponentPointers<Real> next;
-  [[no_unique_address]] If<(Flow::carried > 0)> carried_before[1], carried[1];
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS If<(Flow::carried > 0)> carried_before[1], carried[1];
 };
 
 template <class Real>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 // Explicit Butcher tableaux, as data: a new Runge-Kutta method is a struct like these.
@@ -183,34 +184,28 @@ struct Tsitouras5 {
 /// An embedded tableau with the stage at the step's end as its last: weight 0, and its generator is
 /// the next step's first.
 template <class Embedded>
-struct FirstSameAsLast {
+struct FirstSameAsLast : Embedded {
   static constexpr bool first_same_as_last = true;
-  static constexpr int stages = Embedded::stages + 1, order = Embedded::order;
+  static constexpr int stages = Embedded::stages + 1;
 
  private:
-  struct Numbers {
-    static constexpr std::size_t size = stages;
-    double a[size][size] = {}, b[size] = {}, c[size] = {};
-  };
-  static constexpr Numbers numbers = [] {
-    Numbers all;
-    for (int i = 0; i < stages; ++i)
-      for (int j = 0; j + 1 < stages; ++j)
-        all.a[i][j] = i + 1 < stages ? Embedded::a[i][j] : Embedded::b[j];
-    for (int i = 0; i + 1 < stages; ++i) {
-      all.b[i] = Embedded::b[i];
-      all.c[i] = Embedded::c[i];
-    }
-    all.c[stages - 1] = 1;
+  using Row = std::array<double, std::size_t{stages}>;
+  static constexpr Row extended(double const (&row)[std::size_t{Embedded::stages}], double last) {
+    Row all{};
+    for (int i = 0; i < Embedded::stages; ++i) all[i] = row[i];
+    all[Embedded::stages] = last;
     return all;
-  }();
+  }
 
  public:
-  static constexpr auto const& a = numbers.a;
-  static constexpr auto const& b = numbers.b;
-  static constexpr auto const& c = numbers.c;
-  static constexpr auto const& error = Embedded::error;
-  static constexpr auto const& dense = Embedded::dense;
+  static constexpr std::array<Row, std::size_t{stages}> a = [] {
+    std::array<Row, std::size_t{stages}> all{};
+    for (int i = 0; i < Embedded::stages; ++i) all[i] = extended(Embedded::a[i], 0);
+    all[Embedded::stages] = extended(Embedded::b, 0);
+    return all;
+  }();
+  static constexpr Row b = extended(Embedded::b, 0);
+  static constexpr Row c = extended(Embedded::c, 1);
 };
 
 }  // namespace cayspin::inline v0_1::tableau
