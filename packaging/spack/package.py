@@ -30,6 +30,7 @@ class Cayspin(CMakePackage):
 
     variant("program", default=True, description="The program, scenes, files and the C interface")
     variant("examples", default=False, description="Build the examples")
+    variant("fftw", default=False, description="The demagnetising field; FFTW is under the GPL")
     variant("shared", default=False, when="+program", description="A shared C interface")
 
     depends_on("c", type="build", when="+program")
@@ -39,6 +40,7 @@ class Cayspin(CMakePackage):
     # Backends and architecture are those of Kokkos: cayspin ^kokkos+cuda cuda_arch=90
     depends_on("kokkos@4.5:5")
     depends_on("kokkos+pic", when="+shared")
+    depends_on("fftw@3 precision=float,double", when="+fftw")
     depends_on("fftw-api@3", when="+examples")
     with when("+program"):
         depends_on("hdf5@1.10:~mpi")
@@ -56,6 +58,7 @@ class Cayspin(CMakePackage):
             self.define_from_variant("CAYSPIN_BUILD_APP", "program"),
             self.define_from_variant("CAYSPIN_BUILD_PROGRAM", "program"),
             self.define_from_variant("CAYSPIN_BUILD_EXAMPLES", "examples"),
+            self.define_from_variant("CAYSPIN_FFTW", "fftw"),
             self.define_from_variant("BUILD_SHARED_LIBS", "shared"),
             self.define("CAYSPIN_BUILD_TESTS", False),
             self.define("CAYSPIN_BUILD_BENCH", False),
