@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Milliseconds of an evaluation of the demagnetising field, beside the six transforms alone of a
-// lattice padded with zeros, by the plans of FFTW that it measures to be the fastest. Both on one
-// thread with OMP_NUM_THREADS=1. Cases are named PRECISION/WHAT/SHAPE.
+// Milliseconds of an evaluation of the demagnetising field in the default space, beside the six
+// transforms alone of a lattice padded with zeros: by the plans of FFTW that it measures to be the
+// fastest, or by cuFFT. Both on one thread with OMP_NUM_THREADS=1. Cases are named
+// PRECISION/WHAT/SHAPE.
 //   bench_demagnetizing_field --benchmark_filter=f64 --benchmark_repetitions=5
 #include "context.hpp"
+#include "padded_transforms.hpp"
 #include "scene.hpp"
 
 #include <cayspin/cayspin.hpp>
@@ -21,60 +23,24 @@ constexpr std::array<std::int64_t, 3> shapes[] = {
 
 template <class Real>
 void time_field(benchmark::State& state, cayspin::Lattice const& lattice) {
-  using Spins = cayspin::SpinField<Real, Kokkos::HostSpace>;
-  auto const spins = scene::random<Spins>(lattice);
-  Spins const field("field", lattice);
-  cayspin::DemagnetizingField<Real> const demag(lattice);
-  demag(spins, field, 0);
-  for (auto _ : state) demag(spins, field, 0);
+  auto const spins = scene::random<cayspin::SpinField<Real>>(lattice);
+  cayspin::HostField const demag(spins, cayspin::DemagnetizingField(spins));
+  Kokkos::DefaultExecutionSpace const exec;
+  for (int i = 0; i < 2; ++i) demag.prepare(exec, spins, 0);
+  exec.fence();
+  for (auto _ : state) {
+    demag.prepare(exec, spins, 0);
+    exec.fence();
+  }
 }
-
-/// Of zeros, which stay what they are.
-template <class Real>
-class PaddedTransforms {
-  using Functions = cayspin::detail::Fftw<Real>;
-  using Complex = typename Functions::Complex;
-
- public:
-  explicit PaddedTransforms(cayspin::Lattice const& lattice) {
-    int extent[3];  // x last
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      auto const n = static_cast<int>(lattice.shape[axis]);
-      extent[2 - axis] = n > 1 ? 2 * n : 1;
-    }
-    auto const waves = static_cast<std::size_t>(extent[0]) * static_cast<std::size_t>(extent[1]) *
-                       static_cast<std::size_t>(extent[2] / 2 + 1);
-    numbers_ = Kokkos::View<Real*, Kokkos::HostSpace>("numbers", 2 * waves);
-    forward_ = Functions::plan_forward(3, extent, 1, numbers_.data(), nullptr, 1, 0, spectrum(),
-                                       nullptr, 1, 0, FFTW_MEASURE);
-    backward_ = Functions::plan_backward(3, extent, 1, spectrum(), nullptr, 1, 0, numbers_.data(),
-                                         nullptr, 1, 0, FFTW_MEASURE);
-    Kokkos::deep_copy(numbers_, Real(0));
-  }
-  ~PaddedTransforms() {
-    Functions::destroy(forward_);
-    Functions::destroy(backward_);
-  }
-  PaddedTransforms(PaddedTransforms const&) = delete;
-  PaddedTransforms& operator=(PaddedTransforms const&) = delete;
-
-  void operator()() const {
-    Functions::run_forward(forward_, numbers_.data(), spectrum());
-    Functions::run_backward(backward_, spectrum(), numbers_.data());
-  }
-
- private:
-  Complex* spectrum() const { return reinterpret_cast<Complex*>(numbers_.data()); }
-
-  Kokkos::View<Real*, Kokkos::HostSpace> numbers_;
-  typename Functions::Plan forward_, backward_;
-};
 
 template <class Real>
 void time_transforms(benchmark::State& state, cayspin::Lattice const& lattice) {
   PaddedTransforms<Real> const transforms(lattice);
-  for (auto _ : state)
+  for (auto _ : state) {
     for (int component = 0; component < 3; ++component) transforms();
+    Kokkos::fence();
+  }
 }
 
 template <class Real>

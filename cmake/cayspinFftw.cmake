@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # The target cayspin::fftw, where FFTW 3 is found in both precisions (Debian: libfftw3-dev). FFTW is
 # under the GPL: what links it is to be passed on under the GPL, too, or with a licence bought from
-# its authors.
+# its authors. For CUDA it has cuFFT, too.
 find_path(CAYSPIN_FFTW_INCLUDE_DIR fftw3.h)
 find_library(CAYSPIN_FFTW_DOUBLE fftw3)
 find_library(CAYSPIN_FFTW_SINGLE fftw3f)
@@ -12,4 +12,8 @@ if(NOT TARGET cayspin::fftw AND CAYSPIN_FFTW_INCLUDE_DIR AND CAYSPIN_FFTW_DOUBLE
   target_include_directories(cayspin::fftw INTERFACE ${CAYSPIN_FFTW_INCLUDE_DIR})
   target_link_libraries(cayspin::fftw INTERFACE cayspin::cayspin ${CAYSPIN_FFTW_DOUBLE}
                                                 ${CAYSPIN_FFTW_SINGLE})
+  if(Kokkos_ENABLE_CUDA OR "CUDA" IN_LIST Kokkos_DEVICES)
+    find_package(CUDAToolkit REQUIRED)
+    target_link_libraries(cayspin::fftw INTERFACE CUDA::cufft)
+  endif()
 endif()

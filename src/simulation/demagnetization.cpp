@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "demagnetization.hpp"
 
+#include "space.hpp"
+
 #if defined(CAYSPIN_HAS_FFTW)
 #include <cayspin/demagnetization/demagnetizing_field.hpp>
 #endif
@@ -25,6 +27,21 @@ FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, doub
              auto const& spins, auto const& result) { field(spins, result, 0); };
 }
 
+template <class Spins>
+FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, double mu0,
+                                             Lattice const& lattice) {
+  using Memory = typename Spins::memory_space;
+  using Exec = typename Memory::execution_space;
+  if constexpr (cayspin::detail::DeviceTransforms<Exec>::exist)
+    return [field = DemagnetizingField<typename Spins::value_type, Memory>(
+                lattice, options_of(demag, mu0))](Exec const& exec, Spins const& spins,
+                                                  Spins const& result) {
+      field(exec, spins, result, 0);
+    };
+  else
+    return {};
+}
+
 template <class Real>
 std::int64_t demagnetization_bytes(io::Demagnetization const& demag, Lattice const& lattice) {
   return DemagnetizingField<Real>::work_bytes(lattice, options_of(demag, 1));
@@ -35,6 +52,11 @@ void require_demagnetization(io::Scene const&) {}
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const&, double, Lattice const&) {
   throw std::logic_error("a demagnetising field without FFTW");  // require_demagnetization has said
+}
+
+template <class Spins>
+FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const&, double, Lattice const&) {
+  return {};
 }
 
 template <class Real>
@@ -48,6 +70,13 @@ void require_demagnetization(io::Scene const& scene) {
                           "this cayspin was built without FFTW; accepted: no such key");
 }
 #endif
+
+#define CAYSPIN_DEMAGNETIZATION_IN_PLACE(Space, Real)                       \
+  template FieldInPlace<SpinField<Real, Space::memory_space>>               \
+  demagnetization_in_place<SpinField<Real, Space::memory_space>>(           \
+      io::Demagnetization const&, double, Lattice const&);
+CAYSPIN_ON_DEVICE(CAYSPIN_DEMAGNETIZATION_IN_PLACE, double)
+CAYSPIN_ON_DEVICE(CAYSPIN_DEMAGNETIZATION_IN_PLACE, float)
 
 template FieldOnHost<double> demagnetization_on_host(io::Demagnetization const&, double,
                                                      Lattice const&);

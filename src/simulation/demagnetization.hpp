@@ -15,10 +15,21 @@ template <class Real>
 using FieldOnHost = std::function<void(SpinField<Real, Kokkos::HostSpace> const& spins,
                                        SpinField<Real, Kokkos::HostSpace> const& field)>;
 
+/// The same where the spins are.
+template <class Spins>
+using FieldInPlace =
+    std::function<void(typename Spins::memory_space::execution_space const& exec,
+                       Spins const& spins, Spins const& field)>;
+
 /// `mu0`: multiplies the strength.
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
                                           Lattice const& lattice);
+
+/// Of a device's spins; empty where this build has no transforms for that device.
+template <class Spins>
+FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, double mu0,
+                                             Lattice const& lattice);
 
 /// What its transforms keep.
 template <class Real>

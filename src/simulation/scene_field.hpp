@@ -3,8 +3,8 @@
 
 #include "applied_field.hpp"
 #include "field_in_pass.hpp"
-#include "host_solver.hpp"
 #include "scene_field_now.hpp"
+#include "whole_field.hpp"
 
 #include <cayspin/field/dear.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -13,6 +13,7 @@
 
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -23,19 +24,16 @@ class SceneField {
   using Real = typename Spins::value_type;
 
  public:
-  using OnHost = HostField<Spins, HostSolver>;
-  using DearTerm = Dear<Spins, OnHost>;
+  using DearTerm = Dear<Spins, WholeField<Spins>>;
 
-  /// `has_dear`: is what the host computes dear?
+  /// `has_dear`: is what is computed whole dear?
   SceneField(io::Field const& field, Lattice const& lattice, bool has_dear,
              std::optional<FieldInPass<Spins>> pass)
       : lattice_terms_(lattice_terms_of(field, lattice)), applied_(field), pass_(std::move(pass)) {
     if (!pass_)
       for (auto const& term : field.anisotropies) quadratic_.add(term.constant, term.axis);
     if (field.slab_demag) add(*field.slab_demag, field.mu0, lattice);
-    if (field.demag)
-      stored_.emplace(lattice,
-                      HostSolver(demagnetization_on_host<Real>(*field.demag, field.mu0, lattice)));
+    if (field.demag) add(*field.demag, field.mu0, lattice);
     if (field.own.nonlocal) stored_.emplace(lattice, HostSolver(field.own.nonlocal));
     if (has_dear) {
       dear_.emplace(lattice, *stored_);
@@ -112,6 +110,14 @@ class SceneField {
     return now;
   }
 
+  void add(io::Demagnetization const& demag, double mu0, Lattice const& lattice) {
+    if constexpr (!std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>)
+      if (auto field = demagnetization_in_place<Spins>(demag, mu0, lattice)) {
+        stored_.emplace(lattice, std::move(field));
+        return;
+      }
+    stored_.emplace(lattice, HostSolver(demagnetization_on_host<Real>(demag, mu0, lattice)));
+  }
   void add(io::SlabDemagnetization const& slab, double mu0, Lattice const& lattice) {
     Vec3<double> const normal{slab.normal[0], slab.normal[1], slab.normal[2]};
     double const strength = mu0 * slab.strength;
@@ -128,7 +134,7 @@ class SceneField {
   QuadraticTerms quadratic_;
   AppliedField applied_;
   std::optional<LayerAveragedSlabDemag<typename Spins::memory_space>> layers_;
-  std::optional<OnHost> stored_;
+  std::optional<WholeField<Spins>> stored_;
   std::optional<DearTerm> dear_;
   std::optional<FieldInPass<Spins>> pass_;
   FieldFor purpose_ = FieldFor::generator;

@@ -179,31 +179,10 @@ class Convolution {
   }
 
   void find_kernel(InteractionsOfCells const& interactions) {
-    auto const tensors = interactions.all();
-    TransformOfOctant const transform(interactions);
-    double const scale = 1.0 / (double(period_[0]) * period_[1] * period_[2]);
-    using N = DemagnetizingTensor;
-    struct Component {
-      double N::*of;
-      std::array<bool, 3> is_odd;
-    };
-    std::size_t c = 0;
-    for (auto const& component : {Component{&N::xx, {}},
-                                  {&N::yy, {}},
-                                  {&N::zz, {}},
-                                  {&N::xy, {true, true, false}},
-                                  {&N::xz, {true, false, true}},
-                                  {&N::yz, {false, true, true}}}) {
-      std::vector<double> values(tensors.size());
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] = tensors[i].*component.of;
-      transform(values, component.is_odd);
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        std::size_t const x = i % std::size_t(octant_[0]), yz = i / std::size_t(octant_[0]);
-        kernel_(std::size_t((x * 6 + c) * octant_plane() + yz)) =
-            static_cast<Real>(scale * values[i]);
-      }
-      ++c;
-    }
+    auto const nx = std::size_t(octant_[0]);
+    transform_interactions(interactions, [&](std::size_t c, std::size_t i, double value) {
+      kernel_((i % nx * 6 + c) * octant_plane() + i / nx) = static_cast<Real>(value);
+    });
   }
 
   std::array<int, 3> n_, period_, octant_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/demagnetization/convolution.hpp>
+#include <cayspin/demagnetization/device_convolution.hpp>
 #include <cayspin/demagnetization/interactions.hpp>
 #include <cayspin/lattice.hpp>
 
@@ -15,10 +16,16 @@ namespace cayspin::inline v0_1 {
 /// lattice's spacings: H_i = -strength sum_j N_ij m_j, by FFTs. A solver for HostField, which Dear
 /// can take: E = -m.H/2. An axis with images is periodic: a cell sees the nearest image of another
 /// one and `periodic_images` more on both sides of it, whatever the lattice's boundary says to its
-/// other terms. Real: of the spins. Copies share their work memory; one at a time can be evaluated.
-/// Needs the target cayspin::fftw.
-template <class Real>
+/// other terms. Real and MemorySpace: of the spins; DemagnetizingField(spins) takes both from them.
+/// On CUDA the transforms are cuFFT's; elsewhere FFTW's, on the host. Copies share their work
+/// memory; one at a time can be evaluated. Needs the target cayspin::fftw.
+template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
+  static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;
+  using Convolution = std::conditional_t<
+      on_host, detail::Convolution<Real>,
+      detail::DeviceConvolution<Real, typename MemorySpace::execution_space>>;
+
  public:
   static constexpr int degree = 2;
 
@@ -26,27 +33,46 @@ class DemagnetizingField {
   /// and a negative number of images.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
-        convolution_(std::make_shared<detail::Convolution<Real> const>(
-            detail::InteractionsOfCells(lattice, options))) {}
+        convolution_(
+            std::make_shared<Convolution const>(detail::InteractionsOfCells(lattice, options))) {}
+  /// For spins like these: their lattice, precision and memory space.
+  explicit DemagnetizingField(SpinField<Real, MemorySpace> const& like,
+                              DemagnetizationOptions const& options = {})
+      : DemagnetizingField(like.lattice(), options) {}
 
   /// Of such a field: the spectrum and the interactions.
   static std::int64_t work_bytes(Lattice const& lattice,
                                  DemagnetizationOptions const& options = {}) {
-    return detail::Convolution<Real>::work_bytes({lattice, options});
+    return Convolution::work_bytes({lattice, options});
   }
 
   /// `field`: H of the spins. Throws std::invalid_argument for another lattice.
   template <class HostSpins>
+    requires on_host
   void operator()(HostSpins const& spins, HostSpins const& field, double /*t*/) const {
     static_assert(std::is_same_v<typename HostSpins::value_type, Real>,
                   "DemagnetizingField was made for spins of another precision.");
     require_lattice("cayspin::DemagnetizingField", lattice_, spins.lattice());
     (*convolution_)(spins, field);
   }
+  /// The same in the memory of a device.
+  template <class Exec, class Spins>
+    requires(!on_host)
+  void operator()(Exec const& exec, Spins const& spins, Spins const& field, double /*t*/) const {
+    require_lattice("cayspin::DemagnetizingField", lattice_, spins.lattice());
+    (*convolution_)(exec, spins, field);
+  }
 
  private:
   Lattice lattice_;
-  std::shared_ptr<detail::Convolution<Real> const> convolution_;
+  std::shared_ptr<Convolution const> convolution_;
 };
+
+template <class Spins>
+DemagnetizingField(Spins)
+    -> DemagnetizingField<typename Spins::value_type, typename Spins::memory_space>;
+template <class Spins>
+DemagnetizingField(Spins, DemagnetizationOptions)
+    -> DemagnetizingField<typename Spins::value_type, typename Spins::memory_space>;
 
 }  // namespace cayspin::inline v0_1

@@ -55,4 +55,32 @@ class TransformOfOctant {
   std::array<int, 3> octant_, period_;
 };
 
+/// store(component, i, value) for all wave numbers of the octant, x first, and the components xx, yy,
+/// zz, xy, xz, yz: the transforms of the interactions, divided by the number of cells in a period.
+template <class Store>
+void transform_interactions(InteractionsOfCells const& interactions, Store const& store) {
+  using N = DemagnetizingTensor;
+  struct Component {
+    double N::*of;
+    std::array<bool, 3> is_odd;
+  };
+  auto const tensors = interactions.all();
+  TransformOfOctant const transform(interactions);
+  auto const& period = interactions.period();
+  double const scale = 1.0 / (double(period[0]) * period[1] * period[2]);
+  std::size_t c = 0;
+  for (auto const& component : {Component{&N::xx, {}},
+                                {&N::yy, {}},
+                                {&N::zz, {}},
+                                {&N::xy, {true, true, false}},
+                                {&N::xz, {true, false, true}},
+                                {&N::yz, {false, true, true}}}) {
+    std::vector<double> values(tensors.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = tensors[i].*component.of;
+    transform(values, component.is_odd);
+    for (std::size_t i = 0; i < values.size(); ++i) store(c, i, scale * values[i]);
+    ++c;
+  }
+}
+
 }  // namespace cayspin::inline v0_1::detail

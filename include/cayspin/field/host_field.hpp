@@ -47,13 +47,18 @@ struct StoredField {
 ///
 /// Solver: a callable void(SpinField<Real, HostSpace> const& spins, SpinField<Real, HostSpace>
 /// const& field, double t) with a member `degree`: 1 when H does not depend on m (E = -m.H), 2 when
-/// it is linear in m and symmetric (E = -m.H/2).
+/// it is linear in m and symmetric (E = -m.H/2). One that can be called as solver(exec, spins,
+/// field, t), with fields in the spins' own memory, is called so, and nothing is copied.
 template <class Spins, class Solver>
 class HostField {
   using Real = typename Spins::value_type;
   using HostSpins = SpinField<Real, Kokkos::HostSpace>;
   static constexpr bool on_host = std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>;
-  static_assert(std::is_invocable_v<Solver const&, HostSpins const&, HostSpins const&, double>,
+  static constexpr bool in_place =
+      std::is_invocable_v<Solver const&, typename Spins::memory_space::execution_space const&,
+                          Spins const&, Spins const&, double>;
+  static_assert(in_place ||
+                    std::is_invocable_v<Solver const&, HostSpins const&, HostSpins const&, double>,
                 "HostField needs a solver callable as solver(host_spins, host_field, t) const.");
   static_assert(
       requires { requires Solver::degree == 1 || Solver::degree == 2; },
@@ -63,7 +68,7 @@ class HostField {
  public:
   HostField(Lattice const& lattice, Solver solver)
       : solver_(std::move(solver)), field_("HostField::field", lattice) {
-    if constexpr (!on_host) {
+    if constexpr (!on_host && !in_place) {
       host_spins_ = HostSpins("HostField::host_spins", lattice);
       host_field_ = HostSpins("HostField::host_field", lattice);
     }
@@ -83,6 +88,9 @@ class HostField {
   detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
     if constexpr (!std::is_same_v<Others, Spins>) {
       // check_spins has said so
+    } else if constexpr (in_place) {
+      solver_(exec, spins, field_, t);
+      detail::update_ghosts(exec, field_.lattice(), field_);
     } else if constexpr (on_host) {
       exec.fence("cayspin::HostField: spins ready");
       solver_(spins, field_, t);

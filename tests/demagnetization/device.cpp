@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// The demagnetising field as devices compute it, against that of the host: on host spaces, too,
+// where FFTW plays the device's transforms.
+#include "../support/backends.hpp"
+
+#include <cayspin/cayspin.hpp>
+#include <cayspin/demagnetization/demagnetizing_field.hpp>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace cayspin::test {
+namespace {
+
+struct Film {
+  std::array<std::int64_t, 3> shape;
+  std::array<int, 3> images;
+
+  Lattice lattice() const { return {.shape = shape, .spacing = {1, 1.3, 0.4}}; }
+};
+
+Film const films[] = {{{7, 5, 3}, {}},  {{6, 4, 4}, {}},  {{9, 17, 1}, {}}, {{11, 1, 1}, {}},
+                      {{1, 9, 1}, {}},  {{1, 1, 8}, {}},  {{1, 1, 1}, {}},  {{1, 12, 5}, {}},
+                      {{33, 30, 1}, {}}, {{6, 5, 4}, {1, 0, 0}}, {{5, 6, 2}, {0, 1, 1}},
+                      {{4, 5, 1}, {1, 1, 0}}};
+
+DemagnetizationOptions options_of(Film const& film) {
+  return {.strength = 2, .periodic_images = film.images};
+}
+
+std::vector<double> on_host(Film const& film, std::vector<double> const& directions) {
+  using HostSpins = SpinField<double, Kokkos::HostSpace>;
+  auto const spins = spins_of<HostSpins>(film.lattice(), directions);
+  HostSpins const field("field", film.lattice());
+  DemagnetizingField<double> const demag(film.lattice(), options_of(film));
+  demag(spins, field, 0);
+  return numbers_of(field);
+}
+
+template <class Real>
+void expect_near(std::vector<double> const& found, std::vector<double> const& expected,
+                 Film const& film) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ASSERT_NEAR(found[i], expected[i], 80 * epsilon<Real>)
+        << i << " of " << film.shape[0] << " " << film.shape[1] << " " << film.shape[2];
+}
+
+template <class Backend>
+class DemagnetizingFieldOnDevices : public ::testing::Test {};
+TYPED_TEST_SUITE(DemagnetizingFieldOnDevices, Backends, BackendName);
+
+// All wave numbers along x at once, two at a time, and one by one.
+TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
+  using Real = typename TypeParam::Real;
+  using Exec = typename TypeParam::Exec;
+  if constexpr (detail::DeviceTransforms<Exec>::exist) {
+    for (auto const& film : films) {
+      auto const lattice = film.lattice();
+      auto const directions = random_directions(lattice.sites(), 3);
+      auto const expected = on_host(film, directions);
+      auto const spins = spins_of<typename TypeParam::Spins>(lattice, directions);
+      typename TypeParam::Spins const field("field", lattice);
+      detail::InteractionsOfCells const interactions(lattice, options_of(film));
+      std::int64_t const plane = 6 * interactions.period()[1] * interactions.period()[2] *
+                                 static_cast<std::int64_t>(sizeof(Real));
+      for (std::int64_t const bytes : {std::int64_t(32) << 20, 2 * plane, std::int64_t(0)}) {
+        detail::DeviceConvolution<Real, Exec> const convolution(interactions, bytes);
+        // Work memory is as the first call left it in the second one.
+        for (int again = 0; again < 2; ++again) convolution(Exec(), spins, field);
+        expect_near<Real>(numbers_of(field), expected, film);
+      }
+    }
+  } else {
+    GTEST_SKIP() << "no transforms for this space";
+  }
+}
+
+// One spelling for hosts and devices; a device copies no spin.
+TYPED_TEST(DemagnetizingFieldOnDevices, IsATerm) {
+  using Real = typename TypeParam::Real;
+  using Exec = typename TypeParam::Exec;
+  if constexpr (detail::DeviceTransforms<Exec>::exist) {
+    Film const film = films[0];
+    auto const directions = random_directions(film.lattice().sites(), 3);
+    auto const expected = on_host(film, directions);
+    auto const spins = spins_of<typename TypeParam::Spins>(film.lattice(), directions);
+    HostField const term(spins, DemagnetizingField(spins, options_of(film)));
+    typename TypeParam::Spins const field("field", film.lattice());
+    evaluate_field(Exec(), term, spins, 0, field);
+    expect_near<Real>(numbers_of(field), expected, film);
+  } else {
+    GTEST_SKIP() << "no transforms for this space";
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::test
