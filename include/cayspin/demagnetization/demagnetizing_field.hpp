@@ -16,23 +16,24 @@ namespace cayspin::inline v0_1 {
 /// can take: E = -m.H/2. An axis with images is periodic: a cell sees the nearest image of another
 /// one and `periodic_images` more on both sides of it, whatever the lattice's boundary says to its
 /// other terms. Real: of the spins. Copies share their work memory; one at a time can be evaluated.
-/// Needs the target cayspin::fftw.
+/// On a part of a lattice (mpi::Domain) it is the field of all parts, with the bits of one: all
+/// make it and evaluate it together. Needs the target cayspin::fftw.
 template <class Real>
 class DemagnetizingField {
  public:
   static constexpr int degree = 2;
 
-  /// Throws std::invalid_argument for a crystal, a part of a lattice, a strength that is not finite
-  /// and a negative number of images.
+  /// Throws std::invalid_argument for a crystal, a strength that is not finite and a negative
+  /// number of images.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<detail::Convolution<Real> const>(
-            detail::InteractionsOfCells(lattice, options))) {}
+            lattice, detail::InteractionsOfCells(lattice, options))) {}
 
-  /// Of such a field: the spectrum and the interactions.
+  /// Of such a field, on a part that part's: the spectrum and the interactions.
   static std::int64_t work_bytes(Lattice const& lattice,
                                  DemagnetizationOptions const& options = {}) {
-    return detail::Convolution<Real>::work_bytes({lattice, options});
+    return detail::Convolution<Real>::work_bytes(lattice, {lattice, options});
   }
 
   /// `field`: H of the spins. Throws std::invalid_argument for another lattice.
