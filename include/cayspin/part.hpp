@@ -29,12 +29,19 @@ class Part {
   virtual Lattice const& whole() const = 0;
   /// The larger lattice's row or plane that is number 0 of this part, ghosts included.
   virtual std::array<std::int64_t, 3> begin() const = 0;
+  /// How many parts there are, and the number of this one among them.
+  virtual std::size_t parts() const = 0;
+  virtual std::size_t index() const = 0;
   /// Replaces words by their sums over the parts.
   virtual void sum(std::span<std::int64_t> words) const = 0;
   /// Replaces words by the largest of the parts.
   virtual void maximum(std::span<std::int64_t> words) const = 0;
   /// Brings the ghosts of fields up to date; waits. Work on the fields has finished.
   virtual void update_ghosts(std::span<FieldNumbers const> fields) const = 0;
+  /// Sends bytes to each part, itself included, and takes as many as each sends; waits. In the
+  /// order of the parts' numbers, in multiples of 8 bytes.
+  virtual void exchange(std::span<std::span<std::byte const> const> sent,
+                        std::span<std::span<std::byte> const> received) const = 0;
 };
 
 /// The lattice that this one is a part of, or itself.

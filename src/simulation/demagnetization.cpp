@@ -4,18 +4,37 @@
 #include "space.hpp"
 
 #if defined(CAYSPIN_HAS_FFTW)
+#include "interactions_file.hpp"
+
 #include <cayspin/demagnetization/demagnetizing_field.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #endif
 
 #include <stdexcept>
+#include <string>
 
 namespace cayspin::simulation {
 
 #if defined(CAYSPIN_HAS_FFTW)
 namespace {
 
-DemagnetizationOptions options_of(io::Demagnetization const& demag, double mu0) {
-  return {.strength = mu0 * demag.strength, .periodic_images = demag.periodic_images};
+/// All that the tensors depend on.
+std::string text_of(Lattice const& lattice, DemagnetizationOptions const& options) {
+  return fmt::format("cells {}, spacing {:a}, images {}, strength {:a}",
+                     fmt::join(lattice.shape, " "), fmt::join(lattice.spacing, " "),
+                     fmt::join(options.periodic_images, " "), options.strength);
+}
+
+DemagnetizationOptions options_of(io::Demagnetization const& demag, double mu0,
+                                  Lattice const& lattice) {
+  DemagnetizationOptions options{.strength = mu0 * demag.strength,
+                                 .periodic_images = demag.periodic_images};
+  if (!demag.kept_in.empty())
+    options.kept = [file = InteractionsFile(demag.kept_in, text_of(lattice, options))](
+                       auto const& compute) { return file.read_or(compute); };
+  return options;
 }
 
 }  // namespace
@@ -23,7 +42,7 @@ DemagnetizationOptions options_of(io::Demagnetization const& demag, double mu0) 
 template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
                                           Lattice const& lattice) {
-  return [field = DemagnetizingField<Real>(lattice, options_of(demag, mu0))](
+  return [field = DemagnetizingField<Real>(lattice, options_of(demag, mu0, lattice))](
              auto const& spins, auto const& result) { field(spins, result, 0); };
 }
 
@@ -32,9 +51,10 @@ FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, d
                                              Lattice const& lattice) {
   using Memory = typename Spins::memory_space;
   using Exec = typename Memory::execution_space;
+  if (lattice.part != nullptr) return {};
   if constexpr (cayspin::detail::DeviceTransforms<Exec>::exist)
     return [field = DemagnetizingField<typename Spins::value_type, Memory>(
-                lattice, options_of(demag, mu0))](Exec const& exec, Spins const& spins,
+                lattice, options_of(demag, mu0, lattice))](Exec const& exec, Spins const& spins,
                                                   Spins const& result) {
       field(exec, spins, result, 0);
     };
@@ -44,7 +64,7 @@ FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, d
 
 template <class Real>
 std::int64_t demagnetization_bytes(io::Demagnetization const& demag, Lattice const& lattice) {
-  return DemagnetizingField<Real>::work_bytes(lattice, options_of(demag, 1));
+  return DemagnetizingField<Real>::work_bytes(lattice, options_of(demag, 1, lattice));
 }
 
 void require_demagnetization(io::Scene const&) {}

@@ -6,6 +6,8 @@
 
 #include <cayspin/io/scene.hpp>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace cayspin::simulation {
@@ -14,8 +16,11 @@ template <class Spins>
 SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_dear) {
   std::optional<FieldInPass<Spins>> pass;
   if (io::needs_pass(scene)) pass.emplace(scene, lattice);
-  return SceneField<Spins>(io::without_numbers_of_sites(scene.field), lattice, has_dear,
-                           std::move(pass));
+  auto field = io::without_numbers_of_sites(scene.field);
+  std::error_code ignored;
+  if (field.demag && std::filesystem::is_regular_file(scene.path, ignored))
+    field.demag->kept_in = std::filesystem::path(scene.path).replace_extension(".demag");
+  return SceneField<Spins>(field, lattice, has_dear, std::move(pass));
 }
 
 template <class Spins>

@@ -68,7 +68,7 @@ TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
       std::int64_t const plane = 6 * interactions.period()[1] * interactions.period()[2] *
                                  static_cast<std::int64_t>(sizeof(Real));
       for (std::int64_t const bytes : {std::int64_t(32) << 20, 2 * plane, std::int64_t(0)}) {
-        detail::DeviceConvolution<Real, Exec> const convolution(interactions, bytes);
+        detail::DeviceConvolution<Real, Exec> const convolution(lattice, interactions, bytes);
         // Work memory is as the first call left it in the second one.
         for (int again = 0; again < 2; ++again) convolution(Exec(), spins, field);
         expect_near<Real>(numbers_of(field), expected, film);

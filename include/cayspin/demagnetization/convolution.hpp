@@ -4,6 +4,7 @@
 #include <cayspin/demagnetization/fftw.hpp>
 #include <cayspin/demagnetization/interactions.hpp>
 #include <cayspin/demagnetization/spectrum_of_interactions.hpp>
+#include <cayspin/demagnetization/spectrum_of_parts.hpp>
 #include <cayspin/demagnetization/workers.hpp>
 
 #include <algorithm>
@@ -11,25 +12,30 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace cayspin::inline v0_1::detail {
 
 /// The field of interactions between cells. Rows along x are transformed by themselves, and each of
 /// their wave numbers then along y and z in memory of one thread's own, where it meets the
 /// interactions and comes back: no zero beyond the lattice is kept, and each number of the spectrum
-/// is read and written once. The same bits for any number of threads.
+/// is read and written once. Parts of a lattice have each its own rows and a share of the wave
+/// numbers, which they exchange. The same bits for any number of threads and parts.
 template <class Real>
 class Convolution {
   using Complex = std::complex<Real>;
 
  public:
-  explicit Convolution(InteractionsOfCells const& interactions)
-      : n_(interactions.cells()),
+  /// Of a lattice or a part of it, for the interactions of the whole one.
+  Convolution(Lattice const& lattice, InteractionsOfCells const& interactions)
+      : parts_(lattice),
+        rows_of_parts_(rows_of_parts(lattice)),
+        own_(rows_of_parts_[parts_.index()]),
+        n_(interactions.cells()),
         period_(interactions.period()),
         octant_{interactions.octant(0), interactions.octant(1), interactions.octant(2)},
         rows_at_once_(std::min(n_[1], 8)),
         row_(row_of(period_[1], period_[2])),
-        plane_(std::size_t(n_[1]) * std::size_t(n_[2])),
         padded_plane_(whole(std::size_t(row_) * std::size_t(period_[2]))),
         row_transforms_(period_[0], rows_at_once_),
         y_forward_(Transforms::forward, period_[1], 1, n_[2], row_),
@@ -38,19 +44,23 @@ class Convolution {
         z_backward_(Transforms::backward, period_[2], row_, period_[1], 1),
         row_workers_("cayspin::DemagnetizingField: rows", blocks(),
                      whole(row_waves()) * 2 + std::size_t(rows_at_once_ * period_[0])),
-        plane_workers_("cayspin::DemagnetizingField: planes", octant_[0], 3 * padded_plane_),
-        spectrum_("cayspin::DemagnetizingField: spectrum", 3 * plane_ * std::size_t(octant_[0])),
+        spectrum_("cayspin::DemagnetizingField: spectrum", parts_, octant_[0], lines_of_parts()),
+        plane_workers_("cayspin::DemagnetizingField: planes", spectrum_.own_waves(),
+                       3 * padded_plane_),
         kernel_("cayspin::DemagnetizingField: interactions",
-                6 * octant_plane() * std::size_t(octant_[0])) {
+                6 * octant_plane() * std::size_t(spectrum_.own_waves())) {
     find_kernel(interactions);
   }
 
   /// Less what each thread has of its own: three planes and some rows.
-  static std::int64_t work_bytes(InteractionsOfCells const& interactions) {
+  static std::int64_t work_bytes(Lattice const& lattice, InteractionsOfCells const& interactions) {
+    Parts const parts(lattice);
     std::int64_t const ny = interactions.cells()[1], nz = interactions.cells()[2];
     std::int64_t const waves = interactions.octant(0);
-    std::int64_t const octant = waves * interactions.octant(1) * interactions.octant(2);
-    return (6 * waves * ny * nz + 6 * octant) * static_cast<std::int64_t>(sizeof(Real));
+    std::int64_t const spectrum =
+        SpectrumOfParts<Complex>::numbers(parts, waves, 3 * own_rows(lattice).count(), 3 * ny * nz);
+    std::int64_t const octant = parts.share(waves, parts.index()) * interactions.lines();
+    return (2 * spectrum + 6 * octant) * static_cast<std::int64_t>(sizeof(Real));
   }
 
   template <class HostSpins>
@@ -61,24 +71,28 @@ class Convolution {
       for_each_component(block, memory, [&](BlockOfRows const& rows, std::size_t c) {
         for (int y = 0; y < rows.count; ++y)
           std::copy_n(m.data + std::ptrdiff_t(c) * m.stride + rows.offset(layout, y), n_[0],
-                      rows.numbers + y * period_[0]);
+                      rows.numbers + (rows.slot + y) * period_[0]);
         row_transforms_.forward(rows.numbers, rows.waves);
         for (int k = 0; k < octant_[0]; ++k)
-          std::copy_n(rows.waves + k * rows_at_once_, rows.count, in_spectrum(k, c, rows.first));
+          std::copy_n(rows.waves + k * rows_at_once_ + rows.slot, rows.count,
+                      in_own_rows(k, c, rows));
       });
     });
-    plane_workers_.run(octant_[0],
-                       [&](std::int64_t k, Complex* planes) { convolve(int(k), planes); });
+    spectrum_.lines_to_waves();
+    plane_workers_.run(spectrum_.own_waves(),
+                       [&](std::int64_t k, Complex* planes) { convolve(k, planes); });
+    spectrum_.waves_to_lines();
     row_workers_.run(blocks(), [&](std::int64_t block, Real* memory) {
       for_each_component(block, memory, [&](BlockOfRows const& rows, std::size_t c) {
         for (int k = 0; k < octant_[0]; ++k) {
           Complex* const wave = rows.waves + k * rows_at_once_;
-          std::copy_n(in_spectrum(k, c, rows.first), rows.count, wave);
-          std::fill(wave + rows.count, wave + rows_at_once_, Complex(0));
+          std::fill(wave, wave + rows.slot, Complex(0));
+          std::copy_n(in_own_rows(k, c, rows), rows.count, wave + rows.slot);
+          std::fill(wave + rows.slot + rows.count, wave + rows_at_once_, Complex(0));
         }
         row_transforms_.backward(rows.waves, rows.numbers);
         for (int y = 0; y < rows.count; ++y) {
-          Real* const row = rows.numbers + y * period_[0];
+          Real* const row = rows.numbers + (rows.slot + y) * period_[0];
           std::copy_n(row, n_[0], h.data + std::ptrdiff_t(c) * h.stride + rows.offset(layout, y));
           std::fill(row + n_[0], row + period_[0], Real(0));
         }
@@ -89,16 +103,18 @@ class Convolution {
  private:
   using Transforms = ComplexTransforms<Real>;
 
-  /// Neighbouring rows of a plane, `first` the number of the first row among all.
+  /// Neighbouring rows of a plane: place y, z among the part's own. Each is transformed in the slot
+  /// that it has in the whole lattice: FFTW does not promise that bits are those of any slot.
   struct BlockOfRows {
-    std::size_t first;
-    int count;
+    std::int64_t y, z;
+    int slot, count;
     Complex* waves;
     Real* numbers;
 
     template <class Layout>
-    std::ptrdiff_t offset(Layout const& layout, int y) const {
-      return (std::ptrdiff_t(first) + y) * layout.pitch;
+    std::ptrdiff_t offset(Layout const& layout, int of_row) const {
+      return ((layout.own.z_begin + z) * layout.ny + layout.own.y_begin + y + of_row) *
+             layout.pitch;
     }
   };
 
@@ -111,45 +127,71 @@ class Convolution {
   static std::size_t whole(std::size_t count) { return Workers<Complex>::whole_lines(count); }
   std::size_t row_waves() const { return std::size_t(rows_at_once_) * std::size_t(octant_[0]); }
   std::size_t octant_plane() const { return std::size_t(octant_[1]) * std::size_t(octant_[2]); }
-  std::int64_t blocks_of_plane() const { return (n_[1] + rows_at_once_ - 1) / rows_at_once_; }
-  std::int64_t blocks() const { return blocks_of_plane() * n_[2]; }
+  std::int64_t first_block() const { return own_.y / rows_at_once_; }
+  std::int64_t blocks_of_plane() const {
+    return (own_.y + own_.ny + rows_at_once_ - 1) / rows_at_once_ - first_block();
+  }
+  std::int64_t blocks() const { return blocks_of_plane() * own_.nz; }
+  std::vector<std::int64_t> lines_of_parts() const {
+    std::vector<std::int64_t> lines;
+    for (RowsOfPart const& rows : rows_of_parts_) lines.push_back(3 * rows.count());
+    return lines;
+  }
 
   template <class Body>
   void for_each_component(std::int64_t block, Real* memory, Body const& body) const {
-    auto const z = block / blocks_of_plane(), y = block % blocks_of_plane() * rows_at_once_;
-    BlockOfRows const rows{std::size_t(z * n_[1] + y),
-                           static_cast<int>(std::min<std::int64_t>(rows_at_once_, n_[1] - y)),
-                           reinterpret_cast<Complex*>(memory), memory + 2 * whole(row_waves())};
+    std::int64_t const first = (first_block() + block % blocks_of_plane()) * rows_at_once_ - own_.y;
+    std::int64_t const begin = std::max<std::int64_t>(first, 0),
+                       end = std::min(first + rows_at_once_, own_.ny);
+    BlockOfRows const rows{begin,
+                           block / blocks_of_plane(),
+                           static_cast<int>(begin - first),
+                           static_cast<int>(end - begin),
+                           reinterpret_cast<Complex*>(memory),
+                           memory + 2 * whole(row_waves())};
     for (std::size_t c = 0; c < 3; ++c) body(rows, c);
   }
 
-  Complex* in_spectrum(int k, std::size_t c, std::size_t row) const {
-    return spectrum_.data() + (std::size_t(k) * 3 + c) * plane_ + row;
+  Complex* in_own_rows(std::int64_t k, std::size_t c, BlockOfRows const& rows) const {
+    return spectrum_.of_own_lines(k) + std::int64_t(c) * own_.count() + rows.z * own_.ny + rows.y;
+  }
+
+  /// body(in plane, in spectrum, count) for all rows of a wave number.
+  template <class Body>
+  void for_each_row(std::int64_t k, std::size_t c, Complex* plane, Body const& body) const {
+    for (std::size_t part = 0; part < rows_of_parts_.size(); ++part) {
+      RowsOfPart const& rows = rows_of_parts_[part];
+      Complex* in_spectrum = spectrum_.of_own_wave(k, part) + std::int64_t(c) * rows.count();
+      for (std::int64_t z = 0; z < rows.nz; ++z, in_spectrum += rows.ny)
+        body(plane + (rows.z + z) * row_ + rows.y, in_spectrum, rows.ny);
+    }
   }
 
   /// One wave number along x.
-  void convolve(int k, Complex* planes) const {
+  void convolve(std::int64_t k, Complex* planes) const {
     for (std::size_t c = 0; c < 3; ++c) {
-      Complex *const plane = planes + c * padded_plane_, *const from = in_spectrum(k, c, 0);
-      for (int z = 0; z < n_[2]; ++z) {
-        Complex* const row = plane + z * row_;
-        std::copy_n(from + z * n_[1], n_[1], row);
-        std::fill(row + n_[1], row + period_[1], Complex(0));
-      }
+      Complex* const plane = planes + c * padded_plane_;
+      for_each_row(k, c, plane, [](Complex* row, Complex const* from, std::int64_t count) {
+        std::copy_n(from, count, row);
+      });
+      for (int z = 0; z < n_[2]; ++z)
+        std::fill(plane + z * row_ + n_[1], plane + z * row_ + period_[1], Complex(0));
       std::fill(plane + n_[2] * row_, plane + period_[2] * row_, Complex(0));
       if (period_[1] > 1) y_forward_(plane);
       if (period_[2] > 1) z_forward_(plane);
     }
     multiply(k, planes);
     for (std::size_t c = 0; c < 3; ++c) {
-      Complex *const plane = planes + c * padded_plane_, *const to = in_spectrum(k, c, 0);
+      Complex* const plane = planes + c * padded_plane_;
       if (period_[2] > 1) z_backward_(plane);
       if (period_[1] > 1) y_backward_(plane);
-      for (int z = 0; z < n_[2]; ++z) std::copy_n(plane + z * row_, n_[1], to + z * n_[1]);
+      for_each_row(k, c, plane, [](Complex const* row, Complex* to, std::int64_t count) {
+        std::copy_n(row, count, to);
+      });
     }
   }
 
-  void multiply(int k, Complex* planes) const {
+  void multiply(std::int64_t k, Complex* planes) const {
     for (int z = 0; z < period_[2]; ++z) {
       bool const beyond = z >= octant_[2];
       Real const* const kernel = kernel_.data() + std::size_t(k) * 6 * octant_plane() +
@@ -179,21 +221,24 @@ class Convolution {
   }
 
   void find_kernel(InteractionsOfCells const& interactions) {
-    auto const nx = std::size_t(octant_[0]);
-    transform_interactions(interactions, [&](std::size_t c, std::size_t i, double value) {
-      kernel_((i % nx * 6 + c) * octant_plane() + i / nx) = static_cast<Real>(value);
-    });
+    transform_interactions(
+        interactions, parts_, [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
+          kernel_((x * 6 + c) * octant_plane() + yz) = static_cast<Real>(value);
+        });
   }
 
+  Parts parts_;
+  std::vector<RowsOfPart> rows_of_parts_;
+  RowsOfPart own_;
   std::array<int, 3> n_, period_, octant_;
   int rows_at_once_, row_;
-  std::size_t plane_, padded_plane_;
+  std::size_t padded_plane_;
   RowTransforms<Real> row_transforms_;
   Transforms y_forward_, y_backward_, z_forward_, z_backward_;
   Workers<Real> row_workers_;
+  SpectrumOfParts<Complex> spectrum_;  // wave number along x, component, z, y
   Workers<Complex> plane_workers_;
-  Kokkos::View<Complex*, Kokkos::HostSpace> spectrum_;  // wave number along x, component, z, y
-  Kokkos::View<Real*, Kokkos::HostSpace> kernel_;       // wave number, component, z, y of octants
+  Kokkos::View<Real*, Kokkos::HostSpace> kernel_;  // wave number, component, z, y of octants
 };
 
 }  // namespace cayspin::inline v0_1::detail

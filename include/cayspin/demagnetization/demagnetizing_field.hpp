@@ -18,7 +18,9 @@ namespace cayspin::inline v0_1 {
 /// one and `periodic_images` more on both sides of it, whatever the lattice's boundary says to its
 /// other terms. Real and MemorySpace: of the spins; DemagnetizingField(spins) takes both from them.
 /// On CUDA the transforms are cuFFT's; elsewhere FFTW's, on the host. Copies share their work
-/// memory; one at a time can be evaluated. Needs the target cayspin::fftw.
+/// memory; one at a time can be evaluated. On a part of a lattice (mpi::Domain) the host's is the
+/// field of all parts, with the bits of one: all make it and evaluate it together. Needs the target
+/// cayspin::fftw.
 template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
   static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;
@@ -29,21 +31,21 @@ class DemagnetizingField {
  public:
   static constexpr int degree = 2;
 
-  /// Throws std::invalid_argument for a crystal, a part of a lattice, a strength that is not finite
-  /// and a negative number of images.
+  /// Throws std::invalid_argument for a crystal, a strength that is not finite, a negative number
+  /// of images, and on a device for a part of a lattice.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
-        convolution_(
-            std::make_shared<Convolution const>(detail::InteractionsOfCells(lattice, options))) {}
+        convolution_(std::make_shared<Convolution const>(
+            lattice, detail::InteractionsOfCells(lattice, options))) {}
   /// For spins like these: their lattice, precision and memory space.
   explicit DemagnetizingField(SpinField<Real, MemorySpace> const& like,
                               DemagnetizationOptions const& options = {})
       : DemagnetizingField(like.lattice(), options) {}
 
-  /// Of such a field: the spectrum and the interactions.
+  /// Of such a field, on a part that part's: the spectrum and the interactions.
   static std::int64_t work_bytes(Lattice const& lattice,
                                  DemagnetizationOptions const& options = {}) {
-    return Convolution::work_bytes({lattice, options});
+    return Convolution::work_bytes(lattice, {lattice, options});
   }
 
   /// `field`: H of the spins. Throws std::invalid_argument for another lattice.

@@ -4,12 +4,14 @@
 #include <cayspin/demagnetization/device_transforms.hpp>
 #include <cayspin/demagnetization/interactions.hpp>
 #include <cayspin/demagnetization/spectrum_of_interactions.hpp>
+#include <cayspin/demagnetization/spectrum_of_parts.hpp>
 #include <cayspin/detail/memory.hpp>
 #include <cayspin/detail/row_layout.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 namespace cayspin::inline v0_1::detail {
@@ -134,8 +136,8 @@ class DeviceConvolution {
 
  public:
   /// Planes of some MiB stay in the second cache of a large device.
-  explicit DeviceConvolution(InteractionsOfCells const& interactions,
-                             std::int64_t bytes_at_once = 32 << 20)
+  DeviceConvolution(Lattice const& lattice, InteractionsOfCells const& interactions,
+                    std::int64_t bytes_at_once = 32 << 20)
       : at_(places(interactions, bytes_at_once)),
         row_transforms_(int(at_.period[0]), int(3 * at_.rows())),
         along_y_(int(at_.period[1]), 1, int(at_.lines() * at_.cells[2]), int(at_.period[1])),
@@ -145,16 +147,21 @@ class DeviceConvolution {
         spectrum_("cayspin::DemagnetizingField: spectrum", std::size_t(at_.spectrum())),
         planes_("cayspin::DemagnetizingField: planes", std::size_t(at_.planes())),
         kernel_("cayspin::DemagnetizingField: interactions", kernel_size(at_)) {
+    if (lattice.part != nullptr)
+      throw std::invalid_argument(
+          "cayspin::DemagnetizingField: on a device a lattice must be whole");
     auto const kernel = Kokkos::create_mirror_view(kernel_);
-    auto const nx = std::size_t(at_.octant[0]), plane = std::size_t(at_.octant_plane());
-    transform_interactions(interactions, [&](std::size_t c, std::size_t i, double value) {
-      kernel((i % nx * 6 + c) * plane + i / nx) = static_cast<Real>(value);
-    });
+    auto const plane = std::size_t(at_.octant_plane());
+    transform_interactions(
+        interactions, Parts(lattice),
+        [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
+          kernel((x * 6 + c) * plane + yz) = static_cast<Real>(value);
+        });
     Kokkos::deep_copy(kernel_, kernel);
   }
 
   /// Of all that is kept, less what the transforms take for themselves, and planes.
-  static std::int64_t work_bytes(InteractionsOfCells const& interactions) {
+  static std::int64_t work_bytes(Lattice const&, InteractionsOfCells const& interactions) {
     auto const at = places(interactions, 0);
     return (at.numbers() + 2 * at.spectrum() + static_cast<std::int64_t>(kernel_size(at))) *
            static_cast<std::int64_t>(sizeof(Real));

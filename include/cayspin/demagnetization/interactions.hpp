@@ -4,41 +4,50 @@
 #include <cayspin/demagnetization/tensor.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/part.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
 namespace cayspin::inline v0_1 {
+
+using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
 
 struct DemagnetizationOptions {
   double strength = 1;
   /// More images on each side than the nearest one, along the axes that have any.
   std::array<int, 3> periodic_images{};
   TensorOfCells* tensor = demagnetizing_tensor;
+  /// Is given what computes the tensors of a whole lattice, and returns what that returns: for a
+  /// cache. None: they are computed.
+  std::function<DemagnetizingTensors(std::function<DemagnetizingTensors()> const& compute)> kept{};
 };
 
 namespace detail {
 
-/// -strength N between the cells of a lattice, on the octant of distances that are not negative.
+/// -strength N between the cells of a lattice, of the whole one where it is given by a part, on the
+/// octant of distances that are not negative.
 class InteractionsOfCells {
  public:
   InteractionsOfCells(Lattice const& lattice, DemagnetizationOptions const& options)
       : cell_(lattice.spacing), options_(options) {
     lattice.validate();
+    auto const& shape = whole(lattice).shape;
     if (!std::isfinite(options.strength))
       throw std::invalid_argument("cayspin::DemagnetizingField: the strength is not finite");
-    if (lattice.cell_sites != 1 || lattice.part != nullptr)
+    if (lattice.cell_sites != 1)
       throw std::invalid_argument(
-          "cayspin::DemagnetizingField: a lattice must be whole, with one site in a cell");
+          "cayspin::DemagnetizingField: a lattice must have one site in a cell");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (images(axis) < 0)
         throw std::invalid_argument(
             "cayspin::DemagnetizingField: the number of images is negative");
-      cells_[axis] = static_cast<int>(lattice.shape[axis]);
+      cells_[axis] = static_cast<int>(shape[axis]);
       period_[axis] = images(axis) > 0 ? cells_[axis] : good_length(2 * cells_[axis] - 1);
     }
   }
@@ -49,23 +58,31 @@ class InteractionsOfCells {
   /// Distances 0 .. octant - 1 along each axis stand for all.
   int octant(std::size_t axis) const { return period_[axis] / 2 + 1; }
 
-  /// Of all distances of the octant, x first; those that no two cells have are 0.
-  std::vector<DemagnetizingTensor> all() const {
-    std::vector<DemagnetizingTensor> found(static_cast<std::size_t>(octant(0)) *
-                                           static_cast<std::size_t>(octant(1)) *
-                                           static_cast<std::size_t>(octant(2)));
+  /// Lines along x in the octant.
+  std::int64_t lines() const { return std::int64_t{octant(1)} * octant(2); }
+
+  /// Of all distances of some of these lines, x first, then y; those that no two cells have are 0.
+  DemagnetizingTensors of_lines(std::int64_t first, std::int64_t count) const {
+    if (options_.kept && count == lines())
+      return options_.kept([&] { return computed(first, count); });
+    return computed(first, count);
+  }
+
+ private:
+  DemagnetizingTensors computed(std::int64_t first, std::int64_t lines) const {
+    DemagnetizingTensors found(static_cast<std::size_t>(octant(0)) *
+                               static_cast<std::size_t>(lines));
     // Near ones take longest: dealt out one by one.
     auto const count = static_cast<std::int64_t>(found.size());
     Kokkos::parallel_for(
         "cayspin::DemagnetizingField: tensors",
         Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, TaskIndex,
                             Kokkos::Schedule<Kokkos::Dynamic>>(0, count, Kokkos::ChunkSize(64)),
-        Find{*this, found.data()});
+        Find{*this, first, found.data()});
     Kokkos::DefaultHostExecutionSpace().fence("cayspin::DemagnetizingField: tensors");
     return found;
   }
 
- private:
   /// With a number of factors 2, 3, 5 and 7, for which FFTs are fast.
   static int good_length(int least) {
     for (int length = least;; ++length) {
@@ -78,12 +95,13 @@ class InteractionsOfCells {
 
   struct Find {
     InteractionsOfCells const& of;
+    std::int64_t first;
     DemagnetizingTensor* found;
 
     void operator()(std::int64_t i) const {
-      auto const nx = of.octant(0), ny = of.octant(1);
+      std::int64_t const nx = of.octant(0), ny = of.octant(1), line = first + i / nx;
       found[i] = of.between(
-          {static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny)});
+          {static_cast<int>(i % nx), static_cast<int>(line % ny), static_cast<int>(line / ny)});
     }
   };
 

@@ -3,6 +3,7 @@
 
 #include <cayspin/demagnetization/fftw.hpp>
 #include <cayspin/demagnetization/interactions.hpp>
+#include <cayspin/demagnetization/spectrum_of_parts.hpp>
 #include <cayspin/demagnetization/workers.hpp>
 
 #include <array>
@@ -13,61 +14,106 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The transform of one component of the interactions, which is real: each axis is even or odd, and
-/// of the odd ones there are two or none. Of an octant in an octant's place, x first.
-class TransformOfOctant {
+/// The transform of the interactions, which is real: each axis of a component is even or odd, and
+/// of the odd ones there are two or none. Of an octant of wave numbers, and along x of this part's
+/// share of them.
+class SpectrumOfInteractions {
  public:
-  TransformOfOctant(InteractionsOfCells const& interactions)
+  SpectrumOfInteractions(InteractionsOfCells const& interactions, Parts const& parts)
       : octant_{interactions.octant(0), interactions.octant(1), interactions.octant(2)},
-        period_(interactions.period()) {}
+        period_(interactions.period()),
+        lines_(shares(interactions.lines(), parts)),
+        own_lines_(lines_[parts.index()]),
+        tensors_(interactions.of_lines(parts.begin_of_share(interactions.lines(), parts.index()),
+                                       own_lines_)),
+        along_x_("cayspin::DemagnetizingField: spectrum of interactions", parts, octant_[0],
+                 lines_) {}
 
-  void operator()(std::vector<double>& values, std::array<bool, 3> const& is_odd) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) along(axis, is_odd[axis], values);
+  /// Wave number along x, along z, along y.
+  std::vector<double> operator()(double DemagnetizingTensor::*component,
+                                 std::array<bool, 3> const& is_odd) const {
+    along(
+        0, is_odd[0], own_lines_,
+        [&](std::int64_t line, std::int64_t x) {
+          return tensors_[static_cast<std::size_t>(line * octant_[0] + x)].*component;
+        },
+        [&](std::int64_t line, std::int64_t x, double value) {
+          along_x_.of_own_lines(x)[line] = value;
+        });
+    along_x_.lines_to_waves();
+    std::vector<double> values;
+    for (std::int64_t x = 0; x < along_x_.own_waves(); ++x)
+      for (std::size_t part = 0; part < lines_.size(); ++part) {
+        double const* const of_part = along_x_.of_own_wave(x, part);
+        values.insert(values.end(), of_part, of_part + lines_[part]);
+      }
+    for (std::size_t const axis : {1UL, 2UL}) {
+      std::int64_t const count = octant_[axis], step = axis == 1 ? 1 : octant_[1];
+      auto const number = [&](std::int64_t line, std::int64_t i) -> double& {
+        return values[static_cast<std::size_t>((line / step * count + i) * step + line % step)];
+      };
+      along(axis, is_odd[axis], static_cast<std::int64_t>(values.size()) / count, number,
+            [&](std::int64_t line, std::int64_t i, double value) { number(line, i) = value; });
+    }
     if (is_odd[0] || is_odd[1] || is_odd[2])
       for (double& value : values) value = -value;  // i times i
+    return values;
   }
 
  private:
-  void along(std::size_t axis, bool is_odd, std::vector<double>& values) const {
+  static std::vector<std::int64_t> shares(std::int64_t total, Parts const& parts) {
+    std::vector<std::int64_t> of_parts;
+    for (std::size_t part = 0; part < parts.count(); ++part)
+      of_parts.push_back(parts.share(total, part));
+    return of_parts;
+  }
+
+  /// number(line, i), and what it becomes: result(line, i, value).
+  template <class Number, class Result>
+  void along(std::size_t axis, bool is_odd, std::int64_t lines, Number const& number,
+             Result const& result) const {
     int const length = period_[axis], count = octant_[axis];
     RowTransforms<double> const transforms(length, 1);
-    std::ptrdiff_t const step = axis == 0 ? 1 : axis == 1 ? octant_[0] : octant_[0] * octant_[1];
-    auto const lines = static_cast<std::int64_t>(values.size()) / count;
     Workers<double> const workers(
         "cayspin::DemagnetizingField: lines", lines,
         static_cast<std::size_t>(length) + 2 * static_cast<std::size_t>(count) + 8);
     workers.run(lines, [&](std::int64_t line, double* line_values) {
       auto* const waves = reinterpret_cast<std::complex<double>*>(line_values);
       double* const whole = line_values + (2 * count + 7) / 8 * 8;
-      double* const here = values.data() + line / step * step * count + line % step;
       for (int i = 0; i < count; ++i) {
-        double const value = here[i * step];
+        double const value = number(line, i);
         whole[i] = value;
         if (i > 0) whole[length - i] = is_odd ? -value : value;
       }
       // Half a period away there are two nearest images, whose odd parts cancel: into the imaginary
       // part goes neither that number nor the first.
       transforms.forward(whole, waves);
-      for (int i = 0; i < count; ++i) here[i * step] = is_odd ? waves[i].imag() : waves[i].real();
+      for (int i = 0; i < count; ++i) result(line, i, is_odd ? waves[i].imag() : waves[i].real());
     });
   }
 
   std::array<int, 3> octant_, period_;
+  std::vector<std::int64_t> lines_;  // of each part
+  std::int64_t own_lines_;
+  std::vector<DemagnetizingTensor> tensors_;
+  SpectrumOfParts<double> along_x_;
 };
 
-/// store(component, i, value) for all wave numbers of the octant, x first, and the components xx, yy,
-/// zz, xy, xz, yz: the transforms of the interactions, divided by the number of cells in a period.
+/// store(component, x, yz, value) for this part's wave numbers x along x, those of the octant along y
+/// and z, and the components xx, yy, zz, xy, xz, yz: the transforms of the interactions, divided by
+/// the number of cells in a period.
 template <class Store>
-void transform_interactions(InteractionsOfCells const& interactions, Store const& store) {
+void transform_interactions(InteractionsOfCells const& interactions, Parts const& parts,
+                            Store const& store) {
   using N = DemagnetizingTensor;
   struct Component {
     double N::*of;
     std::array<bool, 3> is_odd;
   };
-  auto const tensors = interactions.all();
-  TransformOfOctant const transform(interactions);
+  SpectrumOfInteractions const spectrum(interactions, parts);
   auto const& period = interactions.period();
   double const scale = 1.0 / (double(period[0]) * period[1] * period[2]);
+  auto const plane = static_cast<std::size_t>(interactions.lines());
   std::size_t c = 0;
   for (auto const& component : {Component{&N::xx, {}},
                                 {&N::yy, {}},
@@ -75,10 +121,9 @@ void transform_interactions(InteractionsOfCells const& interactions, Store const
                                 {&N::xy, {true, true, false}},
                                 {&N::xz, {true, false, true}},
                                 {&N::yz, {false, true, true}}}) {
-    std::vector<double> values(tensors.size());
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = tensors[i].*component.of;
-    transform(values, component.is_odd);
-    for (std::size_t i = 0; i < values.size(); ++i) store(c, i, scale * values[i]);
+    auto const values = spectrum(component.of, component.is_odd);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      store(c, i / plane, i % plane, scale * values[i]);
     ++c;
   }
 }

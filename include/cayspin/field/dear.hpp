@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/field/field_of_sites.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -136,7 +137,7 @@ class Dear {
 
   // For Multirate.
 
-  /// Writes the term's field into `output`.
+  /// Writes the term's field into `output`, ghosts included.
   template <class Exec>
   void evaluate(Exec const& exec, Spins const& spins, double t, Spins const& output) const {
     auto prepared = detail::prepare_term(term_, exec, spins, t);
@@ -145,6 +146,7 @@ class Dear {
                                 detail::FieldOfSites<decltype(prepared), Real>{
                                     std::move(prepared), spins.array(), output.output(false)},
                                 spins.layout().own);
+    detail::update_ghosts(exec, output.lattice(), output);
     ++state_->evaluations;
   }
 
@@ -190,8 +192,7 @@ class Dear {
       combine.values[i] = state.values[i].array();
       combine.weights[i] = static_cast<Real>(weights[i]);
     }
-    detail::for_each_site<Real>(exec, "cayspin::Dear::interpolate", state.field.layout(), combine,
-                                state.field.layout().own);
+    detail::for_each_site<Real>(exec, "cayspin::Dear::interpolate", state.field.layout(), combine);
   }
 
   Term term_;

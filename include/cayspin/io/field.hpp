@@ -178,6 +178,7 @@ struct Demagnetization {
   double strength = 1;
   std::array<int, 3> periodic_images{};  ///< beside the nearest one, on each side
   std::optional<bool> dear;              ///< by default where the method can
+  std::filesystem::path kept_in;         ///< a file for tensors that take long to compute, or none
 };
 
 /// Only terms that stand in the scene have a value.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/mpi/detail/exchange_with_all.hpp>
 #include <cayspin/mpi/detail/ghost_messages.hpp>
 #include <cayspin/mpi/division.hpp>
 #include <cayspin/part.hpp>
@@ -58,6 +59,8 @@ class Domain final : public Part {
   Division const& division() const { return division_; }
   Depth const& depth() const { return depth_; }
   int rank() const { return rank_; }
+  std::size_t parts() const override { return static_cast<std::size_t>(size_of(comm_)); }
+  std::size_t index() const override { return static_cast<std::size_t>(rank_); }
   MPI_Comm comm() const { return comm_; }
 
   void sum(std::span<std::int64_t> words) const override { combine(words, MPI_SUM); }
@@ -76,6 +79,11 @@ class Domain final : public Part {
     for_each_axis([&](std::size_t axis, detail::GhostMessages& messages) {
       messages.exchange_packed(comm_, fields, faces(axis), neighbor_[axis]);
     });
+  }
+  void exchange(std::span<std::span<std::byte const> const> sent,
+                std::span<std::span<std::byte> const> received) const override {
+    Kokkos::Profiling::ScopedRegion const region("cayspin::mpi::exchange");
+    detail::exchange_with_all(comm_, sent, received);
   }
 
  private:

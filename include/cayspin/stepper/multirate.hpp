@@ -55,11 +55,12 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   static constexpr int order = std::min(Order, Stepper::order);
   static constexpr std::size_t past_fields = Order;
   static constexpr int work_fields = Order + 2 + Stepper::work_fields;
+  static constexpr int ghosts = detail::ghosts_of<Stepper>;
 
   /// `dear`: the Dear in the field of the generator.
   /// Throws std::invalid_argument when the number of substeps is below 1.
   Multirate(Spins const& like, Stepper stepper, DearTerm dear, MultirateOptions const& options = {})
-      : Base("Multirate", like.lattice()),
+      : Base("Multirate", like.lattice(), ghosts),
         stepper_(std::move(stepper)),
         dear_(std::move(dear)),
         substeps_(options.substeps),

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/execution.hpp>
+#include <cayspin/lattice.hpp>
+#include <cayspin/part.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cayspin::inline v0_1::detail {
+
+/// The parts of a lattice, of which one that is whole is the only one.
+class Parts {
+ public:
+  explicit Parts(Lattice const& lattice) : part_(lattice.part) {}
+
+  std::size_t count() const { return part_ == nullptr ? 1 : part_->parts(); }
+  std::size_t index() const { return part_ == nullptr ? 0 : part_->index(); }
+
+  /// Where the share of part number `of` begins, when all have equal ones.
+  std::int64_t begin_of_share(std::int64_t total, std::size_t of) const {
+    return total * static_cast<std::int64_t>(of) / static_cast<std::int64_t>(count());
+  }
+  std::int64_t share(std::int64_t total, std::size_t of) const {
+    return begin_of_share(total, of + 1) - begin_of_share(total, of);
+  }
+
+  /// Blocks of numbers that begin at these places, one for each part, and their ends.
+  template <class Number>
+  struct Blocks {
+    Number* data;
+    std::vector<std::size_t> begins;
+  };
+  template <class Number>
+  void exchange(Blocks<Number> const& sent, Blocks<Number> const& received) const {
+    std::vector<std::span<std::byte const>> to;
+    std::vector<std::span<std::byte>> from;
+    for (std::size_t part = 0; part < count(); ++part) {
+      to.push_back(bytes_of(sent, part));
+      from.push_back(bytes_of(received, part));
+    }
+    part_->exchange(to, from);
+  }
+
+ private:
+  template <class Number>
+  static std::span<std::byte> bytes_of(Blocks<Number> const& blocks, std::size_t part) {
+    std::size_t const begin = blocks.begins[part], end = blocks.begins[part + 1];
+    return std::as_writable_bytes(std::span(blocks.data + begin, end - begin));
+  }
+
+  Part const* part_;
+};
+
+/// A part's rows, of which those along x are whole, in planes: their place among all.
+struct RowsOfPart {
+  std::int64_t y, z, ny, nz;
+
+  std::int64_t count() const { return ny * nz; }
+};
+
+/// Without ghosts, of this part.
+inline RowsOfPart own_rows(Lattice const& lattice) {
+  RowsOfPart rows{0, 0, lattice.own(1), lattice.own(2)};
+  if (lattice.part == nullptr) return rows;
+  auto const begin = lattice.part->begin();
+  rows.y = begin[1] + lattice.ghosts[1].before;
+  rows.z = begin[2] + lattice.ghosts[2].before;
+  return rows;
+}
+
+/// Those of each part. All parts call it.
+inline std::vector<RowsOfPart> rows_of_parts(Lattice const& lattice) {
+  Parts const parts(lattice);
+  std::vector<RowsOfPart> own(parts.count(), own_rows(lattice)), all = own;
+  std::vector<std::size_t> one_each(parts.count() + 1);
+  std::iota(one_each.begin(), one_each.end(), std::size_t{0});
+  if (parts.count() > 1) parts.exchange<RowsOfPart>({own.data(), one_each}, {all.data(), one_each});
+  return all;
+}
+
+/// Lines of wave numbers on the parts of a lattice. A part has all wave numbers of its own lines,
+/// and a share of the wave numbers of all parts' lines. On one part these are the same memory.
+template <class Number>
+class SpectrumOfParts {
+ public:
+  /// `lines`: of each part.
+  SpectrumOfParts(std::string const& label, Parts const& parts, std::int64_t waves,
+                  std::vector<std::int64_t> const& lines)
+      : parts_(parts),
+        own_lines_(std::size_t(lines[parts.index()])),
+        own_waves_(std::size_t(parts.share(waves, parts.index()))) {
+    for (std::size_t part = 0; part < parts.count(); ++part) {
+      lines_.push_back(std::size_t(lines[part]));
+      for_lines_.push_back(std::size_t(parts.begin_of_share(waves, part)) * own_lines_);
+      for_waves_.push_back(part == 0 ? 0 : for_waves_.back() + own_waves_ * lines_[part - 1]);
+    }
+    for_lines_.push_back(std::size_t(waves) * own_lines_);
+    for_waves_.push_back(for_waves_.back() + own_waves_ * lines_.back());
+    of_lines_ = Memory(label, for_lines_.back());
+    of_waves_ = parts.count() == 1 ? of_lines_ : Memory(label, for_waves_.back());
+  }
+
+  static std::int64_t numbers(Parts const& parts, std::int64_t waves, std::int64_t own_lines,
+                              std::int64_t all_lines) {
+    if (parts.count() == 1) return waves * all_lines;
+    return waves * own_lines + parts.share(waves, parts.index()) * all_lines;
+  }
+
+  /// The wave numbers of this part's share.
+  std::int64_t own_waves() const { return static_cast<std::int64_t>(own_waves_); }
+
+  /// One wave number of all, of the part's own lines.
+  Number* of_own_lines(std::int64_t wave) const {
+    return of_lines_.data() + static_cast<std::size_t>(wave) * own_lines_;
+  }
+  /// One wave number of the share, counted from its first, of the lines of `part`.
+  Number* of_own_wave(std::int64_t wave, std::size_t part) const {
+    return of_waves_.data() + for_waves_[part] + static_cast<std::size_t>(wave) * lines_[part];
+  }
+
+  /// After all of_own_lines are written.
+  void lines_to_waves() const {
+    if (parts_.count() > 1) parts_.exchange<Number>(of_lines(), of_waves());
+  }
+  /// After all of_own_wave are written.
+  void waves_to_lines() const {
+    if (parts_.count() > 1) parts_.exchange<Number>(of_waves(), of_lines());
+  }
+
+ private:
+  using Memory = Kokkos::View<Number*, Kokkos::HostSpace>;
+
+  Parts::Blocks<Number> of_lines() const { return {of_lines_.data(), for_lines_}; }
+  Parts::Blocks<Number> of_waves() const { return {of_waves_.data(), for_waves_}; }
+
+  Parts parts_;
+  std::size_t own_lines_, own_waves_;
+  std::vector<std::size_t> lines_;  // of each part
+  std::vector<std::size_t> for_lines_,
+      for_waves_;               // where what goes to, or is of, each part begins
+  Memory of_lines_, of_waves_;  // wave number, line; part, wave number, line
+};
+
+}  // namespace cayspin::inline v0_1::detail
