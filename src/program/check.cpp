@@ -31,7 +31,8 @@ double bytes_per_site(Plan const& plan) {
 std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& scene,
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
-  int const ghosts = has_dear_field(scene) ? 0 : plan.variant.ghosts;
+  auto const& slab = scene.field.slab_demag;
+  int const ghosts = slab && slab->dear && slab->average_layer ? 0 : plan.variant.ghosts;
   if (ghosts == 0)
     throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
                                  *options.ranks));

@@ -52,11 +52,11 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
   std::string const accepted = "runs on one rank alone; accepted: one rank, ";
   if (plan.variant.ghosts == 0)
     throw io::scene_error(scene, "integrator.method", accepted + "or another method");
-  if (scene.field.demag) throw io::scene_error(scene, "field.demag", accepted + "or no such key");
-  if (has_dear_field(scene))
-    throw io::scene_error(scene, "field.slab_demag.dear", accepted + "or no such key");
   auto const& slab = scene.field.slab_demag;
-  if (slab && slab->average_layer && (slab->on_host || slab->normal[0] != 0 || !on_host))
+  if (!slab || !slab->average_layer) return;
+  if (slab->dear)
+    throw io::scene_error(scene, "field.slab_demag.dear", accepted + "or no such key");
+  if (slab->on_host || slab->normal[0] != 0 || !on_host)
     throw io::scene_error(scene, "field.slab_demag.average",
                           accepted + "or a normal along y or z on a host without where = \"host\"");
 }

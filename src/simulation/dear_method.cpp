@@ -33,6 +33,7 @@ class MethodOfScene {
  public:
   using spins_type = typename Simulation::Spins;
   static constexpr int order = 4, work_fields = 0;  // the order: not above Multirate's
+  static constexpr int ghosts = 1;                  // the method has asked for its own
 
   MethodOfScene(Simulation& simulation, std::unique_ptr<OpenMethod> method)
       : simulation_(simulation), method_(std::move(method)) {}

@@ -63,6 +63,15 @@ TEST_F(OnRanks, AverageOverLayers) {
   }
 }
 
+TEST_F(OnRanks, HaveASlabOnceAStep) {
+  auto const scene = write("scene.toml", film("[7, 9, 13]", "method = \"rkmk4\"\nsubsteps = 2"));
+  Arguments const slab{"--set", "field.slab_demag={normal=[1,0,0],where='host',dear=true}"};
+  ASSERT_EQ(start(run_of(scene, "one.h5", slab)).status, 0);
+  auto const outcome = start_on(3, run_of(scene, "other.h5", slab));
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  expect_same("one.h5", "other.h5");
+}
+
 TEST_F(OnRanks, RunEveryShippedScene) {
   for (auto const& entry : fs::directory_iterator(CAYSPIN_SCENES)) {
     if (entry.path().extension() != ".toml") continue;
