@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cmake -DKOKKOS_SOURCE=DIR -P mend_kokkos_cuda13.cmake
 # Kokkos 4.7.0 does not build with CUDA 13, which changed two signatures and dropped sm_70, the
-# default of nvcc_wrapper. Mends a source tree in place; a mended one is left as it is, and so is a
-# newer Kokkos. Older CUDA compiles what it compiled before.
+# default of nvcc_wrapper. And its Views have members without an address, which nvcc 12.9 and 13 lay
+# out in one way for the host and in another for the device, so that kernels find nothing in a View.
+# Mends a source tree in place; a mended one is left as it is, and so is a newer Kokkos.
 cmake_policy(VERSION 3.25)
 
 # replace_once(<file> <old> <new>) stops unless the file holds either old or new, exactly once.
@@ -55,5 +56,7 @@ replace_once(
     return cudaMemPrefetchAsync(devPtr, count, dstDevice, m_stream);
 #endif
 ")
+replace_once("${KOKKOS_SOURCE}/tpls/mdspan/include/experimental/__p0009_bits/config.hpp"
+             "(!defined(__NVCC__) || MDSPAN_HAS_CXX_20) && " "!defined(__NVCC__) && ")
 replace_once("${KOKKOS_SOURCE}/bin/nvcc_wrapper" "\ndefault_arch=\"sm_70\"\n"
              "\ndefault_arch=\"sm_80\"\n")
