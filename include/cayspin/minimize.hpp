@@ -68,6 +68,7 @@ class Minimizer {
     for (;;) {
       auto const end = descend(exec, field, spins, options);
       if (end && *end != MinimizeEnd::stagnated) return ended(*end);
+      if (options.keep_saddles) return ended(end.value_or(MinimizeEnd::converged));
       if (auto const at_rest = leave_saddle(exec, field, spins, options))
         return ended(end ? *end : *at_rest);
     }

@@ -110,13 +110,15 @@ class Simulation:
         recorder.finish(True)
 
     def relax(self, torque: float = 1e-6, evaluations: int = 100000,
-              applied: Sequence[float] | None = None) -> Minimum:
+              applied: Sequence[float] | None = None,
+              keep_saddles: bool = False) -> Minimum:
         """Moves the spins to a state of least energy, without steps in time, as `cayspin relax`
         does: until max |m x H| is below `torque`, or for so many evaluations of the field.
 
         `applied`, three numbers, takes the place of the scene's field.applied. A hysteresis is
         [sim.relax(applied=h) and sim.magnetization() for h in fields]: each search begins at the
         state before. Otherwise H is that at the time now. Time and steps stay as they are.
+        With `keep_saddles` a state without torque is enough, a saddle too.
 
         The scene needs no integrator. Raises NumbersFailed for a field that is not finite,
         SceneError for rigid bodies and temperatures. Ctrl-C leaves the spins on their way.
@@ -128,7 +130,8 @@ class Simulation:
                                             "three numbers")
             applied = tuple(float(component) for component in applied)
         found = self._run.relax(arguments.real(torque, "relax: torque"),
-                                arguments.whole(evaluations, "relax: evaluations"), applied)
+                                arguments.whole(evaluations, "relax: evaluations"), applied,
+                                bool(keep_saddles))
         return Minimum(*(getattr(found, field.name) for field in dataclasses.fields(Minimum)))
 
     def save(self, checkpoint: str | os.PathLike) -> None:

@@ -76,11 +76,11 @@ bool advance(SceneRun& run, std::int64_t count, std::int64_t period, bool until_
 }
 
 Minimum relax(SceneRun& run, double torque, std::int64_t evaluations,
-              std::optional<std::array<double, 3>> const& applied) {
+              std::optional<std::array<double, 3>> const& applied, bool keep_saddles) {
   Minimum found;
   {
     nb::gil_scoped_release const released;
-    found = run.relax({torque, evaluations, applied, interrupted});
+    found = run.relax({torque, evaluations, applied, keep_saddles, interrupted});
   }
   if (found.end == MinimizeEnd::interrupted) throw nb::python_error();
   return found;
@@ -201,7 +201,7 @@ void define_run(nb::module_& module) {
              as_error([&] { run.save(checkpoint); });
            })
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
-      .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none())
+      .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
       .def("step_at", &SceneRun::step_at)
       .def("spins", [](SceneRun& run) { return array_of(without_gil<&SceneRun::spins>(run)); })
       .def("set_spins",

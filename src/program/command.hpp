@@ -47,7 +47,7 @@ struct RelaxOptions : SceneOptions {
   std::optional<int> threads, device;
   double torque = 1e-6;
   std::int64_t evaluations = 100000;  // at each field
-  bool overwrite = false, quiet = false;
+  bool keep_saddles = false, overwrite = false, quiet = false;
 };
 
 struct WatchOptions {

@@ -78,6 +78,8 @@ CLI::App* add_relax(CLI::App& app, RelaxOptions& options) {
       ->add_option("--evaluations", options.evaluations,
                    "Most evaluations of a field (default: 100000)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  command->add_flag("--keep-saddles", options.keep_saddles,
+                    "End at a state without torque, also where the energy falls from there");
   add_quiet_flag(*command, options);
   return command;
 }

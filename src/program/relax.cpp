@@ -75,6 +75,7 @@ class Relaxation {
         minimizer_.minimize(exec_, scene_, field, spins_,
                             {.torque = options_.torque / scene_.units.field,
                              .evaluations = options_.evaluations,
+                             .keep_saddles = options_.keep_saddles,
                              .observer = [](Minimum const&) {
                                return interrupt_requested() ? Next::stop : Next::proceed;
                              }});

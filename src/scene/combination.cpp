@@ -154,11 +154,6 @@ void check_pass(Scene const& scene) {
   if (scene.lattice.occupied.there() && integrator.generator == Generator::tangent)
     refuse(scene, "integrator.generator", "\"tangent\" needs a spin on every site",
            "\"default\", \"orthogonal\"");
-  if (field.slab_demag && field.slab_demag->dear)
-    refuse(scene, "field.slab_demag.dear", "does not go with terms such as couplings",
-           "no such key");
-  if (field.demag && field.demag->dear.value_or(false))
-    refuse(scene, "field.demag.dear", "does not go with terms such as couplings", "no such key");
 }
 
 }  // namespace

@@ -247,6 +247,7 @@ Minimum SceneRun::relax(RelaxSettings const& settings) {
       field, {.torque = settings.torque / scene_.units.field,
               .evaluations = settings.evaluations,
               .time = reduced_time(),
+              .keep_saddles = settings.keep_saddles,
               .observer = [&](Minimum const&) { return poll() ? Next::stop : Next::proceed; }});
   evaluations_ += found.evaluations;
   found.torque *= scene_.units.field;

@@ -48,6 +48,7 @@ struct RelaxSettings {
   double torque = 1e-6;                    // bound on max |m x H|, in the units of the scene
   std::int64_t evaluations = 100000;       // of the field, at most
   std::optional<io::Triple> applied = {};  // in place of field.applied
+  bool keep_saddles = false;               // a state without torque is enough
   std::function<bool()> interrupted = {};  // asked about twenty times a second
 };
 

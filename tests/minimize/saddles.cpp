@@ -36,6 +36,16 @@ TYPED_TEST(Saddles, HardAxesOfAFilm) {
   }
 }
 
+TYPED_TEST(Saddles, AreKeptOnDemand) {
+  auto const lattice = Lattice::square(19, 12);
+  auto spins = spins_of<typename TestFixture::Spins>(lattice, uniform(lattice.sites(), {0, 1, 0}));
+  auto const found = minimize(this->exec, film(lattice, 30), spins, {.keep_saddles = true});
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  EXPECT_EQ(found.saddles, 0);
+  EXPECT_NEAR(found.energy.value, 0, 1e-6);
+  EXPECT_NEAR(at(numbers_of(spins), 0).y, 1, 1e-6);
+}
+
 TYPED_TEST(Saddles, TheTopOfTheEnergy) {
   auto spins = spins_of<typename TestFixture::Spins>(Lattice::chain(1), {0, 0, -1});
   auto const found = minimize(this->exec, Zeeman{{0, 0, 2}}, spins);

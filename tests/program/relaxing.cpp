@@ -107,6 +107,17 @@ TEST_F(Relax, SaysWhenItDoesNotConverge) {
   EXPECT_GT(info.cost.relaxed->torque, 1e-6);
 }
 
+// Along the hard axis a film has no torque either.
+TEST_F(Relax, KeepsASaddleOnDemand) {
+  for (bool const keeps : {false, true}) {
+    Arguments options{"--overwrite", "--set", "initial={ uniform = [0, 1, 0] }"};
+    if (keeps) options.push_back("--keep-saddles");
+    EXPECT_EQ(relax(scene, options).status, 0);
+    auto const info = io::read_info(in_folder("out.h5"));
+    EXPECT_NEAR(info.frame_scalars[0].energy, keeps ? 0 : -0.05 * 120, 1e-6);
+  }
+}
+
 // What an earlier run left beside the file is not taken for the file's own.
 TEST_F(Relax, LeavesNoCheckpointOfAnother) {
   write("out.checkpoint.h5", "of another run");

@@ -37,6 +37,13 @@ class Relaxing(PackageTest):
         self.addCleanup(file.close)
         return file
 
+    def test_saddles(self):
+        sim = cayspin.Simulation(scene(initial={"uniform": [0, 1, 0]}))
+        self.assertEqual(sim.relax(keep_saddles=True).saddles, 0)
+        self.assertAlmostEqual(sim.energy(), 0, delta=1e-6)
+        self.assertEqual(sim.relax().saddles, 1)
+        self.assertAlmostEqual(sim.energy(), -0.05 * 120, delta=1e-6)
+
     def test_the_state_of_the_program(self):
         for precision in ("double", "single"):
             of = scene()

@@ -77,6 +77,23 @@ TEST(DearFields, OfScenesHaveOrderThreeOrFour) {
   }
 }
 
+// With terms that are evaluated for all spins at once, too.
+TEST(DearFields, BesideCurrentsAndSitesOfTheirOwn) {
+  std::vector<std::string> const others{
+      "torque={ zhang_li = { velocity = [0.2, 0, 0], nonadiabaticity = 0.1 } }",
+      "lattice.occupied='i != 3 || j > 1'", "lattice.frozen='i == 0'"};
+  auto dear = others;
+  dear.push_back("field.slab_demag.dear=true");
+  auto const exact = end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", others), 200);
+  for (auto const& [method, limit] : {std::pair{"rkmk4", 2e-6}, {"rkmk5", 5e-8}}) {
+    auto const scene =
+        film("method='" + std::string(method) + "'\nsubsteps=2\ndt=0.025\nsteps=40", dear);
+    double const error = largest_distance(end_of(scene, 40), exact);
+    std::printf("    %-14s error %.1e\n", method, error);
+    EXPECT_LT(error, limit) << method;
+  }
+}
+
 /// A field of the program that counts how often it is asked for.
 io::Scene with_own_field(std::string const& integrator, std::shared_ptr<int> const& calls) {
   auto scene = film(integrator, {"field={exchange=0.5}"});

@@ -13,7 +13,8 @@ namespace cayspin::inline v0_1 {
 
 /// Why a minimisation ended.
 enum class MinimizeEnd {
-  converged,         ///< max |m x H| is below the bound, and no direction was found to go down
+  converged,         ///< max |m x H| is below the bound, and no direction was found to go down;
+                     ///< with keep_saddles none was looked for
   stagnated,         ///< round-off keeps max |m x H| above the bound
   evaluation_limit,  ///< the largest number of evaluations was reached
   interrupted        ///< the observer said Next::stop
@@ -50,6 +51,7 @@ struct MinimizeOptions {
   std::int64_t evaluations = 10000;  ///< at most so many, and the few of one more iteration
   double time = 0;                   ///< at which H is taken
   bool preconditioned = true;        ///< by the exchange that the field is found to have
+  bool keep_saddles = false;         ///< a state without torque is enough, a saddle too
   std::function<Next(Minimum const&)> observer = {};  ///< after each iteration
 };
 
