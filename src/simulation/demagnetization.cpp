@@ -55,7 +55,7 @@ FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, d
   if constexpr (cayspin::detail::DeviceTransforms<Exec>::exist)
     return [field = DemagnetizingField<typename Spins::value_type, Memory>(
                 lattice, options_of(demag, mu0, lattice))](Exec const& exec, Spins const& spins,
-                                                  Spins const& result) {
+                                                           Spins const& result) {
       field(exec, spins, result, 0);
     };
   else
@@ -91,10 +91,10 @@ void require_demagnetization(io::Scene const& scene) {
 }
 #endif
 
-#define CAYSPIN_DEMAGNETIZATION_IN_PLACE(Space, Real)                       \
-  template FieldInPlace<SpinField<Real, Space::memory_space>>               \
-  demagnetization_in_place<SpinField<Real, Space::memory_space>>(           \
-      io::Demagnetization const&, double, Lattice const&);
+#define CAYSPIN_DEMAGNETIZATION_IN_PLACE(Space, Real)                                        \
+  template FieldInPlace<SpinField<Real, Space::memory_space>>                                \
+  demagnetization_in_place<SpinField<Real, Space::memory_space>>(io::Demagnetization const&, \
+                                                                 double, Lattice const&);
 CAYSPIN_ON_DEVICE(CAYSPIN_DEMAGNETIZATION_IN_PLACE, double)
 CAYSPIN_ON_DEVICE(CAYSPIN_DEMAGNETIZATION_IN_PLACE, float)
 

@@ -17,9 +17,8 @@ using FieldOnHost = std::function<void(SpinField<Real, Kokkos::HostSpace> const&
 
 /// The same where the spins are.
 template <class Spins>
-using FieldInPlace =
-    std::function<void(typename Spins::memory_space::execution_space const& exec,
-                       Spins const& spins, Spins const& field)>;
+using FieldInPlace = std::function<void(typename Spins::memory_space::execution_space const& exec,
+                                        Spins const& spins, Spins const& field)>;
 
 /// `mu0`: multiplies the strength.
 template <class Real>

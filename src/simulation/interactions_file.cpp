@@ -3,6 +3,8 @@
 
 #include "trajectory/fletcher32.hpp"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -12,8 +14,6 @@
 #include <system_error>
 #include <type_traits>
 #include <utility>
-
-#include <unistd.h>
 
 namespace cayspin::simulation {
 

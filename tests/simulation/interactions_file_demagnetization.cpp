@@ -3,13 +3,12 @@
 #include "simulation/interactions_file.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
-
-#include <unistd.h>
 
 namespace cayspin::simulation {
 namespace {
@@ -29,12 +28,13 @@ class InteractionsFiles : public ::testing::Test {
   void TearDown() override { fs::remove_all(folder); }
 
   Tensors of(std::string const& what, double least_seconds = 0) {
-    return InteractionsFile(path, what).read_or(
-        [&] {
-          ++computations;
-          return computed;
-        },
-        least_seconds);
+    return InteractionsFile(path, what)
+        .read_or(
+            [&] {
+              ++computations;
+              return computed;
+            },
+            least_seconds);
   }
   std::string text() const {
     std::ifstream file(path, std::ios::binary);

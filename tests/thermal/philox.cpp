@@ -3,7 +3,6 @@
 #include <cayspin/detail/philox.hpp>
 
 #include <Kokkos_Core.hpp>
-
 #include <gtest/gtest.h>
 
 #include <array>

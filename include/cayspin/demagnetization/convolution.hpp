@@ -221,10 +221,10 @@ class Convolution {
   }
 
   void find_kernel(InteractionsOfCells const& interactions) {
-    transform_interactions(
-        interactions, parts_, [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
-          kernel_((x * 6 + c) * octant_plane() + yz) = static_cast<Real>(value);
-        });
+    transform_interactions(interactions, parts_,
+                           [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
+                             kernel_((x * 6 + c) * octant_plane() + yz) = static_cast<Real>(value);
+                           });
   }
 
   Parts parts_;

@@ -24,9 +24,9 @@ namespace cayspin::inline v0_1 {
 template <class Real, class MemorySpace = Kokkos::HostSpace>
 class DemagnetizingField {
   static constexpr bool on_host = std::is_same_v<MemorySpace, Kokkos::HostSpace>;
-  using Convolution = std::conditional_t<
-      on_host, detail::Convolution<Real>,
-      detail::DeviceConvolution<Real, typename MemorySpace::execution_space>>;
+  using Convolution =
+      std::conditional_t<on_host, detail::Convolution<Real>,
+                         detail::DeviceConvolution<Real, typename MemorySpace::execution_space>>;
 
  public:
   static constexpr int degree = 2;

@@ -39,9 +39,8 @@ struct PadRows {
 
   KOKKOS_FUNCTION void operator()(std::int64_t i) const {
     std::int64_t const x = i % at.period[0], row = i / at.period[0];
-    numbers[i] = x < at.cells[0]
-                     ? spins.data[row / rows * spins.stride + row % rows * pitch + x]
-                     : Real(0);
+    numbers[i] =
+        x < at.cells[0] ? spins.data[row / rows * spins.stride + row % rows * pitch + x] : Real(0);
   }
 };
 
@@ -73,8 +72,8 @@ struct PadPlanes {
     std::int64_t const y = i % at.period[1], rest = i / at.period[1];
     std::int64_t const line = rest % all_lines, z = rest / all_lines;
     bool const is_there = y < at.cells[1] && z < at.cells[2] && line < lines;
-    planes[i] = is_there ? spectrum[(line * at.cells[2] + z) * at.cells[1] + y]
-                         : Kokkos::complex<Real>();
+    planes[i] =
+        is_there ? spectrum[(line * at.cells[2] + z) * at.cells[1] + y] : Kokkos::complex<Real>();
   }
 };
 
@@ -152,11 +151,10 @@ class DeviceConvolution {
           "cayspin::DemagnetizingField: on a device a lattice must be whole");
     auto const kernel = Kokkos::create_mirror_view(kernel_);
     auto const plane = std::size_t(at_.octant_plane());
-    transform_interactions(
-        interactions, Parts(lattice),
-        [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
-          kernel((x * 6 + c) * plane + yz) = static_cast<Real>(value);
-        });
+    transform_interactions(interactions, Parts(lattice),
+                           [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
+                             kernel((x * 6 + c) * plane + yz) = static_cast<Real>(value);
+                           });
     Kokkos::deep_copy(kernel_, kernel);
   }
 

@@ -99,9 +99,9 @@ class SpectrumOfInteractions {
   SpectrumOfParts<double> along_x_;
 };
 
-/// store(component, x, yz, value) for this part's wave numbers x along x, those of the octant along y
-/// and z, and the components xx, yy, zz, xy, xz, yz: the transforms of the interactions, divided by
-/// the number of cells in a period.
+/// store(component, x, yz, value) for this part's wave numbers x along x, those of the octant along
+/// y and z, and the components xx, yy, zz, xy, xz, yz: the transforms of the interactions, divided
+/// by the number of cells in a period.
 template <class Store>
 void transform_interactions(InteractionsOfCells const& interactions, Parts const& parts,
                             Store const& store) {
