@@ -30,8 +30,8 @@ struct Before {
 template <class Tableau, class Real, std::size_t... Stages>
 void compare_stages(std::index_sequence<Stages...>) {
   using Update = update::Lie<Cayley>;
-  compare<Before<detail::DeviceArrays<detail::StageDataFlow<Tableau, Update, int(Stages)>,
-                                      Real>>...>();
+  compare<
+      Before<detail::DeviceArrays<detail::StageDataFlow<Tableau, Update, int(Stages)>, Real>>...>();
 }
 
 template <class Real>
