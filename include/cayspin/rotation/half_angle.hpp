@@ -68,7 +68,8 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
 
   // Reduce by multiples of pi, given as a sum of three numbers. Their count is one too many or too
   // few where a / pi rounds to the other side of a half: r may pass pi / 2 by some |f| eps. The
-  // clamp acts only if that is not small. It keeps the result on the sphere.
+  // clamp acts only if that is not small. It keeps the result on the sphere. Products are exact,
+  // also where the hardware has no instruction for that.
   constexpr double pi = 3.14159265358979311600e+00, pi_low = 1.22464679914735317636e-16,
                    pi_lowest = -2.99476980971833966592e-33;
   constexpr float pi_f = 3.14159274101257324f, pi_low_f = -8.74227800037247e-08f,
@@ -76,9 +77,9 @@ KOKKOS_FORCEINLINE_FUNCTION HalfTurn<Value> half_turn(Value const& angle) {
   constexpr Scalar limit = Scalar(1.62);
   Value const turns = nearest<Value>(Value(a * Value(Scalar(1 / pi))));
   Value const minus = Value(Scalar(0)) - turns;
-  Value r = multiply_add(minus, Value(is_double ? Scalar(pi) : Scalar(pi_f)), a);
-  r = multiply_add(minus, Value(is_double ? Scalar(pi_low) : Scalar(pi_low_f)), r);
-  r = multiply_add(minus, Value(is_double ? Scalar(pi_lowest) : Scalar(pi_lowest_f)), r);
+  Value r = Kokkos::fma(minus, Value(is_double ? Scalar(pi) : Scalar(pi_f)), a);
+  r = Kokkos::fma(minus, Value(is_double ? Scalar(pi_low) : Scalar(pi_low_f)), r);
+  r = Kokkos::fma(minus, Value(is_double ? Scalar(pi_lowest) : Scalar(pi_lowest_f)), r);
   r = select<Value>(r < Value(limit), r, Value(limit));
   r = select<Value>(Value(-limit) < r, r, Value(-limit));
 
