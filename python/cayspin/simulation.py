@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import warnings
 from typing import Any, Callable, Sequence
 
 import numpy as np
@@ -47,7 +48,8 @@ class Simulation:
     KeyboardInterrupt, and it can go on from there. N calls of step() give the bits of one step(N),
     and those of `cayspin run`.
 
-    Raises SceneError, CayspinError, and NumbersFailed when the numbers of a run fail.
+    Raises SceneError, CayspinError, and NumbersFailed when the numbers of a run fail. The first step
+    warns of a dt that is too large, as `cayspin run` does; refuse_unstable makes that a SceneError.
     """
 
     def __init__(self, scene: Scene, precision: str = "double", space: str | None = None,
@@ -61,12 +63,14 @@ class Simulation:
             None if restart is None else arguments.file_name(restart, "restart"))
         self._scene = scene
         self._observers: list[tuple[int, Callable[[Simulation], Any]]] = []
+        self._dt_is_checked = False
 
     def step(self, n: int = 1) -> None:
         """Takes n steps of dt, or fewer when an observer returns True."""
         n = arguments.whole(n, "step")
         if not self._scene._scene.has_integrator:
             raise _cayspin.CayspinError("step: the scene has no integrator; accepted: relax()")
+        self._check_dt()
         if not self._observers:
             self._run.advance(n, _GUARD_PERIOD, False)
             return
@@ -89,6 +93,7 @@ class Simulation:
         if end < self.steps:
             raise _cayspin.CayspinError(f"run: until t = {end * self._scene.dt:g}, and the time is "
                                         f"{self.time:g}; accepted: a later time")
+        self._check_dt()
         if output is None:
             output = self._scene._scene.output
         if output is None or output is False:
@@ -138,6 +143,13 @@ class Simulation:
         """Stores all that Simulation(scene, restart=checkpoint) needs to go on with the same bits.
         A file of that name is replaced as a whole."""
         self._run.save(arguments.file_name(checkpoint, "save"))
+
+    def _check_dt(self):
+        if not self._dt_is_checked:
+            warning = self._run.warning()
+            self._dt_is_checked = True
+            if warning:
+                warnings.warn(warning, stacklevel=3)
 
     def _advance(self, end, guard_period, until_torque, recorder):
         run = self._run

@@ -189,6 +189,16 @@ void SceneRun::save(std::filesystem::path const& checkpoint) {
 
 bool SceneRun::remembers() const { return simulation::remembers(scene_, plan_); }
 
+std::optional<std::string> SceneRun::warning() const {
+  auto plan = plan_;
+  if (scene_.integrator.steps == 0) plan.times.steps = 1;  // no end
+  auto const reason = dt_warning(plan, scene_.units);
+  if (!reason) return std::nullopt;
+  auto const error = io::scene_error(scene_, "integrator.dt", *reason);
+  if (scene_.integrator.refuse_unstable) throw error;
+  return error.what();
+}
+
 std::int64_t SceneRun::step_at(double t) const {
   if (!std::isfinite(t)) throw UsageError(fmt::format("t = {}; accepted: a finite time >= 0", t));
   double const dt = plan_.times.dt * scene_.units.time;

@@ -84,6 +84,10 @@ class SceneRun {
   /// Does it need more than its spins to go on with the same bits?
   bool remembers() const;
 
+  /// What `cayspin run` warns of: a dt that is too large. Throws it as io::SceneError where the
+  /// scene refuses to be unstable.
+  std::optional<std::string> warning() const;
+
   /// The step at time t. Throws UsageError when t is no whole number of steps.
   std::int64_t step_at(double t) const;
 

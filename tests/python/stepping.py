@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 import unittest
+import warnings
 
 import cayspin
 import numpy as np
@@ -17,6 +18,19 @@ METHODS = {
     "compensated": {"compensated": True},
     "lagged": {"method": "euler", "isotropy": "finite_difference_backward"},
 }
+
+
+class Warnings(PackageTest):
+    def test_a_dt_that_is_too_large(self):
+        sim = cayspin.Simulation(scene(integrator={"dt": 1e3}))
+        with self.assertWarnsRegex(UserWarning, "integrator.dt: 1000 is above the stable "):
+            sim.step(2)
+        refused = cayspin.Simulation(scene(integrator={"dt": 1e3, "refuse_unstable": True}))
+        for _ in range(2):
+            self.assert_refused(cayspin.SceneError, "is above the stable", refused.step)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            cayspin.Simulation(scene()).step()
 
 
 class Bits(PackageTest):
