@@ -7,7 +7,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
 // Transforms of a demagnetising field by cuFFT: the same numbers in the same places as those of
 // fftw.hpp, in the memory of a device and in the order of an execution space instance.
@@ -54,21 +53,25 @@ class CufftPlan {
   CufftPlan(cufftType type, int length, int count, Places in, Places out) {
     // Any `embed` but none makes cuFFT heed the strides, and along one axis it is not looked at.
     int embed = length;
-    cufftHandle plan;
+    cufftHandle plan{};
     require_cufft(cufftPlanMany(&plan, 1, &length, &embed, in.stride, in.distance, &embed,
                                 out.stride, out.distance, type, count));
-    plan_ = std::shared_ptr<void>(nullptr, [plan](void*) { cufftDestroy(plan); });
-    handle_ = plan;
+    plan_.reset(new cufftHandle(plan));
   }
 
   cufftHandle on(Kokkos::Cuda const& exec) const {
-    require_cufft(cufftSetStream(handle_, exec.cuda_stream()));
-    return handle_;
+    require_cufft(cufftSetStream(*plan_, exec.cuda_stream()));
+    return *plan_;
   }
 
  private:
-  std::shared_ptr<void> plan_;
-  cufftHandle handle_{};
+  struct Destroy {
+    void operator()(cufftHandle const* plan) const {
+      cufftDestroy(*plan);
+      delete plan;
+    }
+  };
+  std::unique_ptr<cufftHandle const, Destroy> plan_;
 };
 
 /// Complex transforms in place, `count` of them, `distance` from one to the next. Unscaled.
