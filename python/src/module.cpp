@@ -45,8 +45,10 @@ io::Given given(std::optional<NumbersIn> const& spins, ArraysIn const& numbers) 
 SiteNumbersOut at_sites(io::Scene const& scene, std::string const& expression) {
   auto const& [nx, ny, nz] = scene.lattice.shape;
   try {
-    auto values = io::numbers_of_sites(scene, {expression, {}, {}}, "at_sites",
-                                       {{0, 0, 0}, scene.lattice.shape});
+    io::SiteNumbers numbers;
+    numbers.expression = expression;
+    auto values =
+        io::numbers_of_sites(scene, numbers, "at_sites", {{0, 0, 0}, scene.lattice.shape});
     return array_of(std::move(values), {nz, ny, nx});
   } catch (std::invalid_argument const& error) {
     throw UsageError(std::string("at_sites: ") + error.what());

@@ -90,7 +90,9 @@ TYPED_TEST(CInterface, LendsAndTakesBack) {
   EXPECT_EQ(first.data, second.data);
   ASSERT_EQ(cayspin_step(simulation, 2), CAYSPIN_OK);
   ASSERT_EQ(cayspin_borrow_spins(simulation, &later), CAYSPIN_OK);
-  if (on_host) EXPECT_EQ(later.data, first.data);
+  if (on_host) {
+    EXPECT_EQ(later.data, first.data);
+  }
   ASSERT_EQ(cayspin_set_spins(simulation, &later), CAYSPIN_OK) << cayspin_last_error();
   double m[3] = {};
   ASSERT_EQ(cayspin_magnetization(simulation, m), CAYSPIN_OK);
