@@ -16,9 +16,9 @@ void has_size() {}
 
 template <class... Arguments>
 void compare() {
-  [[maybe_unused]] void const volatile* kernels[] = {
+  [[maybe_unused]] void const* volatile kernels[] = {
       reinterpret_cast<void const*>(&takes<Arguments>)...};
-  (has_size<Arguments, sizeof(Arguments)>(), ...);
+  [[maybe_unused]] void (*volatile sizes[])() = {&has_size<Arguments, sizeof(Arguments)>...};
 }
 
 template <class Member>
