@@ -5,6 +5,7 @@
 #include <cayspin/demagnetization/device_convolution.hpp>
 #include <cayspin/demagnetization/interactions.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/spin_field.hpp>
 
 #include <cstdint>
 #include <memory>
