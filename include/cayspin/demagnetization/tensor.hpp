@@ -126,16 +126,16 @@ DemagnetizingTensor far_demagnetizing_tensor(Lengths const& position, Lengths co
   // `even` and (i, degree - i - 1, 1) in `odd`, for three degrees in turn, between zeros:
   // |n| b_n + (2 |n| - 1) sum_a x_a b_(n - e_a) + (|n| - 1) sum_a b_(n - 2 e_a) = 0.
   constexpr std::size_t pad = 2;
-  using Row = std::array<double, Order + 3 + 2 * pad>;
-  std::array<Row, 3> even{}, odd{};
+  using Numbers = std::array<double, Order + 3 + 2 * pad>;
+  std::array<Numbers, 3> even{}, odd{};
   even[0][pad] = 1;
   DemagnetizingTensor sum;
   for (std::size_t n = 1; n <= Order + 2; ++n) {
     double const first = -static_cast<double>(2 * n - 1) / static_cast<double>(n);
     double const second = -static_cast<double>(n - 1) / static_cast<double>(n);
-    Row const &e1 = even[(n + 2) % 3], &e2 = even[(n + 1) % 3];
-    Row const &o1 = odd[(n + 2) % 3], &o2 = odd[(n + 1) % 3];
-    Row &e = even[n % 3], &o = odd[n % 3];
+    Numbers const &e1 = even[(n + 2) % 3], &e2 = even[(n + 1) % 3];
+    Numbers const &o1 = odd[(n + 2) % 3], &o2 = odd[(n + 1) % 3];
+    Numbers &e = even[n % 3], &o = odd[n % 3];
     for (std::size_t i = pad; i <= n + pad; ++i)
       e[i] = first * (x * e1[i - 1] + y * e1[i]) + second * (e2[i - 2] + e2[i]);
     for (std::size_t i = pad; i < n + pad; ++i)

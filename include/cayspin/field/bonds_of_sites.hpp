@@ -198,7 +198,7 @@ class BondLists {
     mine.first_bond = count(bonds);
     mine.first_shell = count(shells);
     for (double const constant : constants) {
-      auto& shell = shells.emplace_back(count(bonds), 0, constant);
+      auto& shell = shells.emplace_back(Shell{count(bonds), 0, constant});
       for (auto const& bond : seen)
         if (bond.is_exchange() && bond.tensor.of[0] == constant) add(bond, lattice);
       shell.last = count(bonds);
