@@ -23,11 +23,11 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<DemagnetizingTensor>);
 
-std::span<std::byte const> bytes_of(InteractionsFile::Tensors const& tensors) {
+std::span<std::byte const> bytes_of(DemagnetizingTensors const& tensors) {
   return std::as_bytes(std::span(tensors));
 }
 
-std::uint32_t checksum(std::string const& head, InteractionsFile::Tensors const& tensors) {
+std::uint32_t checksum(std::string const& head, DemagnetizingTensors const& tensors) {
   io::Fletcher32 sum;
   auto const even = head + (head.size() % 2 == 0 ? "" : " ");
   sum.add(std::as_bytes(std::span(even)).data(), even.size());
@@ -40,8 +40,8 @@ std::uint32_t checksum(std::string const& head, InteractionsFile::Tensors const&
 InteractionsFile::InteractionsFile(fs::path path, std::string of)
     : path_(std::move(path)), head_("cayspin's demagnetising tensors 1: " + std::move(of) + "\n") {}
 
-InteractionsFile::Tensors InteractionsFile::read_or(std::function<Tensors()> const& compute,
-                                                    double least_seconds) const {
+DemagnetizingTensors InteractionsFile::read_or(std::function<DemagnetizingTensors()> const& compute,
+                                               double least_seconds) const {
   if (auto tensors = read(); !tensors.empty()) return tensors;
   auto const begin = std::chrono::steady_clock::now();
   auto tensors = compute();
@@ -51,7 +51,7 @@ InteractionsFile::Tensors InteractionsFile::read_or(std::function<Tensors()> con
 }
 
 /// Empty where the file does not hold them.
-InteractionsFile::Tensors InteractionsFile::read() const {
+DemagnetizingTensors InteractionsFile::read() const {
   std::error_code error;
   auto const size = fs::file_size(path_, error);
   auto const rest = static_cast<std::uintmax_t>(head_.size()) + sizeof(std::uint32_t);
@@ -60,7 +60,7 @@ InteractionsFile::Tensors InteractionsFile::read() const {
   std::string head(head_.size(), ' ');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   if (!file || head != head_) return {};
-  Tensors tensors((size - rest) / sizeof(DemagnetizingTensor));
+  DemagnetizingTensors tensors((size - rest) / sizeof(DemagnetizingTensor));
   file.read(reinterpret_cast<char*>(tensors.data()),
             static_cast<std::streamsize>(bytes_of(tensors).size()));
   std::uint32_t sum = 0;
@@ -70,7 +70,7 @@ InteractionsFile::Tensors InteractionsFile::read() const {
 }
 
 // Under another name until it is whole: runs that begin together write what is the same.
-void InteractionsFile::write(Tensors const& tensors) const {
+void InteractionsFile::write(DemagnetizingTensors const& tensors) const {
   auto const partial = fs::path(path_.string() + ".partial" + std::to_string(::getpid()));
   std::error_code error;
   {

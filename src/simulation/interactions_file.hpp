@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <vector>
 
 namespace cayspin::simulation {
 
@@ -14,18 +13,17 @@ namespace cayspin::simulation {
 /// what they are of, the numbers, and a checksum.
 class InteractionsFile {
  public:
-  using Tensors = std::vector<DemagnetizingTensor>;
-
   /// `of`: one line, all that the tensors depend on.
   InteractionsFile(std::filesystem::path path, std::string of);
 
   /// Those of the file; where it is not there, damaged or of others, those of `compute`, which the
   /// file keeps from now on where they took `least_seconds` and the folder can be written.
-  Tensors read_or(std::function<Tensors()> const& compute, double least_seconds = 2) const;
+  DemagnetizingTensors read_or(std::function<DemagnetizingTensors()> const& compute,
+                               double least_seconds = 2) const;
 
  private:
-  Tensors read() const;
-  void write(Tensors const& tensors) const;
+  DemagnetizingTensors read() const;
+  void write(DemagnetizingTensors const& tensors) const;
 
   std::filesystem::path path_;
   std::string head_;

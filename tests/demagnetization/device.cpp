@@ -57,44 +57,34 @@ TYPED_TEST_SUITE(DemagnetizingFieldOnDevices, Backends, BackendName);
 TYPED_TEST(DemagnetizingFieldOnDevices, IsThatOfTheHost) {
   using Real = typename TypeParam::Real;
   using Exec = typename TypeParam::Exec;
-  if constexpr (detail::DeviceTransforms<Exec>::exist) {
-    for (auto const& film : films) {
-      auto const lattice = film.lattice();
-      auto const directions = random_directions(lattice.sites(), 3);
-      auto const expected = on_host(film, directions);
-      auto const spins = spins_of<typename TypeParam::Spins>(lattice, directions);
-      typename TypeParam::Spins const field("field", lattice);
-      detail::InteractionsOfCells const interactions(lattice, options_of(film));
-      std::int64_t const plane = 6 * interactions.period()[1] * interactions.period()[2] *
-                                 static_cast<std::int64_t>(sizeof(Real));
-      for (std::int64_t const bytes : {std::int64_t(32) << 20, 2 * plane, std::int64_t(0)}) {
-        detail::DeviceConvolution<Real, Exec> const convolution(lattice, interactions, bytes);
-        // Work memory is as the first call left it in the second one.
-        for (int again = 0; again < 2; ++again) convolution(Exec(), spins, field);
-        expect_near<Real>(numbers_of(field), expected, film);
-      }
+  for (auto const& film : films) {
+    auto const lattice = film.lattice();
+    auto const directions = random_directions(lattice.sites(), 3);
+    auto const expected = on_host(film, directions);
+    auto const spins = spins_of<typename TypeParam::Spins>(lattice, directions);
+    typename TypeParam::Spins const field("field", lattice);
+    detail::InteractionsOfCells const interactions(lattice, options_of(film));
+    std::int64_t const plane = 6 * interactions.period()[1] * interactions.period()[2] *
+                               static_cast<std::int64_t>(sizeof(Real));
+    for (std::int64_t const bytes : {std::int64_t(32) << 20, 2 * plane, std::int64_t(0)}) {
+      detail::DeviceConvolution<Real, Exec> const convolution(lattice, interactions, bytes);
+      // Work memory is as the first call left it in the second one.
+      for (int again = 0; again < 2; ++again) convolution(Exec(), spins, field);
+      expect_near<Real>(numbers_of(field), expected, film);
     }
-  } else {
-    GTEST_SKIP() << "no transforms for this space";
   }
 }
 
 // One spelling for hosts and devices; a device copies no spin.
 TYPED_TEST(DemagnetizingFieldOnDevices, IsATerm) {
-  using Real = typename TypeParam::Real;
-  using Exec = typename TypeParam::Exec;
-  if constexpr (detail::DeviceTransforms<Exec>::exist) {
-    Film const film = films[0];
-    auto const directions = random_directions(film.lattice().sites(), 3);
-    auto const expected = on_host(film, directions);
-    auto const spins = spins_of<typename TypeParam::Spins>(film.lattice(), directions);
-    HostField const term(spins, DemagnetizingField(spins, options_of(film)));
-    typename TypeParam::Spins const field("field", film.lattice());
-    evaluate_field(Exec(), term, spins, 0, field);
-    expect_near<Real>(numbers_of(field), expected, film);
-  } else {
-    GTEST_SKIP() << "no transforms for this space";
-  }
+  Film const film = films[0];
+  auto const directions = random_directions(film.lattice().sites(), 3);
+  auto const expected = on_host(film, directions);
+  auto const spins = spins_of<typename TypeParam::Spins>(film.lattice(), directions);
+  HostField const term(spins, DemagnetizingField(spins, options_of(film)));
+  typename TypeParam::Spins const field("field", film.lattice());
+  evaluate_field(typename TypeParam::Exec(), term, spins, 0, field);
+  expect_near<typename TypeParam::Real>(numbers_of(field), expected, film);
 }
 
 }  // namespace

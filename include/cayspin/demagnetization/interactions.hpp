@@ -16,8 +16,6 @@
 
 namespace cayspin::inline v0_1 {
 
-using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
-
 struct DemagnetizationOptions {
   double strength = 1;
   /// More images on each side than the nearest one, along the axes that have any.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <numbers>
+#include <vector>
 
 namespace cayspin::inline v0_1 {
 
@@ -15,6 +16,8 @@ namespace cayspin::inline v0_1 {
 struct DemagnetizingTensor {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
+
+using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
 
 /// Such a tensor of a position and of the edges of a cell.
 using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,

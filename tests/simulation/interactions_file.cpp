@@ -17,17 +17,15 @@ namespace fs = std::filesystem;
 
 class InteractionsFiles : public ::testing::Test {
  protected:
-  using Tensors = InteractionsFile::Tensors;
-
   fs::path folder = fs::temp_directory_path() / ("cayspin_tensors" + std::to_string(::getpid()));
   fs::path path = folder / "film.demag";
-  Tensors computed{{1, 2, 3, 4, 5, 6}, {0.1, -0.2, 0.3, 1e-300, 0, -7}};
+  DemagnetizingTensors computed{{1, 2, 3, 4, 5, 6}, {0.1, -0.2, 0.3, 1e-300, 0, -7}};
   int computations = 0;
 
   void SetUp() override { fs::create_directory(folder); }
   void TearDown() override { fs::remove_all(folder); }
 
-  Tensors of(std::string const& what, double least_seconds = 0) {
+  DemagnetizingTensors of(std::string const& what, double least_seconds = 0) {
     return InteractionsFile(path, what)
         .read_or(
             [&] {
@@ -42,7 +40,8 @@ class InteractionsFiles : public ::testing::Test {
   }
   void write(std::string const& text) const { std::ofstream(path, std::ios::binary) << text; }
 
-  static void expect_equal(Tensors const& found, Tensors const& expected) {
+  static void expect_equal(DemagnetizingTensors const& found,
+                           DemagnetizingTensors const& expected) {
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       EXPECT_EQ(found[i].xx, expected[i].xx);
