@@ -14,7 +14,7 @@ struct FieldNumbers {
   void* data = nullptr;  // component 0 of site 0
   std::size_t number_bytes = 0;
   int components = 0;
-  std::ptrdiff_t row = 0, component = 0;  // from row to row, from component to component
+  std::ptrdiff_t row = 0, plane = 0, component = 0;  // from one to the next
   std::int64_t nx = 0, ny = 0, nz = 0;
   bool on_device = false;
 

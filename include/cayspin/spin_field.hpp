@@ -38,13 +38,17 @@ struct FillField {
 
   KOKKOS_FUNCTION void operator()(std::int64_t task) const {
     if (task < layout.rows()) {
+      // The last row of a plane goes with what pads the plane.
+      std::int64_t const y = task % layout.ny, z = task / layout.ny;
+      std::ptrdiff_t const begin = layout.row_offset(y, z);
+      std::ptrdiff_t const end = y + 1 < layout.ny ? begin + layout.pitch : (z + 1) * layout.plane;
       for (int c = 0; c < components; ++c)
-        fill(component(c) + task * layout.pitch, component(c) + (task + 1) * layout.pitch,
+        fill(component(c) + begin, component(c) + end,
              c + 1 == components ? last_component : Real(0));
     } else {
       auto const margin = static_cast<int>(task - layout.rows());
       std::ptrdiff_t const begin =
-          margin == 0 ? 0 : component(margin - 1) + layout.rows() * layout.pitch;
+          margin == 0 ? 0 : component(margin - 1) + layout.nz * layout.plane;
       fill(begin, component(margin) + (margin == components ? layout.origin : 0), Real(0));
     }
   }

@@ -21,7 +21,7 @@ io::HostVectors host_vectors(HostSpins const& spins) {
   return {array.data,
           std::is_same_v<typename HostSpins::value_type, double>,
           {layout.nz, layout.ny, layout.nx},
-          {layout.ny * layout.pitch, layout.pitch, 1, array.stride}};
+          {layout.plane, layout.pitch, 1, array.stride}};
 }
 
 /// A scene's field that is computed on the host: a slab's, the whole demagnetising field, or a

@@ -10,7 +10,8 @@ namespace {
 
 std::vector<Lattice> const lattices{Lattice::chain(1),        Lattice::chain(8),
                                     Lattice::chain(17),       Lattice::square(3, 5),
-                                    Lattice::cubic(40, 3, 2), Lattice::cubic(1, 2, 7)};
+                                    Lattice::cubic(40, 3, 2), Lattice::cubic(1, 2, 7),
+                                    Lattice::cubic(40, 4, 3)};
 
 template <class Backend>
 class Copies : public ::testing::Test {};
@@ -137,7 +138,10 @@ TYPED_TEST(Copies, RowsLieOnCacheLines) {
     EXPECT_EQ(layout.pitch % line, 0);
     EXPECT_GE(layout.pitch, lattice.shape[0]);
     EXPECT_EQ(layout.component_stride / line % 2, 1);
-    EXPECT_GE(layout.component_stride, layout.rows() * layout.pitch);
+    EXPECT_EQ(layout.plane % line, 0);
+    EXPECT_GE(layout.plane, layout.ny * layout.pitch);
+    if (layout.nx > line && layout.nz > 1) EXPECT_EQ(layout.plane / line % 2, 1);
+    EXPECT_GE(layout.component_stride, layout.nz * layout.plane);
     EXPECT_GE(layout.origin, 1);
     EXPECT_GE(static_cast<std::ptrdiff_t>(spins.allocation().size()),
               layout.origin + 3 * layout.component_stride + line);

@@ -93,7 +93,7 @@ std::int64_t beside(detail::RowLayout const& layout, std::array<std::int32_t, 3>
     index = (index + step + extent) % extent;
   else if (0 <= index + step && index + step < extent)
     index += step;
-  return (std::int64_t(at[2]) * layout.ny + at[1]) * layout.pitch + at[0];
+  return layout.row_offset(at[1], at[2]) + at[0];
 }
 
 template <class Index, int Axis, int Direction>
@@ -151,6 +151,7 @@ detail::RowLayout large_layout(std::int32_t nz) {
   detail::RowLayout layout;
   layout.nx = layout.ny = 1 << 10;
   layout.pitch = layout.nx;
+  layout.plane = layout.ny * layout.pitch;
   layout.nz = nz;
   return layout;
 }

@@ -30,7 +30,7 @@ void for_all(HostField<Real, Components> const& field, Work const& work) {
     for (std::int64_t y = 0; y < layout.ny; ++y)
       for (std::int64_t x = 0; x < layout.nx; ++x)
         for (int c = 0; c < Components; ++c)
-          work({x, y, z}, c, array.data[c * array.stride + (z * layout.ny + y) * layout.pitch + x]);
+          work({x, y, z}, c, array.data[c * array.stride + layout.row_offset(y, z) + x]);
 }
 
 /// Own numbers by their place, ghosts -1.

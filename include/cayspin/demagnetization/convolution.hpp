@@ -113,8 +113,7 @@ class Convolution {
 
     template <class Layout>
     std::ptrdiff_t offset(Layout const& layout, int of_row) const {
-      return ((layout.own.z_begin + z) * layout.ny + layout.own.y_begin + y + of_row) *
-             layout.pitch;
+      return layout.row_offset(layout.own.y_begin + y + of_row, layout.own.z_begin + z);
     }
   };
 

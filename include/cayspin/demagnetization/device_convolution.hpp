@@ -34,13 +34,15 @@ template <class Real>
 struct PadRows {
   DeviceSpectrum at;
   SiteArray<Real, 3> spins;
-  std::int64_t rows, pitch;
+  RowLayout layout;
   Real* numbers;
 
   KOKKOS_FUNCTION void operator()(std::int64_t i) const {
     std::int64_t const x = i % at.period[0], row = i / at.period[0];
-    numbers[i] =
-        x < at.cells[0] ? spins.data[row / rows * spins.stride + row % rows * pitch + x] : Real(0);
+    std::int64_t const rows = layout.rows();
+    numbers[i] = x < at.cells[0] ? spins.data[row / rows * spins.stride +
+                                              layout.row_offset(row % rows) + x]
+                                 : Real(0);
   }
 };
 
@@ -49,12 +51,13 @@ template <class Real>
 struct TakeRows {
   DeviceSpectrum at;
   Real const* numbers;
-  std::int64_t rows, pitch;
+  RowLayout layout;
   SiteArray<Real, 3> field;
 
   KOKKOS_FUNCTION void operator()(std::int64_t i) const {
     std::int64_t const x = i % at.cells[0], row = i / at.cells[0];
-    field.data[row / rows * field.stride + row % rows * pitch + x] =
+    std::int64_t const rows = layout.rows();
+    field.data[row / rows * field.stride + layout.row_offset(row % rows) + x] =
         numbers[row * at.period[0] + x];
   }
 };
@@ -167,16 +170,15 @@ class DeviceConvolution {
 
   template <class Spins>
   void operator()(Exec const& exec, Spins const& spins, Spins const& field) const {
-    auto const rows = at_.rows();
-    std::int64_t const pitch = spins.layout().pitch;
+    auto const& layout = spins.layout();
     run(exec, "pad rows", at_.numbers(),
-        PadRows<Real>{at_, spins.array(), rows, pitch, numbers_.data()});
+        PadRows<Real>{at_, spins.array(), layout, numbers_.data()});
     row_transforms_.forward(exec, numbers_.data(), spectrum_.data());
     for (std::int64_t first = 0; first < at_.octant[0]; first += at_.waves)
       convolve(exec, first, std::min(at_.waves, at_.octant[0] - first));
     row_transforms_.backward(exec, spectrum_.data(), numbers_.data());
-    run(exec, "take rows", 3 * rows * at_.cells[0],
-        TakeRows<Real>{at_, numbers_.data(), rows, pitch, field.array()});
+    run(exec, "take rows", 3 * layout.sites(),
+        TakeRows<Real>{at_, numbers_.data(), layout, field.array()});
   }
 
  private:

@@ -38,7 +38,7 @@ struct DeviceLayout {
 
   explicit DeviceLayout(RowLayout const& layout)
       : last{layout.nx - 1, layout.ny - 1, layout.nz - 1},
-        step{1, static_cast<Index>(layout.pitch), static_cast<Index>(layout.pitch * layout.ny)},
+        step{1, static_cast<Index>(layout.pitch), static_cast<Index>(layout.plane)},
         periodic_x(layout.periodic[0]) {
     for (int axis = 0; axis < 3; ++axis)
       wrap[axis] = layout.periodic[axis] ? step[axis] * (last[axis] + 1) : step[axis];
@@ -46,7 +46,7 @@ struct DeviceLayout {
 
   /// Does Index reach all numbers of a component, with a plane beyond, and so many threads?
   static bool reaches(RowLayout const& layout, std::int64_t threads) {
-    std::int64_t const numbers = (layout.rows() + layout.ny) * layout.pitch;
+    std::int64_t const numbers = (layout.nz + std::int64_t(1)) * layout.plane;
     return std::max(numbers, threads) <= std::numeric_limits<Index>::max();
   }
 };

@@ -19,6 +19,7 @@ FieldNumbers field_numbers(Field const& field) {
           sizeof(typename Field::value_type),
           Field::components,
           layout.pitch,
+          layout.plane,
           layout.component_stride,
           layout.nx,
           layout.ny,

@@ -21,13 +21,15 @@ struct RowRange {
   KOKKOS_FUNCTION std::int64_t count() const { return std::int64_t(ny()) * nz(); }
 };
 
-/// Where sites lie in memory: one array per component, rows along x padded to whole packs. Row
-/// pitch and component stride are odd numbers of cache lines once there is more than one row, so
-/// that neighbouring rows and components do not compete for the same cache sets.
+/// Where sites lie in memory: one array per component, rows along x padded to whole packs. From row
+/// to row, plane to plane and component to component it is an odd number of cache lines once there
+/// are several, and from plane to plane no whole number of pages, nearly: so neighbours do not
+/// compete for the same cache sets.
 struct RowLayout {
   std::int32_t nx = 0, ny = 0, nz = 0;
   bool periodic[3] = {false, false, false};
   std::ptrdiff_t pitch = 0;             // from row to row
+  std::ptrdiff_t plane = 0;             // from plane to plane
   std::ptrdiff_t component_stride = 0;  // from component to component
   std::ptrdiff_t origin = 0;            // of site 0 in the allocation; a pack may read before it
   RowRange own;                         // all but the ghosts
@@ -61,9 +63,19 @@ struct RowLayout {
     std::ptrdiff_t const rows = std::ptrdiff_t(layout.ny) * layout.nz;
     layout.pitch =
         rows > 1 && layout.nx > line ? odd_lines(layout.nx) : (layout.nx + line - 1) / line * line;
-    layout.component_stride = odd_lines(rows * layout.pitch);
+    layout.plane = layout.ny * layout.pitch;
+    if (layout.nz > 1 && layout.nx > line) layout.plane = line * lines_of_plane(layout.plane / line);
+    layout.component_stride = odd_lines(layout.nz * layout.plane);
     layout.origin = line;
     return layout;
+  }
+
+  /// At least so many cache lines: an odd number, a fifth of a page or more from whole pages.
+  static std::ptrdiff_t lines_of_plane(std::ptrdiff_t least) {
+    constexpr std::ptrdiff_t page = 4096 / cache_line_bytes, fifth = page / 5 | 1;
+    std::ptrdiff_t const lines = least | 1, past = lines % page;
+    if (lines < page || (past >= fifth && past <= page - fifth)) return lines;
+    return lines + fifth - past + (past < fifth ? 0 : page);
   }
 
   RowRange all() const { return {0, ny, 0, nz}; }
@@ -87,7 +99,13 @@ struct RowLayout {
   KOKKOS_FUNCTION std::ptrdiff_t offset(std::int64_t site) const {
     std::int64_t row = site / nx;
     if (part != nullptr) row = (own.z_begin + row / own.ny()) * ny + own.y_begin + row % own.ny();
-    return row * pitch + site % nx;
+    return row_offset(row) + site % nx;
+  }
+  KOKKOS_FUNCTION std::ptrdiff_t row_offset(std::int64_t y, std::int64_t z) const {
+    return z * plane + y * pitch;
+  }
+  KOKKOS_FUNCTION std::ptrdiff_t row_offset(std::int64_t row) const {
+    return row_offset(row % ny, row / ny);
   }
 };
 

@@ -79,7 +79,7 @@ template <class Real>
 CAYSPIN_DETAIL_NOINLINE KOKKOS_FUNCTION PlaneRows<Real> plane_rows(SiteArray<Real, 3> const& array,
                                                                    RowLayout const& layout,
                                                                    std::int32_t z) {
-  Real* const plane = array.data + std::ptrdiff_t(z) * layout.ny * layout.pitch;
+  Real* const plane = array.data + layout.row_offset(0, z);
   return {plane + layout.ny * layout.pitch, plane, plane, 0, layout.ny, layout.pitch, array.stride};
 }
 

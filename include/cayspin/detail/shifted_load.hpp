@@ -18,13 +18,14 @@ struct DistantSites {
   SiteArray<Real, 3> array;
   std::int32_t extent[3];
   bool periodic[3];
-  std::ptrdiff_t pitch;
+  std::ptrdiff_t pitch, plane;
 
   DistantSites(SiteArray<Real, 3> const& of, RowLayout const& layout)
       : array(of),
         extent{layout.nx, layout.ny, layout.nz},
         periodic{layout.periodic[0], layout.periodic[1], layout.periodic[2]},
-        pitch(layout.pitch) {}
+        pitch(layout.pitch),
+        plane(layout.plane) {}
 
   /// Of sites that are all there.
   template <class Value>
@@ -41,7 +42,7 @@ struct DistantSites {
   KOKKOS_FORCEINLINE_FUNCTION Real const* row(std::int32_t y, std::int32_t z) const {
     y = wrapped(y, 1), z = wrapped(z, 2);
     if (y < 0 || z < 0) return nullptr;
-    return array.data + (std::ptrdiff_t(z) * extent[1] + y) * pitch;
+    return array.data + z * plane + y * pitch;
   }
 
   /// Sites x, x + 1, ... of a row, and those of its other end, at most an extent beside it.

@@ -18,14 +18,14 @@ struct Row {
   std::ptrdiff_t pitch;
 
   KOKKOS_FORCEINLINE_FUNCTION Row(RowLayout const& layout, std::int32_t at_y, std::int32_t at_z)
-      : offset((std::int64_t(at_z) * layout.ny + at_y) * layout.pitch),
+      : offset(layout.row_offset(at_y, at_z)),
         nx(layout.nx),
         y(at_y),
         z(at_z),
         periodic_x(layout.periodic[0]),
         pitch(layout.pitch) {
     step(0, y, layout.ny, layout.pitch, layout.periodic[1]);
-    step(1, z, layout.nz, layout.pitch * layout.ny, layout.periodic[2]);
+    step(1, z, layout.nz, layout.plane, layout.periodic[2]);
   }
 
   /// For the neighbour rows only: along x the answer depends on the site.

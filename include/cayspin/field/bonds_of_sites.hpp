@@ -157,9 +157,8 @@ class BondLists {
 
   static WayInMemory in_memory(Lattice const& lattice, std::int32_t x, std::int32_t y,
                                std::int32_t z) {
-    auto const rows = y + static_cast<std::ptrdiff_t>(lattice.shape[1]) * z;
-    return {rows * RowLayout::of<double>(lattice).pitch + x,
-            rows * RowLayout::of<float>(lattice).pitch + x};
+    return {RowLayout::of<double>(lattice).row_offset(y, z) + x,
+            RowLayout::of<float>(lattice).row_offset(y, z) + x};
   }
   void add(Seen const& bond, Lattice const& lattice) {
     auto const [x, y, z] = bond.way;

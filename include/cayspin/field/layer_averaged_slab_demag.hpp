@@ -29,7 +29,7 @@ struct AverageAlongX {
     std::int64_t const x = task * lanes_of<Value>;
     Value sum(0.0);
     for (std::int64_t row = 0; row < layout.rows(); ++row)
-      sum = sum + load<Value>(component + row * layout.pitch + x);
+      sum = sum + load<Value>(component + layout.row_offset(row) + x);
     store(Value(sum * Value(1.0 / static_cast<double>(layout.rows()))), averages + x);
   }
 };
@@ -47,8 +47,8 @@ struct RowsOfLayers {
     std::int64_t const begin = axis == 1 ? own.z_begin : own.y_begin;
     std::int64_t const end = axis == 1 ? own.z_end : own.y_end;
     for (std::int64_t i = begin; i < end; ++i) {
-      std::int64_t const number = axis == 1 ? i * layout.ny + layer : layer * layout.ny + i;
-      Real const* const row = component + number * layout.pitch;
+      Real const* const row =
+          component + (axis == 1 ? layout.row_offset(layer, i) : layout.row_offset(i, layer));
       double sum = 0;
       for (std::int32_t x = 0; x < layout.nx; ++x) sum += row[x];
       add(sum);

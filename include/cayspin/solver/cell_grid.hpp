@@ -80,7 +80,7 @@ CellArray<Real, Components> cells_of(SiteField<Real, All, MemorySpace> const& fi
                                      int first = 0) {
   auto const array = field.array();
   auto const& layout = field.layout();
-  return {array.data + first * array.stride, array.stride, layout.pitch, layout.pitch * layout.ny};
+  return {array.data + first * array.stride, array.stride, layout.pitch, layout.plane};
 }
 
 /// Where the cells of a grid lie, and how they couple.

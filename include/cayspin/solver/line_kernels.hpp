@@ -119,10 +119,10 @@ struct SolveLines {
   KOKKOS_FORCEINLINE_FUNCTION void run(std::int64_t task) const {
     constexpr int lanes = lanes_of<Value>;
     if constexpr (lanes > 1) {
-      if (axis == 0) return solve<Value, true>(task * layout.pitch);
+      if (axis == 0) return solve<Value, true>(layout.row_offset(task));
     }
     std::int64_t const line = task / tasks_across(lanes), x = task % tasks_across(lanes) * lanes;
-    solve<Value, false>(x + line * (axis == 1 ? layout.pitch * layout.ny : layout.pitch));
+    solve<Value, false>(x + line * (axis == 1 ? layout.plane : layout.pitch));
   }
 
  private:
@@ -132,7 +132,7 @@ struct SolveLines {
     using RightEnds = LineEnds<Value, right_parts, InLanes>;
     std::int32_t const count = axis == 0 ? layout.nx : axis == 1 ? layout.ny : layout.nz;
     std::int32_t const half = count / 2;
-    std::ptrdiff_t const step = axis == 0 ? 1 : axis == 1 ? layout.pitch : layout.pitch * layout.ny;
+    std::ptrdiff_t const step = axis == 0 ? 1 : axis == 1 ? layout.pitch : layout.plane;
     auto const place = [&](std::int32_t i) {
       return LinePlace{begin + i * step, (count - 1 - 2 * i) * step};
     };

@@ -26,8 +26,7 @@ template <class Word, bool Packs>
 struct CopyRows {
   Word* field;
   Word* buffer;
-  std::ptrdiff_t row, component;
-  std::int64_t ny;
+  std::ptrdiff_t row, plane, component;
   Box box;
 
   KOKKOS_FUNCTION void operator()(std::int64_t task) const {
@@ -35,7 +34,7 @@ struct CopyRows {
     std::int64_t const y = box.begin[1] + in_component % box.extent(1);
     std::int64_t const z = box.begin[2] + in_component / box.extent(1);
     std::int64_t const nx = box.extent(0);
-    Word* const here = field + task / rows * component + (z * ny + y) * row + box.begin[0];
+    Word* const here = field + task / rows * component + z * plane + y * row + box.begin[0];
     Word* const there = buffer + task * nx;
     for (std::int64_t x = 0; x < nx; ++x) {
       if constexpr (Packs)
@@ -144,8 +143,8 @@ class GhostMessages {
     CopyRows<Number, Packs> const rows{static_cast<Number*>(field.data),
                                        reinterpret_cast<Number*>(buffer),
                                        field.row,
+                                       field.plane,
                                        field.component,
-                                       field.ny,
                                        box};
     Kokkos::DefaultExecutionSpace const exec;
     using Policy =

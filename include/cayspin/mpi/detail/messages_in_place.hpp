@@ -28,13 +28,14 @@ struct BytesInPlace {
   // Rows go with what pads them, so that they are one block; whole planes are one block, too.
   BytesInPlace(FieldNumbers const& field, Box const& box)
       : first(static_cast<std::byte*>(field.data) +
-              count(field, (box.begin[2] * field.ny + box.begin[1]) * field.row + box.begin[0])),
+              count(field, box.begin[2] * field.plane + box.begin[1] * field.row + box.begin[0])),
         planes(box.extent(1) == field.ny ? 1 : static_cast<int>(box.extent(2))),
         components(field.components),
-        plane(count(field, field.ny * field.row)),
+        plane(count(field, field.plane)),
         component(count(field, field.component)) {
-    std::int64_t const rows = planes == 1 ? box.rows() : box.extent(1);
-    MPI_Aint const size = count(field, (rows - 1) * field.row + box.extent(0));
+    std::int64_t const more_planes = planes == 1 ? box.extent(2) - 1 : 0;
+    MPI_Aint const size = count(field, more_planes * field.plane +
+                                           (box.extent(1) - 1) * field.row + box.extent(0));
     if (size > std::numeric_limits<int>::max())
       throw std::length_error("cayspin::mpi: a face of the part is 2 GiB or more; use more ranks");
     bytes = static_cast<int>(size);
