@@ -25,7 +25,8 @@ namespace cayspin::inline v0_1 {
 /// The inverse of exchange and a constant, (K + c)^-1, by a cycle of multigrid, makes the number of
 /// evaluations nearly independent of the lattice and of the exchange; its coefficients are found
 /// from the field itself, so terms of one's own, vacancies and coefficients of sites need nothing
-/// more. c follows the curvature along the last step. A state where the torque vanishes is left
+/// more. c follows the curvature along the last step, and is not below the mean field of parallel
+/// spins once all torques are. A state where the torque vanishes is left
 /// again when the Hessian has a negative eigenvalue there.
 /// Energies fall from iteration to iteration, up to round-off.
 template <class Spins>
@@ -35,7 +36,7 @@ class Minimizer {
 
  public:
   /// Fields of three numbers per site that it allocates, the grids of the multigrid included.
-  static constexpr int work_fields = 20;
+  static constexpr int work_fields = 24;
   /// The least bound on the torque, of which squares are summed.
   static constexpr double least_bound = 1e-150;
 
@@ -136,7 +137,7 @@ class Minimizer {
         least_torque = std::min(least_torque, so_far_.torque);
         energy_then = so_far_.energy.value;
         least_at = so_far_.iterations;
-      } else if (so_far_.iterations - least_at >= 50) {
+      } else if (so_far_.iterations - least_at >= 30) {
         return MinimizeEnd::stagnated;
       }
     }
@@ -157,7 +158,7 @@ class Minimizer {
         if (lbfgs_.pairs().count() == 0) return false;
         lbfgs_.pairs().forget();
       }
-      auto const [slope, longest] = lbfgs_.find(exec, spins, moves_, search_);
+      auto const [slope, longest] = lbfgs_.find(exec, spins, moves_, search_, so_far_.torque);
       if (!(slope < 0) || !std::isfinite(longest)) continue;
       if (search(exec, field, spins, slope, std::min(first_step_, largest_turn / longest), options))
         return true;
@@ -201,9 +202,12 @@ class Minimizer {
                                           search_.trial,     pairs.change(2), lbfgs_.room()};
     // Along what is flatter, a turn by a radian does not bring the torque above its bound.
     double const flat = std::max(options.torque, 64 * epsilon * strongest_field_);
+    auto& preconditioner = lbfgs_.preconditioner();
+    preconditioner.forget_curvature();
     auto const found = detail::find_lowest_curvature(
-        exec, field, options.time, spins, moves_, strongest_field_, flat, so_far_.saddles, arrays,
-        [&](Spins const& from, Spins const& to) { lbfgs_.preconditioner().apply(exec, from, to); });
+        exec, field, options.time, spins, moves_, preconditioner.first_shift(), flat,
+        so_far_.saddles, arrays,
+        [&](Spins const& from, Spins const& to) { preconditioner.apply(exec, from, to); });
     so_far_.evaluations += found.evaluations;
     so_far_.curvature = found.value;
     if (!found.is_negative) return MinimizeEnd::converged;

@@ -58,6 +58,20 @@ TEST(StandardProblems, TwoHasTheCoercivityOfASmallParticle) {
   EXPECT_LT(along(-0.05709), 0);
 }
 
+// Half a loop of a larger particle, the jump among its states; on cells of 3 and 1.5 l_ex.
+TEST(StandardProblems, TwoTakesFewEvaluationsAState) {
+  for (std::string const cells : {"lattice={ shape = [50, 10, 1], spacing = [3, 3, 3] }",
+                                  "lattice={ shape = [100, 20, 1], spacing = [1.5, 1.5, 3] }"}) {
+    auto const run = open("2", {"field.applied=[0, 0, 0]", cells});
+    for (double const field : {0.5, 0.2, 0.1, 0.05, 0.02, 0.0, -0.01, -0.02, -0.03, -0.04, -0.044,
+                               -0.045, -0.0455, -0.046, -0.0465, -0.047, -0.048, -0.05}) {
+      double const h = field / std::sqrt(3);
+      EXPECT_LE(relax(*run, {.applied = {{h, h, h}}}).evaluations, 150) << cells << field;
+    }
+    EXPECT_LT(run->sample().magnetization.x, -0.8);
+  }
+}
+
 // Rave, Fabian and Hubert 1998: equal at 0.3027 Km in a cube of 8.47. The flower is a saddle.
 TEST(StandardProblems, ThreeHasAFlowerAndAVortexOfOneEnergy) {
   for (std::string const cells : {"10", "20"}) {

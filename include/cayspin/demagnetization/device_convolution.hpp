@@ -40,9 +40,9 @@ struct PadRows {
   KOKKOS_FUNCTION void operator()(std::int64_t i) const {
     std::int64_t const x = i % at.period[0], row = i / at.period[0];
     std::int64_t const rows = layout.rows();
-    numbers[i] = x < at.cells[0] ? spins.data[row / rows * spins.stride +
-                                              layout.row_offset(row % rows) + x]
-                                 : Real(0);
+    numbers[i] = x < at.cells[0]
+                     ? spins.data[row / rows * spins.stride + layout.row_offset(row % rows) + x]
+                     : Real(0);
   }
 };
 

@@ -15,16 +15,11 @@ namespace cayspin::inline v0_1::detail {
 template <class Field>
 FieldNumbers field_numbers(Field const& field) {
   auto const& layout = field.layout();
-  return {field.array().data,
-          sizeof(typename Field::value_type),
-          Field::components,
-          layout.pitch,
-          layout.plane,
-          layout.component_stride,
-          layout.nx,
-          layout.ny,
-          layout.nz,
-          !is_host_execution<typename Field::memory_space::execution_space>};
+  return {field.array().data, sizeof(typename Field::value_type),
+          Field::components,  layout.pitch,
+          layout.plane,       layout.component_stride,
+          layout.nx,          layout.ny,
+          layout.nz,          !is_host_execution<typename Field::memory_space::execution_space>};
 }
 
 /// Brings the ghosts of fields up to date, after the work on `exec`; waits. Nothing for a lattice

@@ -64,7 +64,8 @@ struct RowLayout {
     layout.pitch =
         rows > 1 && layout.nx > line ? odd_lines(layout.nx) : (layout.nx + line - 1) / line * line;
     layout.plane = layout.ny * layout.pitch;
-    if (layout.nz > 1 && layout.nx > line) layout.plane = line * lines_of_plane(layout.plane / line);
+    if (layout.nz > 1 && layout.nx > line)
+      layout.plane = line * lines_of_plane(layout.plane / line);
     layout.component_stride = odd_lines(layout.nz * layout.plane);
     layout.origin = line;
     return layout;

@@ -42,10 +42,11 @@ class Lbfgs {
     step_square_ = there.step_square;
   }
 
-  /// Writes search.direction, from the gradient in `search` and what is remembered.
+  /// Writes search.direction, from the gradient in `search`, the largest of which is `torque`, and
+  /// what is remembered.
   template <class Exec>
   Direction find(Exec const& exec, Spins const& spins, Moves const& moves,
-                 SearchArrays<Spins> const& search) {
+                 SearchArrays<Spins> const& search, double torque) {
     using Products = ProductsOfPairs<Real>;
     int const count = static_cast<int>(pairs_.count());
     Products products{};
@@ -60,7 +61,8 @@ class Lbfgs {
                                                        spins.layout(), products);
     auto const at = [&](int i) { return p[static_cast<std::size_t>(i)]; };
     auto const product = [&](int i) { return pairs_.product(static_cast<std::size_t>(i)); };
-    if (count > 0) preconditioner_.follow_curvature(product(count - 1), p.back(), step_square_);
+    if (count > 0)
+      preconditioner_.follow_curvature(product(count - 1), p.back(), step_square_, torque);
 
     std::array<double, pairs_kept> alpha{}, weights{};
     auto const index = [](int i) { return static_cast<std::size_t>(i); };

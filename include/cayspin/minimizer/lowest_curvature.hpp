@@ -120,8 +120,8 @@ struct LowestCurvature {
 };
 
 /// Ends when the quotient is below -tolerance, or when it is not about to fall below zero. `scale`:
-/// of the strongest field. `stream`: of the random vector it starts from; one that led out of a
-/// saddle is blind to what lies across it.
+/// of fields other than exchange. `stream`: of the random vector it starts from; one that led out
+/// of a saddle is blind to what lies across it.
 /// `precondition(from, to)`. Leaves the vector in arrays.vector.
 template <class Exec, class Field, class Spins, class Moves, class Precondition>
 LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, double time,
@@ -192,7 +192,7 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
     combine(exec, -inner_product(exec, w, x), x, 1, w, w);
     double const decrease = inner_product(exec, shifted, w), rest = length(exec, shifted);
     // An eigenvalue is within `rest` of the quotient. Near an instability several may be close.
-    bool const is_positive = found.value > 1e-4 * scale && rest < 0.3 * found.value;
+    bool const is_positive = found.value > 1e-2 * scale && rest < 0.3 * found.value;
     if (!(decrease > 0) || rest < 0.1 * tolerance || (is_positive && decrease < 0.01 * found.value))
       break;
     if (step > 0) combine(exec, -inner_product(exec, w, p), p, 1, w, w);

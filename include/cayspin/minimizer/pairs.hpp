@@ -15,7 +15,7 @@
 // come from two passes, and the recursion goes over numbers alone.
 namespace cayspin::inline v0_1::detail {
 
-inline constexpr std::size_t pairs_kept = 4;
+inline constexpr std::size_t pairs_kept = 6;
 
 /// Arrays of the pairs, oldest first. Behind the last one stand others, which `count` leaves out.
 template <class Real>

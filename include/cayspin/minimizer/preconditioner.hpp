@@ -31,13 +31,17 @@ class Preconditioner {
   std::array<double, 3> const& couplings() const { return couplings_; }
 
   /// The curvature along the last step, of square length `step_square`, that exchange does not
-  /// explain becomes the constant.
-  void follow_curvature(double product, double exchange_energy, double step_square) {
+  /// explain becomes the constant. Small constants make long steps far from rest; near rest they
+  /// make the stiffest long waves the hardest to settle.
+  void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;
-    shift_ = std::clamp(std::sqrt(shift_ * std::max(rest, 0.2 * shift_)), 1e-3 * first_shift_,
-                        30 * first_shift_);
+    double const least = torque < first_shift_ ? first_shift_ : 1e-3 * first_shift_;
+    shift_ = std::clamp(std::sqrt(shift_ * std::max(rest, 0.2 * shift_)), least, 30 * first_shift_);
   }
+  /// As it is before any step.
+  void forget_curvature() { shift_ = first_shift_; }
+  double first_shift() const { return first_shift_; }
 
   /// to <- (K + c)^-1 from
   template <class Exec>

@@ -34,8 +34,8 @@ struct BytesInPlace {
         plane(count(field, field.plane)),
         component(count(field, field.component)) {
     std::int64_t const more_planes = planes == 1 ? box.extent(2) - 1 : 0;
-    MPI_Aint const size = count(field, more_planes * field.plane +
-                                           (box.extent(1) - 1) * field.row + box.extent(0));
+    MPI_Aint const size =
+        count(field, more_planes * field.plane + (box.extent(1) - 1) * field.row + box.extent(0));
     if (size > std::numeric_limits<int>::max())
       throw std::length_error("cayspin::mpi: a face of the part is 2 GiB or more; use more ranks");
     bytes = static_cast<int>(size);
