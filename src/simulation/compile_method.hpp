@@ -25,10 +25,23 @@ struct VariantKey {
 template <std::size_t Number>
 inline constexpr io::Method const& method_at = std::get<Number>(method_list);
 
+/// What a bound on dt is known of: a method's own stepper, or another that its family names.
+template <class Family, class Spins, class Own>
+struct BoundedStepper {
+  using type = Own;
+  static constexpr bool exists = requires { typename Own::tableau_type; } ||
+                                 requires { Own::largest_stable_step(1.0, 1.0, true); };
+};
+template <class Family, class Spins, class Own>
+  requires requires { typename Family::template StableAs<Spins>; }
+struct BoundedStepper<Family, Spins, Own> {
+  using type = typename Family::template StableAs<Spins>;
+  static constexpr bool exists = true;
+};
+
 /// Variant `Key` of row `Number`.
 template <std::size_t Number, VariantKey Key>
 class Compiled {
-  static constexpr io::Method const& method = method_at<Number>;
   using Family = typename std::tuple_element_t<Number, decltype(method_list)>::family;
   using HostSpins = SpinField<double, Kokkos::DefaultHostExecutionSpace::memory_space>;
 
@@ -75,10 +88,10 @@ class Compiled {
   using Stepper = typename decltype(whole_stepper<Spins, Rotation>())::type;
 
   static constexpr io::SetOf<io::Rotation> rotations() {
-    if (method.is_baseline()) return {};
+    if (method_at<Number>.is_baseline()) return {};
     if (Key.in_chart || Key.compensated || Key.isotropy == io::Isotropy::energy)
-      return {method.usual_rotation()};
-    return method.rotations;
+      return {method_at<Number>.usual_rotation()};
+    return method_at<Number>.rotations;
   }
   template <class Work>
   static auto with_rotation(io::Rotation rotation, Work const& work) {
@@ -106,7 +119,7 @@ class Compiled {
   static decltype(auto) generator(Generator const& of_the_scene) {
     if constexpr (Key.of_rigid_bodies)
       return of_the_scene.rigid_bodies();
-    else if constexpr (method.neighbors == io::Neighbors::by_colour)
+    else if constexpr (method_at<Number>.neighbors == io::Neighbors::by_colour)
       return of_the_scene.landau_lifshitz();
     else
       return (of_the_scene);
@@ -116,16 +129,10 @@ class Compiled {
                             MethodOptions const& options) {
     return with_rotation(options.rotation, [&]<class Rotation>(Rotation) {
       if constexpr (!Key.of_rigid_bodies) {
-        using Of = Plain<HostSpins, Rotation>;
-        auto const bound = [&]<class As>(std::type_identity<As>) {
-          return largest_stable_step<As>(field_bound, damping, precession, options.sigma);
-        };
-        if constexpr (requires { typename Family::template StableAs<HostSpins>; })
-          return bound(std::type_identity<typename Family::template StableAs<HostSpins>>{});
-        else if constexpr (
-            requires { typename Of::tableau_type; } ||
-            requires { Of::largest_stable_step(1.0, 1.0, true); })
-          return bound(std::type_identity<Of>{});
+        using Bounded = BoundedStepper<Family, HostSpins, Plain<HostSpins, Rotation>>;
+        if constexpr (Bounded::exists)
+          return largest_stable_step<typename Bounded::type>(field_bound, damping, precession,
+                                                             options.sigma);
       }
       return std::numeric_limits<double>::infinity();
     });
@@ -191,9 +198,9 @@ class Compiled {
 
  public:
   static Variant variant() {
-    static_assert(Stepper<HostSpins, Cayley>::order == method.order,
+    static_assert(Stepper<HostSpins, Cayley>::order == method_at<Number>.order,
                   "A row of the list of methods names another order than its stepper has.");
-    return {.method = &method,
+    return {.method = &method_at<Number>,
             .isotropy = Key.isotropy,
             .in_chart = Key.in_chart,
             .compensated = Key.compensated,
