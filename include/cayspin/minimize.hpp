@@ -137,13 +137,15 @@ class Minimizer {
         least_torque = std::min(least_torque, so_far_.torque);
         energy_then = so_far_.energy.value;
         least_at = so_far_.iterations;
-      } else if (so_far_.iterations - least_at >= 30) {
+      } else if (so_far_.iterations - least_at >= (is_round_off(so_far_.torque) ? 20 : 50)) {
         return MinimizeEnd::stagnated;
       }
     }
     return std::nullopt;
   }
 
+  /// Could round-off of the fields be all of a torque?
+  bool is_round_off(double torque) const { return torque < 16 * epsilon * strongest_field_; }
   /// Of spins whose components are rounded independently.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(moves_.lattice().sites());
