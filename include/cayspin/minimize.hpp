@@ -146,10 +146,11 @@ class Minimizer {
 
   /// Could round-off of the fields be all of a torque?
   bool is_round_off(double torque) const { return torque < 16 * epsilon * strongest_field_; }
-  /// Of spins whose components are rounded independently.
+  /// Of spins whose components are rounded independently, and of the sum.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(moves_.lattice().sites());
-    return 8 * epsilon * energy.magnitude / std::sqrt(sites);
+    return (8 * epsilon / std::sqrt(sites) + std::numeric_limits<double>::epsilon()) *
+           energy.magnitude;
   }
 
   /// One step; false when no step goes down.

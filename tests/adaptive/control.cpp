@@ -192,7 +192,8 @@ TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   Tsit5 stepper(spins, {.tolerance = 1e-6});
   stepper.step(Space(), LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.1), spins, 0, 1e3);
   EXPECT_EQ(copy_to_host(spins), start);
-  EXPECT_LT(stepper.accepted_steps(), 20);
+  // Devices fuse other products and sums: there the error is round-off, and not zero.
+  EXPECT_LT(stepper.accepted_steps(), detail::is_host_execution<Space> ? 20 : 30);
 }
 
 TEST(AdaptiveOptions, WhatCannotBeIsRefused) {
