@@ -146,11 +146,11 @@ class Minimizer {
 
   /// Could round-off of the fields be all of a torque?
   bool is_round_off(double torque) const { return torque < 16 * epsilon * strongest_field_; }
-  /// Of spins whose components are rounded independently, and of the sum.
+  /// Of spins whose components are rounded independently, and of sums in double.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(moves_.lattice().sites());
-    return (8 * epsilon / std::sqrt(sites) + std::numeric_limits<double>::epsilon()) *
-           energy.magnitude;
+    double const of_spins = epsilon / std::sqrt(sites);
+    return 8 * (of_spins + std::numeric_limits<double>::epsilon()) * energy.magnitude;
   }
 
   /// One step; false when no step goes down.

@@ -148,6 +148,19 @@ TYPED_TEST(Copies, RowsLieOnCacheLines) {
   }
 }
 
+// Bonds read rows of several planes at once, which would compete for the same cache sets.
+TEST(Layouts, PlanesAreNoWholePagesApart) {
+  for (std::int64_t const nx : {17, 32, 64, 100})
+    for (std::int64_t const ny : {16, 31, 32, 64, 128}) {
+      auto const layout = detail::RowLayout::of<double>(Lattice::cubic(nx, ny, 2));
+      auto const lines = layout.plane * 8 / detail::cache_line_bytes, least = ny * layout.pitch / 8;
+      EXPECT_LE(lines, least + least / 4 + 1) << nx << " " << ny;
+      if (lines < 64) continue;
+      EXPECT_GE(lines % 64, 64 / 6) << nx << " " << ny;
+      EXPECT_LE(lines % 64, 64 - 64 / 6) << nx << " " << ny;
+    }
+}
+
 template <class Spins>
 void expect_get_and_set(Lattice const& lattice) {
   if constexpr (std::is_same_v<typename Spins::memory_space, Kokkos::HostSpace>) {

@@ -151,7 +151,7 @@ TEST_F(Relax, IsChecked) {
   EXPECT_EQ(json.at("sites"), 12000);
   EXPECT_TRUE(json.at("stable_dt").is_null());
   EXPECT_TRUE(json.at("evaluations_per_step").is_null());
-  EXPECT_EQ(json.at("work_bytes"), 20 * json.at("spins_bytes").get<std::int64_t>());
+  EXPECT_EQ(json.at("work_bytes"), 24 * json.at("spins_bytes").get<std::int64_t>());
   double const frames = 3 * 12000 * 3 * 8;
   EXPECT_GT(json.at("file_bytes").get<double>(), frames);
   EXPECT_LT(json.at("file_bytes").get<double>(), frames + 3 * 200);

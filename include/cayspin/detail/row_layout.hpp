@@ -71,12 +71,12 @@ struct RowLayout {
     return layout;
   }
 
-  /// At least so many cache lines: an odd number, a fifth of a page or more from whole pages.
+  /// At least so many cache lines: an odd number, a sixth of a page or more from whole pages.
   static std::ptrdiff_t lines_of_plane(std::ptrdiff_t least) {
-    constexpr std::ptrdiff_t page = 4096 / cache_line_bytes, fifth = page / 5 | 1;
+    constexpr std::ptrdiff_t page = 4096 / cache_line_bytes, sixth = page / 6 | 1;
     std::ptrdiff_t const lines = least | 1, past = lines % page;
-    if (lines < page || (past >= fifth && past <= page - fifth)) return lines;
-    return lines + fifth - past + (past < fifth ? 0 : page);
+    if (lines < page || (past >= sixth && past <= page - sixth)) return lines;
+    return lines + sixth - past + (past < sixth ? 0 : page);
   }
 
   RowRange all() const { return {0, ny, 0, nz}; }
