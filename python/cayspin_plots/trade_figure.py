@@ -1,75 +1,106 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Error over cost of every method that `cayspin trade` tried."""
+"""Error over cost of the methods that `cayspin trade` tried: those one would take, and baselines."""
 
-import pathlib
+import numpy as np
 
 from cayspin_plots import style
+from cayspin_plots.trade_costs import BASELINES, cheapest, cost, scene_name
 
-SHOWN = 9  # methods with a colour and a name; the others are drawn thin
-COLORS = (style.BLUE, style.RED, style.COMPONENTS[1], "#7a4fa3", "#c98a1b", "#2aa0b0", "#b0457f",
-          "#6b7d2a", "#4a4f57")
-AXES = (("seconds", "seconds of stepping"), ("evaluations", "evaluations of the field"))
-
-
-def require_keys(trade):
-    """Raises KeyError or TypeError where something is missing that is drawn."""
-    for name in ("scene", "horizon", "end"):
-        trade[name]
-    for method in trade["methods"]:
-        for name in ("method", "baseline"):
-            method[name]
-        for rung in method["rungs"]:
-            for name in ("error", "seconds", "evaluations", "front"):
-                rung[name]
+LINES = 7  # at most
+OF_BASELINES = 2  # among them
+# Okabe and Ito's, for all eyes; and marks, for print without colour.
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+MARKS = "osD^vPX"
+DECADES = [10.0**-power for power in range(1, 10)]
+AXES = {"seconds": "seconds of stepping", "evaluations": "evaluations of the field"}
 
 
-def cost(method, key, error):
-    """The least cost of a run of at most this error; none where there is no such run."""
-    return min((rung[key] for rung in method["rungs"] if rung["error"] <= error), default=None)
-
-
-def best_first(trade):
-    """Methods by how many of some errors they are the cheapest ones to, nearly."""
-    errors = [10.0**-power for power in range(1, 10)]
-    best = {error: min((c for method in trade["methods"]
-                        if (c := cost(method, "seconds", error)) is not None), default=None)
-            for error in errors}
+def chosen(trade):
+    """The methods that are cheapest to some decade of errors, those to most decades first, and the
+    best baselines."""
+    methods = trade["methods"]
+    best = {error: cheapest(methods, error)[0] for error in DECADES}
 
     def merit(method):
-        costs = ((cost(method, "seconds", error), best[error]) for error in errors)
-        return sum((b / c)**2 for c, b in costs if c and b)
+        costs = ((best[error], cost(method, "seconds", error)) for error in DECADES)
+        return sum((b / c)**4 for b, c in costs if 0 < c < float("inf"))
 
-    return sorted(trade["methods"], key=merit, reverse=True)
+    winners = {id(cheapest(methods, error)[1]) for error in DECADES}
+    ranked = sorted((m for m in methods if m["rungs"]), key=merit, reverse=True)
+    baselines = [m for m in ranked if m["method"] in BASELINES][:OF_BASELINES]
+    others = [m for m in ranked if m not in baselines]
+    others.sort(key=lambda method: id(method) not in winners)
+    return others[:LINES - len(baselines)], baselines
 
 
-def draw(trade, path):
-    figure, axes = style.plt.subplots(1, 2, figsize=(13, 6), sharey=True, constrained_layout=True)
-    methods = best_first(trade)
-    baselines = [method for method in methods if method["baseline"]]
-    named = [method for method in methods if not method["baseline"]][:SHOWN - 1]
-    for axis, (key, label) in zip(axes, AXES):
-        for method in methods:
-            points = [(rung[key], rung["error"]) for rung in method["rungs"] if rung["error"] > 0]
-            if not points:
-                continue
-            if method in named:
-                axis.loglog(*zip(*points), "o-", color=COLORS[named.index(method)], markersize=3,
-                            linewidth=1.5, label=method["method"])
-            elif method in baselines:
-                marker = "sv^D*P"[baselines.index(method) % 6]
-                axis.loglog(*zip(*points), f"{marker}:", color=style.INK, markersize=3,
-                            linewidth=1.1, label=method["method"])
-            else:
-                axis.loglog(*zip(*points), "-", color=style.GREY, linewidth=0.5, zorder=1)
-        axis.set_xlabel(label)
-    front = sorted((rung["seconds"], rung["error"]) for method in methods
-                   for rung in method["rungs"] if rung["front"] and rung["error"] > 0)
-    if front:
-        axes[0].step(*zip(*front), where="post", color=style.GREY, linewidth=5, alpha=0.35,
-                     zorder=0, label="Pareto front")
-    axes[0].set_ylabel("largest distance of any spin")
-    axes[0].legend(fontsize=8)
+def axes_that_differ(trade):
+    """Evaluations are drawn where another method needs the fewest at a third of the errors."""
+    known = [error for error in DECADES if cheapest(trade["methods"], error)[1]]
+    differ = sum(cheapest(trade["methods"], error)[1] is not
+                 cheapest(trade["methods"], error, "evaluations")[1] for error in known)
+    return list(AXES) if 3 * differ >= len(known) > 0 else ["seconds"]
+
+
+def name_ends(axis, ends):
+    """Names beside the right end of the axes, each by a thin line from the end of its curve."""
+    low, high = (np.log(limit) for limit in axis.get_ylim())
+    apart, heights = 0.05, []
+    for x, y, name, color in sorted(ends, key=lambda end: end[1]):
+        height = (np.log(y) - low) / (high - low)
+        heights.append(max(height, heights[-1] + apart) if heights else max(height, 0))
+        axis.annotate(name, (x, y), (1.02, heights[-1]), textcoords="axes fraction", color=color,
+                      va="center", fontsize=9, annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": color, "linewidth": 0.6})
+
+
+def draw_methods(axis, trade, key, everything):
+    front, baselines = chosen(trade)
+    ends = []
+    for method in trade["methods"]:
+        points = [(rung[key], rung["error"]) for rung in method["rungs"] if rung["error"] > 0]
+        if not points:
+            continue
+        if method in front:
+            i = front.index(method)
+            look = {"color": COLORS[i], "marker": MARKS[i], "markersize": 4, "linewidth": 1.6}
+        elif method in baselines:
+            look = {"color": style.GREY, "marker": "+x"[baselines.index(method)], "markersize": 5,
+                    "linewidth": 1.4}
+        elif everything:
+            axis.loglog(*zip(*points), "-", color=style.GREY, linewidth=0.4, zorder=1)
+            continue
+        else:
+            continue
+        axis.loglog(*zip(*points), **look)
+        ends.append((*min(points, key=lambda point: point[1]), method["method"], look["color"]))
+    return ends
+
+
+def draw_front(axis, trade):
+    """The line one would follow, each piece in the colour of its method."""
+    front, _ = chosen(trade)
+    rungs = sorted(((rung["seconds"], rung["error"], method) for method in trade["methods"]
+                    for rung in method["rungs"] if rung["front"] and rung["error"] > 0),
+                   key=lambda rung: rung[0])
+    for (x, y, method), (after, lower, _) in zip(rungs, rungs[1:]):
+        color = COLORS[front.index(method)] if method in front else style.GREY
+        axis.plot((x, after, after), (y, y, lower), color=color, linewidth=6, alpha=0.25,
+                  solid_capstyle="butt", zorder=0)
+
+
+def draw(trade, path, everything=False):
+    keys = list(AXES) if everything else axes_that_differ(trade)
+    figure, axes = style.plt.subplots(1, len(keys), figsize=(7.5 * len(keys), 5.5), squeeze=False,
+                                      constrained_layout=True)
+    for axis, key in zip(axes[0], keys):
+        ends = draw_methods(axis, trade, key, everything)
+        axis.set_xlabel(AXES[key])
+        if key == "seconds":
+            draw_front(axis, trade)
+        if ends:
+            name_ends(axis, ends)
+    axes[0][0].set_ylabel("largest distance of any spin")
     shorter = "" if trade["horizon"] == trade["end"] else f" of {trade['end']:g}"
-    figure.suptitle(f"{pathlib.Path(trade['scene']).name} up to t = {trade['horizon']:g}{shorter}; "
-                    "dotted: baselines; thin: what is never near the front")
+    figure.suptitle(f"{scene_name(trade)} up to t = {trade['horizon']:g}{shorter}; broad: the "
+                    "front; grey: baselines", fontsize=11)
     style.save(figure, path)

@@ -17,7 +17,8 @@ import numpy as np
 SCRIPTS, WRITER = map(pathlib.Path, sys.argv[1:3])
 sys.path.insert(0, str(SCRIPTS))
 
-from cayspin_plots import trade_figure  # noqa: E402  the folder has to be known before
+import trade_report  # noqa: E402  the folder has to be known before
+from cayspin_plots import trade_costs, trade_figure  # noqa: E402
 from cayspin_plots.read import read_trajectory  # noqa: E402
 from cayspin_plots.table import read_table  # noqa: E402
 
@@ -149,7 +150,10 @@ class PlotDemo(ScriptTest):
 
 
 class PlotTrade(ScriptTest):
-    """What `cayspin trade --json` prints of four methods, the third never near the front."""
+    """What `cayspin trade --json` prints of five methods, the third never near the front."""
+
+    FIRST, SECOND, GREY = (0x00, 0x72, 0xB2), (0xD5, 0x5E, 0x00), (0x8B, 0x91, 0x99)
+    PANEL = (7.5, 5.5)
 
     def setUp(self):
         super().setUp()
@@ -159,13 +163,14 @@ class PlotTrade(ScriptTest):
                       "methods": [self.method("rkmk4", False, 1.0, True),
                                   self.method("rkmk4 tangent", False, 2.0, False),
                                   self.method("euler", False, 1e4, False),
+                                  self.method("rkmk4, single", False, 0.5, False),
                                   self.method("projected_rk4", True, 3.0, False)]}
 
     @staticmethod
-    def method(name, baseline, cost, front):
+    def method(name, baseline, cost, front, evaluations=None):
         return {"method": name, "baseline": baseline,
                 "rungs": [{"error": 0.1 * dt**4, "dt": dt, "seconds": 1e-3 * cost / dt,
-                           "evaluations": round(40 * cost / dt), "front": front}
+                           "evaluations": round(40 * (evaluations or cost) / dt), "front": front}
                           for dt in (0.4, 0.2, 0.1, 0.05)]}
 
     def plot(self, *arguments):
@@ -174,24 +179,62 @@ class PlotTrade(ScriptTest):
 
     def test_methods_and_front(self):
         png = self.file.with_suffix(".png")
-        self.assert_drawn(png, (13, 6), (BLUE, RED), self.plot())
-        every = png.read_bytes()
+        colors = (self.FIRST, self.SECOND, self.GREY)
+        self.assert_drawn(png, self.PANEL, colors, self.plot())
+        with_front = png.read_bytes()
         for rung in self.trade["methods"][0]["rungs"]:
             rung["front"] = False
-        self.assert_drawn(png, (13, 6), (BLUE, RED), self.plot())
-        self.assertNotEqual(png.read_bytes(), every)
+        self.assert_drawn(png, self.PANEL, colors, self.plot())
+        self.assertNotEqual(png.read_bytes(), with_front)
+
+    def test_evaluations_where_another_method_needs_fewest_or_all_are_asked_for(self):
+        png = self.file.with_suffix(".png")
+        two = (2 * self.PANEL[0], self.PANEL[1])
+        self.assert_drawn(png, two, (), self.plot("--all"))
+        self.trade["methods"][1] = self.method("rkmk4 tangent", False, 2.0, False, 0.1)
+        self.assert_drawn(png, two, (), self.plot())
 
     def test_a_method_without_runs_under_another_name(self):
         self.trade["methods"][1]["rungs"] = []
         png = self.folder / "other.png"
-        self.assert_drawn(png, (13, 6), (BLUE,), self.plot("--output", png))
+        self.assert_drawn(png, self.PANEL, (self.FIRST,), self.plot("--output", png))
 
-    def test_cheapest_method_comes_first(self):
-        names = [method["method"] for method in trade_figure.best_first(self.trade)]
-        self.assertEqual(names, ["rkmk4", "rkmk4 tangent", "projected_rk4", "euler"])
-        euler = self.trade["methods"][2]
-        self.assertEqual(trade_figure.cost(euler, "evaluations", 2e-4), 2_000_000)
-        self.assertIsNone(trade_figure.cost(euler, "seconds", 1e-8))
+    def test_at_most_seven_lines_and_the_front_among_them(self):
+        self.trade["methods"] += [self.method(f"other {i}", False, 5.0 + i, False)
+                                  for i in range(9)]
+        others, baselines = trade_figure.chosen(self.trade)
+        self.assertEqual([method["method"] for method in baselines], ["projected_rk4"])
+        self.assertEqual(len(others), 6)
+        self.assertEqual([method["method"] for method in others[:3]],
+                         ["rkmk4, single", "rkmk4", "rkmk4 tangent"])
+
+    def test_costs_between_runs_and_gains(self):
+        fast, euler = self.trade["methods"][0], self.trade["methods"][2]
+        self.assertAlmostEqual(trade_costs.cost(fast, "seconds", 0.1 * 0.15**4), 1e-3 / 0.15)
+        self.assertAlmostEqual(trade_costs.cost(fast, "seconds", 1.0), 1e-3 / 0.4)
+        self.assertEqual(trade_costs.cost(euler, "seconds", 1e-8), float("inf"))
+        ratio, winner = trade_costs.gain(self.trade, 1e-4)
+        self.assertEqual(winner, "rkmk4")  # double precision alone
+        self.assertAlmostEqual(ratio, 3)
+        self.assertIsNone(trade_costs.gain(self.trade, 1e-9))
+
+    def test_overview_of_several_scenes(self):
+        other, png = self.folder / "other.json", self.folder / "overview.png"
+        other.write_text(json.dumps(self.trade))
+        self.assert_drawn(png, (9, 1.2 + 2 * 0.42), (), self.plot(other, "--output", png))
+
+    def test_the_tables_of_the_page(self):
+        page = ("| scene | 1e-2 |\n|---|---|\n| Film, 16 x 16 | 9 (9) |\n| Slab | 7 (7) |\n"
+                "### Film, 16 x 16\n| us (evaluations) | 1e-2 |\n|---|---|\n| rkmk4 | 1 (1) |\n"
+                "### Slab\n| us (evaluations) | 1e-2 |\n|---|---|\n| rkmk4 | 1 (1) |\n")
+        title = "Film, 16 x 16"
+        row = trade_report.ratio_row(title, trade_report.ratios(self.trade))
+        self.assertTrue(row.startswith("| Film, 16 x 16 | 3.00 (-) | 3.00 (-) | 3.00 (-) | - (-)"))
+        self.assertTrue(row.endswith("| 2.00 | 2.00 | 2.00 |"), row)
+        found = trade_report.with_tables(page, {title: self.trade | {"name": title}}, {title: row})
+        self.assertIn(f"\n{row}\n| Slab | 7 (7) |\n", found)
+        self.assertIn("| rkmk4 | 2500 (100) | 5620 (225) | 17800 (711) | - |\n### Slab", found)
+        self.assertTrue(found.endswith("| rkmk4 | 1 (1) |\n"))
 
     def test_what_is_no_trade(self):
         png = self.folder / "trade.png"

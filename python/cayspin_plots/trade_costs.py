@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""What `cayspin trade --json` says about the cost of an error."""
+
+import math
+import pathlib
+
+# What a user would take otherwise: the classical methods, with renormalising.
+BASELINES = ("projected_heun", "projected_rk4", "projected_rk5", "projected_dp5")
+WITHOUT_GEOMETRY = "projected_rk8"
+ERRORS = (1e-2, 1e-4, 1e-6, 1e-8)
+
+
+def require_keys(trade):
+    """Raises KeyError or TypeError where something is missing that is drawn."""
+    for name in ("scene", "horizon", "end"):
+        trade[name]
+    for method in trade["methods"]:
+        for name in ("method", "baseline"):
+            method[name]
+        for rung in method["rungs"]:
+            for name in ("error", "seconds", "evaluations", "front"):
+                rung[name]
+
+
+def scene_name(trade):
+    return trade.get("name") or pathlib.Path(trade["scene"]).stem
+
+
+def is_double(method):
+    return ", single" not in method["method"]
+
+
+def cost(method, key, error):
+    """The least cost of this error, between runs by a power law; infinite where none gets there."""
+    best, before = math.inf, None
+    for rung in method["rungs"]:
+        if rung["error"] <= error:
+            best = min(best, rung[key])
+            if before and before["error"] > error and rung["error"] > 0:
+                share = math.log(before["error"] / error) / math.log(
+                    before["error"] / rung["error"])
+                best = min(best, before[key] * (rung[key] / before[key])**share)
+        before = rung
+    return best
+
+
+def cheapest(methods, error, key="seconds"):
+    """(cost, method), or (infinity, None)."""
+    return min(((cost(method, key, error), method) for method in methods),
+               key=lambda found: found[0], default=(math.inf, None))
+
+
+def gain(trade, error):
+    """Time of the best baseline over that of the best other method in double precision, and that
+    method. None where no method gets there; infinite where no baseline does."""
+    double = [method for method in trade["methods"] if is_double(method)]
+    here, winner = cheapest([method for method in double
+                             if method["method"] not in (*BASELINES, WITHOUT_GEOMETRY)], error)
+    baseline, _ = cheapest([m for m in double if m["method"] in BASELINES], error)
+    return None if math.isinf(here) else (baseline / here, winner["method"])

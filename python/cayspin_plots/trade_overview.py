@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Which method to take: scenes as rows, errors as columns."""
+
+import math
+
+import numpy as np
+
+from cayspin_plots import style
+from cayspin_plots.trade_costs import ERRORS, gain, scene_name
+
+SLOWEST, FASTEST = 0.5, 8  # where colours end
+
+
+def draw(trades, path):
+    gains = [[gain(trade, error) for error in ERRORS] for trade in trades]
+    shares = np.array([[math.nan if g is None else
+                              math.log(min(max(g[0], SLOWEST), FASTEST)) for g in row]
+                             for row in gains])
+    figure, axis = style.plt.subplots(figsize=(9, 1.2 + 0.42 * len(trades)),
+                                      constrained_layout=True)
+    colors = style.plt.get_cmap("PuOr_r").copy()
+    colors.set_bad("#eeeeee")
+    axis.imshow(shares, cmap=colors, aspect="auto", vmin=-math.log(FASTEST),
+                vmax=math.log(FASTEST))
+    for i, row in enumerate(gains):
+        for j, found in enumerate(row):
+            text = "-" if found is None else (f"{found[1]}  " + (
+                "alone" if math.isinf(found[0]) else f"{found[0]:.2f}"))
+            deep = found is not None and found[0] > 4
+            axis.text(j, i, text, ha="center", va="center", fontsize=8.5,
+                      color="white" if deep else style.INK)
+    axis.set_xticks(range(len(ERRORS)), [f"{error:.0e}" for error in ERRORS])
+    axis.set_yticks(range(len(trades)), [scene_name(trade) for trade in trades])
+    axis.tick_params(length=0)
+    axis.grid(False)
+    axis.set_title("The fastest method for an error, and how many times the best baseline's speed")
+    style.save(figure, path)

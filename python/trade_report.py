@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Measures the scenes of docs/reports/trade.md on this machine, one after the other, and writes the
+page's tables of times and ratios and its pictures. Takes a quarter of an hour a repetition."""
+
+import argparse
+import json
+import math
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+
+from cayspin_plots import trade_costs, trade_figure, trade_overview
+from cayspin_plots.trade_costs import ERRORS, cheapest, cost
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs/reports/trade.md"
+# Title in the page, name of the picture, arguments.
+SCENES = (
+    ("One switching spin", "switching_spin", ()),
+    ("Film, 16 x 16", "film", ()),
+    ("The same, damping 0.02", "film_low_damping", ()),
+    ("Slab", "slab_switching", ()),
+    ("Heisenberg, 8^3", "heisenberg", ()),
+    ("Film, 256 x 256", "film_256", ("--set", "lattice.shape=[256,256]", "--seconds", "5")),
+    ("Heisenberg, 64^3", "heisenberg_64", ("--set", "lattice.shape=[64,64,64]", "--seconds", "3")),
+    ("One spin in a field", "macrospin", ()),
+    ("Rotating field", "macrospin_rotating_field", ()),
+    ("Rigid bodies", "rigid_body_ensemble", ()),
+    ("Bloch wall", "bloch_wall", ()),
+    ("Spin wave", "spin_wave", ()),
+    ("Slab, weak field", "slab_weak_field", ()),
+    ("Slab, damping 1", "slab_switching_overdamped", ()),
+    ("Slab, weak field, damping 1", "slab_weak_field_overdamped", ()),
+)
+HEADINGS = {"The same, damping 0.02": "Film, damping 0.02"}
+
+
+def measure(program, title, name, arguments, folder):
+    scene = ROOT / f"scenes/{re.sub('_(256|64)$', '', name)}.toml"
+    command = [program, "trade", scene, "--json", "--threads", "1", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True,
+                          env=os.environ | {"OMP_NUM_THREADS": "1"})
+    if done.returncode:
+        raise SystemExit(f"{' '.join(map(str, command))}: {done.stderr.strip()}")
+    (folder / f"{name}.json").write_text(done.stdout)
+    return json.loads(done.stdout) | {"name": title}
+
+
+def best(trade, error, keep):
+    return cheapest([method for method in trade["methods"] if keep(method)], error)[0]
+
+
+def ratios(trade):
+    """Those of the first table: gains and projected_rk8 in double, then double over single."""
+    found = []
+    for error in ERRORS:
+        gain = trade_costs.gain(trade, error)
+        here = best(trade, error, lambda m: trade_costs.is_double(m) and m["method"] not in
+                    (*trade_costs.BASELINES, trade_costs.WITHOUT_GEOMETRY))
+        without = best(trade, error, lambda m: m["method"] == trade_costs.WITHOUT_GEOMETRY)
+        found += [gain[0] if gain else math.inf, without / here]
+    for error in ERRORS[:3]:
+        found.append(best(trade, error, trade_costs.is_double) /
+                     best(trade, error, lambda m: not trade_costs.is_double(m)))
+    return found
+
+
+def text(ratio):
+    return f"{ratio:.2f}" if math.isfinite(ratio) and ratio > 0 else "-"
+
+
+def ratio_row(title, found):
+    gains = [f"{text(found[2 * i])} ({text(found[2 * i + 1])})" for i in range(len(ERRORS))]
+    return f"| {title} | " + " | ".join(gains + [text(ratio) for ratio in found[8:]]) + " |"
+
+
+def three_digits(number):
+    return f"{number:#.3g}".rstrip(".") if number < 1000 else f"{float(f'{number:.3g}'):.0f}"
+
+
+def cost_row(trade, name, unit):
+    method = next((m for m in trade["methods"] if m["method"] == name), None)
+    if method is None:
+        raise SystemExit(f"{trade['name']}: trade knows no method {name}")
+    cells = []
+    for error in ERRORS:
+        seconds = cost(method, "seconds", error)
+        cells.append("-" if math.isinf(seconds) else
+                     f"{three_digits(seconds / unit)} ({cost(method, 'evaluations', error):.0f})")
+    return f"| {name} | " + " | ".join(cells) + " |"
+
+
+def with_tables(page, trades, rows):
+    """The page with new rows in place of those that begin alike."""
+    trade, unit, lines = None, None, []
+    by_heading = {HEADINGS.get(title, title): title for title in trades}
+    for line in page.splitlines():
+        heading, first = re.match("### (.*)", line), re.match(r"\| ([^|]*) \|", line)
+        if line.startswith("#"):
+            trade, unit = trades.get(by_heading.get(heading and heading[1])), None
+        if first and first[1] in rows:
+            line = rows[first[1]]
+        elif first and trade and (header := re.match(r"(us|ms) \(evaluations\)", first[1])):
+            unit = {"us": 1e-6, "ms": 1e-3}[header[1]]
+        elif first and unit and not first[1].startswith("-"):
+            line = cost_row(trade, first[1], unit)
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", default=ROOT / "build/release/bin/cayspin", type=pathlib.Path)
+    parser.add_argument("--folder", default=ROOT / "build/trade", type=pathlib.Path,
+                        help="for what trade prints")
+    parser.add_argument("--repetitions", default=1, type=int,
+                        help="ratios are medians, and their spread is printed")
+    arguments = parser.parse_args()
+    arguments.folder.mkdir(parents=True, exist_ok=True)
+    trades, rows = {}, {}
+    for title, name, options in SCENES:
+        found = []
+        for _ in range(arguments.repetitions):
+            trades[title] = measure(arguments.program, title, name, options, arguments.folder)
+            found.append(ratios(trades[title]))
+        medians = [statistics.median(column) for column in zip(*found)]
+        rows[title] = ratio_row(title, medians)
+        spread = max(max(column) / min(column) for column in zip(*found)
+                     if all(math.isfinite(number) and number > 0 for number in column))
+        print(f"{rows[title]}  largest over least: {spread:.2f}", flush=True)
+        trade_figure.draw(trades[title], ROOT / f"docs/images/trade_{name}.png")
+    trade_overview.draw(list(trades.values()), ROOT / "docs/images/trade_overview.png")
+    PAGE.write_text(with_tables(PAGE.read_text(), trades, rows))
+
+
+if __name__ == "__main__":
+    main()
