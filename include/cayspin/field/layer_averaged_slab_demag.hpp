@@ -28,8 +28,9 @@ struct AverageAlongX {
   KOKKOS_FUNCTION void operator()(std::int64_t task) const {
     std::int64_t const x = task * lanes_of<Value>;
     Value sum(0.0);
-    for (std::int64_t row = 0; row < layout.rows(); ++row)
-      sum = sum + load<Value>(component + layout.row_offset(row) + x);
+    for (std::int32_t z = 0; z < layout.nz; ++z)
+      for (std::int32_t y = 0; y < layout.ny; ++y)
+        sum = sum + load<Value>(component + layout.row_offset(y, z) + x);
     store(Value(sum * Value(1.0 / static_cast<double>(layout.rows()))), averages + x);
   }
 };
