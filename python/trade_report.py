@@ -24,8 +24,10 @@ SCENES = (
     ("The same, damping 0.02", "film_low_damping", ()),
     ("Slab", "slab_switching", ()),
     ("Heisenberg, 8^3", "heisenberg", ()),
-    ("Film, 256 x 256", "film_256", ("--set", "lattice.shape=[256,256]", "--seconds", "5")),
-    ("Heisenberg, 64^3", "heisenberg_64", ("--set", "lattice.shape=[64,64,64]", "--seconds", "3")),
+    ("Film, 256 x 256", "film_256",
+     ("--set", "lattice.shape=[256,256]", "--set", "integrator.end=10", "--seconds", "20")),
+    ("Heisenberg, 64^3", "heisenberg_64",
+     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "20")),
     ("One spin in a field", "macrospin", ()),
     ("Rotating field", "macrospin_rotating_field", ()),
     ("Rigid bodies", "rigid_body_ensemble", ()),
@@ -81,33 +83,36 @@ def three_digits(number):
     return f"{number:#.3g}".rstrip(".") if number < 1000 else f"{float(f'{number:.3g}'):.0f}"
 
 
-def cost_row(trade, name, unit):
-    method = next((m for m in trade["methods"] if m["method"] == name), None)
-    if method is None:
-        raise SystemExit(f"{trade['name']}: trade knows no method {name}")
+def cost_row(method, unit):
     cells = []
     for error in ERRORS:
         seconds = cost(method, "seconds", error)
         cells.append("-" if math.isinf(seconds) else
                      f"{three_digits(seconds / unit)} ({cost(method, 'evaluations', error):.0f})")
-    return f"| {name} | " + " | ".join(cells) + " |"
+    return f"| {method['method']} | " + " | ".join(cells) + " |"
 
 
 def with_tables(page, trades, rows):
-    """The page with new rows in place of those that begin alike."""
-    trade, unit, lines = None, None, []
+    """The page with new rows in its table of ratios, and in those of scenes the methods that their
+    pictures have."""
+    trade, lines, replaced = None, [], False
     by_heading = {HEADINGS.get(title, title): title for title in trades}
     for line in page.splitlines():
         heading, first = re.match("### (.*)", line), re.match(r"\| ([^|]*) \|", line)
+        replaced = replaced and bool(first)
         if line.startswith("#"):
-            trade, unit = trades.get(by_heading.get(heading and heading[1])), None
+            trade = trades.get(by_heading.get(heading and heading[1]))
         if first and first[1] in rows:
             line = rows[first[1]]
-        elif first and trade and (header := re.match(r"(us|ms) \(evaluations\)", first[1])):
-            unit = {"us": 1e-6, "ms": 1e-3}[header[1]]
-        elif first and unit and not first[1].startswith("-"):
-            line = cost_row(trade, first[1], unit)
+        if replaced:
+            continue
         lines.append(line)
+        if first and trade and (header := re.match(r"(us|ms) \(evaluations\)", first[1])):
+            unit = {"us": 1e-6, "ms": 1e-3}[header[1]]
+            lines.append("|---" * (1 + len(ERRORS)) + "|")
+            lines += [cost_row(method, unit) for group in trade_figure.chosen(trade)
+                      for method in group]
+            replaced = True
     return "\n".join(lines) + "\n"
 
 
@@ -117,7 +122,7 @@ def main():
     parser.add_argument("--folder", default=ROOT / "build/trade", type=pathlib.Path,
                         help="for what trade prints")
     parser.add_argument("--repetitions", default=1, type=int,
-                        help="ratios are medians, and their spread is printed")
+                        help="ratios are medians; the spread is that of the median ratio")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
     trades, rows = {}, {}
@@ -127,10 +132,10 @@ def main():
             trades[title] = measure(arguments.program, title, name, options, arguments.folder)
             found.append(ratios(trades[title]))
         medians = [statistics.median(column) for column in zip(*found)]
-        rows[title] = ratio_row(title, medians)
-        spread = max(max(column) / min(column) for column in zip(*found)
-                     if all(math.isfinite(number) and number > 0 for number in column))
-        print(f"{rows[title]}  largest over least: {spread:.2f}", flush=True)
+        spreads = [max(column) / min(column) for column in zip(*found)
+                   if all(math.isfinite(number) and number > 0 for number in column)]
+        rows[title] = f"{ratio_row(title, medians)} {statistics.median(spreads):.2f} |"
+        print(rows[title], flush=True)
         trade_figure.draw(trades[title], ROOT / f"docs/images/trade_{name}.png")
     trade_overview.draw(list(trades.values()), ROOT / "docs/images/trade_overview.png")
     PAGE.write_text(with_tables(PAGE.read_text(), trades, rows))

@@ -58,6 +58,7 @@
 #include <cayspin/stepper/series4.hpp>
 #include <cayspin/stepper/stiff_gauss.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
+#include <cayspin/stepper/tableau_order6.hpp>
 #include <cayspin/stepper/two_point.hpp>
 #include <cayspin/units.hpp>
 #include <cayspin/vec3.hpp>

@@ -4,6 +4,7 @@
 #include <cayspin/io/method.hpp>
 #include <cayspin/stepper/tableau.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
+#include <cayspin/stepper/tableau_order6.hpp>
 
 #include <tuple>
 
@@ -132,6 +133,14 @@ inline constexpr auto method_list = [] {
                .generators = with_chart,
                .isotropies = a_number,
                .trials = {plain, in_chart, compensated_single_precision}})),
+      row<Group<tableau::Oscillatory86>>(lie({.word = "rkmk86",
+                                              .generators = with_chart,
+                                              .isotropies = a_number,
+                                              .trials = {plain, in_chart, sigma}})),
+      row<Group<tableau::Damped86>>(lie({.word = "rkmk86_damped",
+                                         .generators = with_chart,
+                                         .isotropies = a_number,
+                                         .trials = {plain, in_chart}})),
       row<Group<tableau::DormandPrince8>>(lie({.word = "rkmk8",
                                                .generators = with_chart,
                                                .isotropies = a_number,
@@ -214,6 +223,7 @@ inline constexpr auto method_list = [] {
       row<Projected<tableau::Oscillatory64>>({.word = "projected_rk64", .trials = {plain}}),
       row<Projected<tableau::Oscillatory74>>(
           {.word = "projected_rk74", .trials = {plain, single_precision}}),
+      row<Projected<tableau::Oscillatory86>>({.word = "projected_rk86", .trials = {plain}}),
       row<Projected<tableau::DormandPrince5>>({.word = "projected_rk5",
                                                .compensated = true,
                                                .trials = {plain, compensated_single_precision}}),

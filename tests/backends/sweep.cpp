@@ -56,8 +56,9 @@ TYPED_TEST(Sweep, StagesThatReadAllBeforeThem) {
   expect_same_on_both_paths<Rkmk<typename TestFixture::Field, tableau::ThreeEighths4>>(turning);
 }
 
-TYPED_TEST(Sweep, TwelveStages) {
+TYPED_TEST(Sweep, EightAndTwelveStages) {
   using Field = typename TestFixture::Field;
+  expect_same_on_both_paths<ProjectedRungeKutta<Field, tableau::Oscillatory86>>(turning);
   expect_same_on_both_paths<Rkmk<Field, tableau::DormandPrince8>>(turning,
                                                                   smaller_swept_lattices());
   expect_same_on_both_paths<StereographicRungeKutta<Field, tableau::DormandPrince8>>(

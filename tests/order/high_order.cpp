@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Order 8, where a few steps are enough to reach round-off.
+// Orders 6 and 8, where a few steps are enough to reach round-off.
+#include "../support/order_conditions.hpp"
 #include "chain.hpp"
 
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
+#include <cayspin/stepper/tableau_order6.hpp>
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -32,6 +34,47 @@ TEST_P(HighOrder, InTheChart) {
 TEST_P(HighOrder, InSpace) {
   ladder = {4, 5, 7, 10};
   expect<ProjectedRungeKutta<Spins, DormandPrince8>>("projected", 8, slab.natural());
+}
+
+TEST_P(HighOrder, EightStagesOfOrder6) {
+  ladder = {8, 11, 16, 23};
+  auto const expect_6 = [&]<class Tableau>(Tableau) {
+    expect<Rkmk<Spins, Tableau>>("group", 6, slab.natural());
+    expect<StereographicRungeKutta<Spins, Tableau>>("chart", 6, slab.natural());
+    expect<ProjectedRungeKutta<Spins, Tableau>>("projected", 6, slab.natural());
+  };
+  expect_6(tableau::Oscillatory86());
+  expect_6(tableau::Damped86());
+}
+
+// Longer steps per evaluation than Dormand-Prince 5 at every damping below 0.3.
+TEST(Oscillatory86, IsStableOnTheImaginaryAxis) {
+  auto const per_stage = [](double damping) {
+    return largest_stable_step<ProjectedRungeKutta<Spins, tableau::Oscillatory86>>(1, damping) / 8;
+  };
+  EXPECT_NEAR(per_stage(0), 0.462, 0.001);
+  EXPECT_NEAR(per_stage(0.02), 0.479, 0.001);
+  EXPECT_NEAR(per_stage(0.1), 0.507, 0.001);
+  EXPECT_NEAR(per_stage(0.3), 0.478, 0.001);
+}
+
+TEST(Damped86, TakesLongStepsOfDecay) {
+  using Stepper = Rkmk<Spins, tableau::Damped86>;
+  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1, false) / 8, 0.862, 0.001);
+  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1) / 8, 0.439, 0.001);
+}
+
+template <class Tableau>
+double largest_defect_to_order_5() {
+  double largest = 0;
+  for (int order = 1; order <= 5; ++order)
+    largest = std::max(largest, defect<Tableau>(order, 1, [](int i) { return Tableau::b[i]; }));
+  return largest;
+}
+
+TEST(EightStages, SatisfyTheConditionsToRoundOff) {
+  EXPECT_LT(largest_defect_to_order_5<tableau::Oscillatory86>(), 0x1p-50);
+  EXPECT_LT(largest_defect_to_order_5<tableau::Damped86>(), 0x1p-50);
 }
 
 TEST_P(HighOrder, InSinglePrecisionErrorsAreRoundOff) {
