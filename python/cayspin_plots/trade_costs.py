@@ -20,6 +20,8 @@ def require_keys(trade):
         for rung in method["rungs"]:
             for name in ("error", "seconds", "evaluations", "front"):
                 rung[name]
+        for error in ERRORS:
+            cost(method, "seconds", error), cost(method, "evaluations", error)
 
 
 def scene_name(trade):
@@ -31,17 +33,9 @@ def is_double(method):
 
 
 def cost(method, key, error):
-    """The least cost of this error, between runs by a power law; infinite where none gets there."""
-    best, before = math.inf, None
-    for rung in method["rungs"]:
-        if rung["error"] <= error:
-            best = min(best, rung[key])
-            if before and before["error"] > error and rung["error"] > 0:
-                share = math.log(before["error"] / error) / math.log(
-                    before["error"] / rung["error"])
-                best = min(best, before[key] * (rung[key] / before[key])**share)
-        before = rung
-    return best
+    """Of one of the ERRORS, as the program has it; infinite where the method does not get there."""
+    amount = {one["error"]: one[key] for one in method["costs"]}[error]
+    return math.inf if amount is None else amount
 
 
 def cheapest(methods, error, key="seconds"):

@@ -4,28 +4,27 @@
 import numpy as np
 
 from cayspin_plots import style
-from cayspin_plots.trade_costs import BASELINES, cheapest, cost, scene_name
+from cayspin_plots.trade_costs import BASELINES, ERRORS, cheapest, cost, scene_name
 
 LINES = 7  # at most
 OF_BASELINES = 2  # among them
 # Okabe and Ito's, for all eyes; and marks, for print without colour.
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 MARKS = "osD^vPX"
-DECADES = [10.0**-power for power in range(1, 10)]
 AXES = {"seconds": "seconds of stepping", "evaluations": "evaluations of the field"}
 
 
 def chosen(trade):
-    """The methods that are cheapest to some decade of errors, those to most decades first, and the
-    best baselines."""
+    """The methods that are cheapest to some error, those to most errors first, and the best
+    baselines."""
     methods = trade["methods"]
-    best = {error: cheapest(methods, error)[0] for error in DECADES}
+    best = {error: cheapest(methods, error)[0] for error in ERRORS}
 
     def merit(method):
-        costs = ((best[error], cost(method, "seconds", error)) for error in DECADES)
+        costs = ((best[error], cost(method, "seconds", error)) for error in ERRORS)
         return sum((b / c)**4 for b, c in costs if 0 < c < float("inf"))
 
-    winners = {id(cheapest(methods, error)[1]) for error in DECADES}
+    winners = {id(cheapest(methods, error)[1]) for error in ERRORS}
     ranked = sorted((m for m in methods if m["rungs"]), key=merit, reverse=True)
     baselines = [m for m in ranked if m["method"] in BASELINES][:OF_BASELINES]
     others = [m for m in ranked if m not in baselines]
@@ -35,7 +34,7 @@ def chosen(trade):
 
 def axes_that_differ(trade):
     """Evaluations are drawn where another method needs the fewest at a third of the errors."""
-    known = [error for error in DECADES if cheapest(trade["methods"], error)[1]]
+    known = [error for error in ERRORS if cheapest(trade["methods"], error)[1]]
     differ = sum(cheapest(trade["methods"], error)[1] is not
                  cheapest(trade["methods"], error, "evaluations")[1] for error in known)
     return list(AXES) if 3 * differ >= len(known) > 0 else ["seconds"]

@@ -138,8 +138,10 @@ CLI::App* add_trade(CLI::App& app, TradeOptions& options) {
 }
 
 CLI::App* add_advise(CLI::App& app, AdviseOptions& options) {
-  auto* command =
-      app.add_subcommand("advise", "Name the cheapest method and its dt or tolerance for an error");
+  auto* command = app.add_subcommand(
+      "advise",
+      "Name the cheapest method and its dt or tolerance for an error. Takes at most a tenth of the "
+      "run's time, or 2 s");
   add_try_options(*command, options);
   command->add_option("--error", options.error, "Largest distance of any spin")->required();
   command->add_option("--budget", options.budget, "Time that the run may take")

@@ -234,9 +234,8 @@ io::Scene with_method(io::Scene const& typed, LeftBehind const* left, RunOptions
   bool const silent = options.listener != Listener::user;
   std::optional<io::Scene> scene;
   ranks.together([&] {
-    if (ranks.is_first())
-      scene = trade::with_method(typed, space, options.precision,
-                                 trade::TrialProgress(silent, true).on_try());
+    trade::TrialProgress progress(silent, true);
+    if (ranks.is_first()) scene = trade::with_method(typed, space, options.precision, &progress);
   });
   std::string text = scene ? scene->text : std::string();
   ranks.tell(text);

@@ -5,6 +5,7 @@
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
+#include "trade/verdict.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -41,11 +42,11 @@ void print_horizon(Pilot const& pilot, double horizon, std::string const& why_sh
 void print_text(Pilot const& pilot, Reference const& reference,
                 std::vector<Ladder> const& ladders) {
   fmt::print("scene       {}\n", pilot.scene().path.string());
-  print_horizon(pilot, reference.horizon, reference.why_shorter);
+  print_horizon(pilot, reference.horizon.time, reference.horizon.why_shorter);
   fmt::print(
       "reference   tsit5 and dp5 at a tolerance of 1e-13 agree to {:.1e}\n"
-      "error       the largest distance of any spin at {} times, the last t = {}\n\n",
-      reference.uncertainty, Pilot::looks, time_text(pilot.scene().units, reference.horizon, 6));
+      "error       the largest distance of any spin at a dozen times, the last t = {}\n\n",
+      reference.uncertainty, time_text(pilot.scene().units, reference.horizon.time, 6));
   constexpr auto line = "{:<33} {:>14} {:>10} {:>11} {:>12} {}\n";
   fmt::print(line, "method", "steps", "error", "seconds", "evaluations", "front");
   for (auto const& ladder : ladders)
@@ -66,15 +67,19 @@ void print_text(Pilot const& pilot, Reference const& reference,
   }
 }
 
+nlohmann::json finite_or_null(double amount) {
+  return std::isfinite(amount) ? nlohmann::json(amount) : nlohmann::json();
+}
+
 nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
                        std::vector<Ladder> const& ladders) {
   nlohmann::json all;
   all["scene"] = pilot.scene().path.string();
   auto const& units = pilot.scene().units;
   all["units"] = units.si ? "SI" : "reduced";
-  all["horizon"] = reference.horizon * units.time;
+  all["horizon"] = reference.horizon.time * units.time;
   all["end"] = pilot.end() * units.time;
-  all["why_shorter"] = reference.why_shorter;
+  all["why_shorter"] = reference.horizon.why_shorter;
   all["uncertainty"] = reference.uncertainty;
   for (auto const& ladder : ladders) {
     nlohmann::json one;
@@ -92,40 +97,14 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
         step["dt"] = rung.dt * units.time;
       one["rungs"].push_back(step);
     }
+    one["costs"] = nlohmann::json::array();
+    for (double const error : errors_compared)
+      one["costs"].push_back({{"error", error},
+                              {"seconds", finite_or_null(seconds_to(ladder, error))},
+                              {"evaluations", finite_or_null(evaluations_to(ladder, error))}});
     all["methods"].push_back(one);
   }
   return all;
-}
-
-/// How an advice turned out, beside the ladders.
-struct Verdict {
-  double asked;
-  Advised advised;
-  double error = 0, seconds = 0;  // of the advised run
-  double best = 0;                // seconds, of all ladders
-  std::string best_method;
-};
-
-// `pilot`: of the scene up to the reference's horizon, where the ladders end.
-Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
-              double asked, std::optional<Precision> precision) {
-  Verdict verdict{asked, advise(pilot, {asked, {}, precision, {}}), 0, 0, 0, {}};
-  verdict.best = std::numeric_limits<double>::infinity();
-  for (auto const& ladder : ladders) {
-    double const seconds = seconds_to(ladder, asked);
-    if (!(seconds < verdict.best)) continue;
-    verdict.best = seconds;
-    verdict.best_method = ladder.candidate.name();
-  }
-  if (auto const& choice = verdict.advised.choice) {
-    auto steps = choice->steps;
-    auto& count = steps.count;
-    count = (count + Pilot::looks - 1) / Pilot::looks * Pilot::looks;
-    auto const outcome = pilot.run(choice->candidate, reference.horizon, steps, 3);
-    verdict.error = distance(outcome, reference.solution);
-    verdict.seconds = outcome.seconds();
-  }
-  return verdict;
 }
 
 void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
@@ -133,7 +112,7 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   fmt::print("\nwhat `cayspin advise` says, and how it turns out\n");
   fmt::print(line, "asked", "advised", "steps", "error / asked", "time / best", "time / predicted",
              "tried for");
-  for (auto const& [asked, advised, error, seconds, best, best_method] : verdicts) {
+  for (auto const& [asked, advised, error, seconds, best] : verdicts) {
     auto const& choice = advised.choice;
     if (!choice) {
       fmt::print(line, fmt::format("{:.0e}", asked), "nothing", "-", "-", "-", "-",
@@ -234,7 +213,7 @@ int trade_off(TradeOptions const& options) {
   TrialProgress progress(options.quiet, !options.json);
   auto const reference = converged_reference(pilot, options.seconds);
   LadderLimits limits;
-  limits.on_try = progress.on_try();
+  limits.progress = &progress;
   limits.seconds = options.seconds;
   limits.least_error = std::max(limits.least_error, 10 * reference.uncertainty);
   std::vector<Ladder> ladders;
@@ -251,7 +230,7 @@ int trade_off(TradeOptions const& options) {
     print_text(pilot, reference, ladders);
   if (!options.advice) return Status::done;
   auto as_far = scene;
-  as_far.integrator.dt *= reference.horizon / pilot.end();
+  as_far.integrator.dt *= reference.horizon.time / pilot.end();
   Pilot const pilot_as_far(as_far, space);
   std::vector<Verdict> verdicts;
   for (double const error : errors_compared)
@@ -268,8 +247,7 @@ int advise_on(AdviseOptions const& options) {
   KokkosSession const kokkos(space, options.threads, {});
   Pilot const pilot(scene, space);
   TrialProgress progress(options.quiet, !options.json);
-  auto const advised =
-      advise(pilot, {options.error, options.budget, options.precision, progress.on_try()});
+  auto const advised = advise(pilot, {options.error, options.budget, options.precision, &progress});
   progress.clear();
   if (!options.json) {
     fmt::print("scene       {}\n", scene.path.string());

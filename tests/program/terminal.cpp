@@ -78,7 +78,7 @@ TEST_F(Terminal, AdviceHasABarUnlessItIsToBeQuiet) {
                       "--threads", "1",          "--precision", "double"};
   auto const outcome = on_terminal(arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.output;
-  EXPECT_TRUE(contains(outcome.output, " so far  "));
+  EXPECT_TRUE(contains(outcome.output, " so far, at most 2 s  "));
   EXPECT_TRUE(contains(outcome.output, "\r\x1b[Kscene "));
   arguments.emplace_back("--quiet");
   auto const quiet = on_terminal(arguments);

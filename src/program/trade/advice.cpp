@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "advice.hpp"
 
-#include "fine_solution.hpp"
+#include "prospect.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
@@ -15,276 +15,256 @@
 namespace cayspin::program::trade {
 namespace {
 
-constexpr double aim = 0.85;      // of the error asked for
-constexpr double seconds = 5;     // that a coarse run of the scene may take
-constexpr double near = 4;        // error over error asked for, from where to predict
-constexpr double far = 30;        // the same, where the order is as expected
-constexpr double most_finer = 4;  // cost over that of the try before
-constexpr int tries = 12;         // of one candidate
-constexpr int all_tries = 200;
-constexpr int all_finer = 30;  // beyond the coarsest steps, where those are refused
-constexpr int horizons = 20;   // tried, each half of the one before
+// Of the time that a run takes, and seconds at least.
+constexpr double most_share = 0.1, least_limit = 2;
+// Of the limit, roughly: of a coarse run, the fine solution, the first tries, and all tries.
+constexpr double coarse_share = 1.0 / 40, fine_share = 0.4, first_share = 0.65, try_share = 0.9;
 
-// Of the time of a search, roughly.
-constexpr double share_of_coarsest = 0.3;
-constexpr double share_of_judging = 0.4;
+constexpr double accepted = 0.95;  // of the error asked for, with what is not known of it
+constexpr double aim = 0.9;        // of what is accepted
+constexpr double unlikely = 16;    // evaluations expected over the fewest
+constexpr double hope = 0.8;       // time over that predicted, at best
+constexpr double doubt = 6;        // the same, where noise may be the reason
+constexpr double contender = 1.7;  // time over that of the best, of those timed again
+constexpr int rounds = 3;          // of that
+constexpr int tries = 12;          // of one candidate
+constexpr int all_finer = 30;      // beyond the coarsest steps, where those are refused
+constexpr int horizons = 20;       // tried, each half of the one before
 
-struct Try {
-  Steps steps;
-  double seconds;
-  double error;  // estimated
-};
+constexpr Repeats quick{1, 2e-3};
 
-/// What is known of a candidate. Resolution: its number of steps, or 1 / tolerance.
-struct Prospect {
-  Candidate candidate;
-  double order;       // of the error in the resolution
-  double cost_order;  // of the cost
-  std::vector<Try> tried;
-  Steps coarsest, next;
-  int attempts = 0;
-  bool dropped = false;
-
-  double resolution(Steps const& steps) const {
-    return candidate.method->adaptive ? 1 / steps.tolerance : static_cast<double>(steps.count);
-  }
-  Steps steps_of(double resolution) const {
-    if (candidate.method->adaptive) return {0, std::min(1 / resolution, coarsest.tolerance)};
-    auto const per_look = std::ceil(resolution / Pilot::looks - 1e-9);
-    return {std::max(static_cast<std::int64_t>(per_look) * Pilot::looks, coarsest.count), 0};
-  }
-
-  bool can_take(Steps const& steps) const {
-    return !candidate.method->adaptive || steps.tolerance >= candidate.least_tolerance();
-  }
-  Try const& last() const { return tried.back(); }
-  /// Of the coarsest steps that ran.
-  double least_seconds() const {
-    return tried.empty() ? std::numeric_limits<double>::infinity() : tried.front().seconds;
-  }
-  bool is_judged() const { return tried.size() > 1; }
-  /// From the last two tries; the method's own where they do not say.
-  double seen_order() const {
-    auto const &a = tried[tried.size() - 2], &b = tried.back();
-    double const seen =
-        std::log(a.error / b.error) / std::log(resolution(b.steps) / resolution(a.steps));
-    return std::isfinite(seen) ? seen : order;
-  }
-  Steps needed(double error) const {
-    double const most = last().error < near * error ? order + 1 : order;
-    return needed(error, std::clamp(seen_order(), 0.5 * order, most));
-  }
-  Steps needed(double error, double order_used) const {
-    double const resolved = resolution(last().steps);
-    double const by_order = resolved * std::pow(last().error / error, 1 / order_used);
-    return steps_of(std::max(by_order, finer_than_failures(error)));
-  }
-  /// Tries that fell short bound it, wherever the order leads: where steps become unstable, errors
-  /// fall all at once.
-  double finer_than_failures(double error) const {
-    for (auto i = tried.size() - 1; i > 0; --i) {
-      auto const &coarse = tried[i - 1], &fine = tried[i];
-      if (coarse.error <= error || fine.error > error) continue;
-      double const from = resolution(coarse.steps), to = resolution(fine.steps);
-      double const slope = std::log(coarse.error / fine.error) / std::log(to / from);
-      return slope > order + 1 ? to : from * std::pow(coarse.error / error, 1 / slope);
-    }
-    return 0;
-  }
-  double seconds_of(Steps const& steps) const {
-    for (auto const& one : tried)
-      if (resolution(one.steps) == resolution(steps)) return one.seconds;
-    return last().seconds * std::pow(resolution(steps) / resolution(last().steps), cost_order);
-  }
-  /// Is it near enough to predict the rest?
-  bool is_settled(double error) const {
-    double const off = std::abs(seen_order() - order);
-    return last().error < near * error || (last().error < far * error && off < 0.3 * order);
-  }
+/// A solution and the error that it has.
+struct Known {
+  FineSolution solution;
+  double error;  // estimated, by the one at ten times the tolerance
 };
 
 class Search {
  public:
-  Search(Pilot const& pilot, Reference const& horizon, FineSolution const& fine,
-         AdviceRequest const& request)
+  Search(Pilot const& pilot, Horizon const& horizon, Known const& fine,
+         AdviceRequest const& request, Kokkos::Timer const& clock, double limit)
       : pilot_(pilot),
         horizon_(horizon),
         fine_(fine),
-        error_(aim * request.error),
-        on_try_(request.on_try) {
-    double const error = request.error;
+        request_(request),
+        clock_(clock),
+        limit_(limit),
+        error_(accepted * request.error - fine.error),
+        goal_(aim * error_) {
     for (auto const& candidate : candidates(pilot.scene(), request.precision))
-      if (candidate.least_error() < error) add(candidate);
+      if (candidate.least_error() < request.error) add(candidate);
+    std::ranges::stable_sort(prospects_, {}, &Prospect::expected_evaluations);
   }
 
-  /// Best first, until the cheapest one is near enough.
+  /// Each that is likely once, then what promises to be the cheapest, until nothing does; then the
+  /// same with all. Less where time is up, but not before something runs.
   void run() {
-    double const count = static_cast<double>(prospects_.size());
-    for (auto& prospect : prospects_) {
-      while (!prospect.dropped && prospect.tried.empty()) attempt(prospect);
-      share_ += share_of_coarsest / count;
+    if (prospects_.empty()) return;
+    double const least = prospects_.front().expected_evaluations();
+    for (double const factor : {unlikely, std::numeric_limits<double>::infinity()}) {
+      try_each(factor * least);
+      refine();
     }
-    std::ranges::stable_sort(prospects_, {}, &Prospect::least_seconds);
-    for (auto& prospect : prospects_) {
-      auto const* best = cheapest();
-      if (best && best->is_settled(error_) &&
-          best->seconds_of(best->needed(error_)) < prospect.least_seconds())
-        break;  // nothing that follows takes less
-      while (!prospect.dropped && !prospect.is_judged()) attempt(prospect);
-      share_ += share_of_judging / count;
-    }
-    share_ = share_of_coarsest + share_of_judging;
-    std::erase_if(prospects_, [](Prospect const& one) { return !one.is_judged(); });
-    for (int i = 0; i < all_tries; ++i) {
-      auto* best = cheapest();
-      if (best && best->is_settled(error_)) best = hope_against(*best);
-      if (!best) return;
-      attempt(*best);
-    }
+    std::erase_if(prospects_, [](Prospect const& one) { return !runs(one); });
+    time_again();
   }
 
+  /// Cheapest first. One that was not tried to the end is not the first if others were.
   std::vector<Advice> all_advice() const {
     std::vector<Advice> all;
+    double const least = least_seconds();
     for (auto const& prospect : prospects_) {
-      if (prospect.dropped) continue;
-      auto const steps = prospect.needed(error_);
-      if (!prospect.can_take(steps)) continue;
-      Advice advice{prospect.candidate, steps, 0, error_, prospect.seconds_of(steps), 0};
-      double const parts = pilot_.end() / horizon_.horizon;
-      advice.seconds *= parts;
-      if (!prospect.candidate.method->adaptive) {
-        advice.steps.count =
-            static_cast<std::int64_t>(std::ceil(static_cast<double>(steps.count) * parts));
-        advice.dt = pilot_.end() / static_cast<double>(advice.steps.count);
-      }
-      advice.memory = pilot_.plan(prospect.candidate, horizon_.horizon, steps).memory.total();
-      all.push_back(advice);
+      auto const* const passing = prospect.passing(error_);
+      auto const steps = passing ? passing->steps : prospect.needed(goal_);
+      double const seconds = passing ? passing->seconds : prospect.seconds_of(steps);
+      if (!passing && (prospect.is_dropped() || !prospect.allows(steps) ||
+                       (std::isfinite(least) && seconds < least)))
+        continue;
+      all.push_back(
+          to_the_end(prospect.candidate(), steps, passing ? passing->error : goal_, seconds));
     }
     std::ranges::sort(all, {}, &Advice::seconds);
     return all;
   }
 
  private:
+  static bool has_run(Try const& one) { return std::isfinite(one.error); }
+  static bool runs(Prospect const& prospect) {
+    return std::ranges::any_of(prospect.tries(), has_run);
+  }
+
   void add(Candidate const& candidate) {
-    auto coarsest = coarsest_steps(pilot_, candidate, horizon_.horizon, horizon_.own_steps);
+    auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     for (int i = 0; is_refused(candidate, coarsest); ++i) {
       if (i == all_finer) return;
       coarsest = finer(candidate, coarsest);
     }
-    auto const& variant = pilot_.plan(candidate, horizon_.horizon, coarsest).variant;
+    auto const& variant = find_variant(with(pilot_.scene(), candidate, horizon_.time, 1, coarsest));
     double const order = candidate.substeps > 0 ? order_around_dear(variant) : variant.order;
     bool const adaptive = candidate.method->adaptive;
     // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
-    Steps const first = adaptive ? Steps{0, std::min(coarsest.tolerance, 30 * error_)} : coarsest;
-    prospects_.push_back(
-        {candidate, adaptive ? 1 : order, adaptive ? 1 / order : 1, {}, coarsest, first});
+    auto first = coarsest;
+    if (adaptive) first.tolerance = std::min(coarsest.tolerance, 30 * goal_);
+    constexpr double of_iterations = 20, error_of_own_steps = 1e-2;
+    double const own = static_cast<double>(horizon_.own_steps) *
+                       std::pow(error_of_own_steps / request_.error, 1 / order);
+    prospects_.emplace_back(candidate, coarsest, first, adaptive ? 1 : order,
+                            adaptive ? 1 / order : 1,
+                            std::max(own, static_cast<double>(coarsest.count)) *
+                                variant.evaluations.value_or(adaptive ? 6 : of_iterations));
   }
 
   bool is_refused(Candidate const& candidate, Steps const& steps) const {
     return pilot_.scene().integrator.refuse_unstable &&
-           dt_warning(pilot_.plan(candidate, horizon_.horizon, steps));
+           dt_warning(pilot_.plan(candidate, horizon_.time, steps));
   }
 
-  Prospect* cheapest() {
-    Prospect* best = nullptr;
+  double parts() const { return pilot_.end() / horizon_.time; }
+
+  bool is_over(double share) const {
+    double const of_best = most_share * parts() * least_seconds();
+    return clock_.seconds() > share * std::clamp(of_best, least_limit, limit_);
+  }
+
+  // Of what has the error; infinite where nothing has.
+  double seconds_of_passing(Prospect const& prospect) const {
+    auto const* const passing = prospect.passing(error_);
+    return passing ? passing->seconds : std::numeric_limits<double>::infinity();
+  }
+  double least_seconds() const {
     double least = std::numeric_limits<double>::infinity();
+    for (auto const& one : prospects_) least = std::min(least, seconds_of_passing(one));
+    return least;
+  }
+  bool anything_runs() const { return std::ranges::any_of(prospects_, runs); }
+
+  void try_each(double most_evaluations) {
     for (auto& prospect : prospects_) {
-      if (prospect.dropped || !prospect.is_judged() || !prospect.can_take(prospect.needed(error_)))
-        continue;
-      double const now = prospect.seconds_of(prospect.needed(error_));
-      if (now < least) {
-        least = now;
-        best = &prospect;
-      }
+      if (prospect.expected_evaluations() > most_evaluations) return;
+      if (is_over(first_share) && anything_runs()) return;
+      while (!prospect.is_dropped() && !runs(prospect)) attempt(prospect);
     }
-    return best;
   }
 
-  // One that would be cheaper by a fifth, should its error fall as its order says.
-  Prospect* hope_against(Prospect const& best) {
-    Prospect* hope = nullptr;
-    double least = 0.8 * best.seconds_of(best.needed(error_));
-    for (auto& prospect : prospects_) {
-      if (prospect.dropped || prospect.is_settled(error_)) continue;
-      double const seconds = prospect.seconds_of(prospect.needed(error_, prospect.order));
-      if (seconds < least) {
-        least = seconds;
-        hope = &prospect;
-      }
+  void refine() {
+    while (!is_over(try_share))
+      if (auto* const promising = most_promising())
+        attempt(*promising);
+      else if (!time_doubtful())
+        return;
+  }
+
+  // Nothing, where none of the others may be cheaper than the best that passes.
+  Prospect* most_promising() {
+    Prospect* promising = nullptr;
+    double least = least_seconds() / hope;
+    for (auto& one : prospects_) {
+      if (one.is_dropped() || !runs(one) || one.is_settled(error_, goal_)) continue;
+      double const seconds = one.seconds_of(one.needed(goal_));
+      if (seconds >= least) continue;
+      least = seconds;
+      promising = &one;
     }
-    return hope;
+    return promising;
   }
 
   void attempt(Prospect& prospect) {
-    auto const steps = prospect.next;
-    if (on_try_) on_try_(share_, prospect.candidate.name());
-    auto const& candidate = prospect.candidate;
-    auto const outcome = pilot_.run(candidate, fine_.stretch(candidate, steps), steps,
-                                    candidate.method->adaptive ? 1 : 3);
-    ++prospect.attempts;
-    double const now = prospect.resolution(steps);
-    if (outcome.failure) {
-      prospect.coarsest = prospect.next = prospect.steps_of(1.5 * now);
-    } else {
-      // The many looks at an adaptive run take time of their own.
-      double const taken = candidate.method->adaptive
-                               ? pilot_.run(candidate, horizon_.horizon, steps, 3).seconds()
-                               : outcome.seconds();
-      prospect.tried.push_back({steps, taken, fine_.distance_of(outcome, candidate, steps)});
-      judge(prospect);
-      auto const at_cost = [&](double factor) {
-        return now * std::pow(factor, 1 / prospect.cost_order);
-      };
-      double goal = at_cost(1.5);
-      if (prospect.is_judged())
-        goal = std::clamp(prospect.resolution(prospect.needed(2 * error_)), at_cost(1.3),
-                          at_cost(most_finer));
-      prospect.next = prospect.steps_of(goal);
-    }
-    prospect.dropped = prospect.attempts >= tries || !prospect.can_take(prospect.next) ||
-                       (prospect.is_judged() && is_round_off(prospect));
+    auto const steps = prospect.next(goal_);
+    auto const& candidate = prospect.candidate();
+    if (!prospect.allows(steps)) return prospect.drop();
+    if (request_.progress) request_.progress->show(clock_.seconds() / limit_, candidate.name());
+    auto const measured = fine_.solution.measure(candidate, steps, true, quick);
+    prospect.add(
+        {steps, measured.error, measured.seconds, static_cast<double>(measured.evaluations)},
+        fine_.error);
+    if (prospect.tries().size() >= tries || prospect.is_round_off(error_)) prospect.drop();
   }
 
-  // Finer steps that change the result by no less.
-  bool is_round_off(Prospect const& prospect) const {
-    return prospect.tried.size() > 2 && prospect.last().error > error_ &&
-           prospect.last().error < 100 * prospect.candidate.least_tolerance() &&
-           prospect.seen_order() < 0.2 * prospect.order;
+  // Times those once more that noise may have made slow. Was there one?
+  bool time_doubtful() {
+    bool any = false;
+    double const most = doubt * least_seconds();
+    for (auto& prospect : prospects_) {
+      if (prospect.is_dropped() || !runs(prospect) || prospect.is_timed_twice() ||
+          prospect.is_settled(error_, goal_))
+        continue;
+      if (prospect.seconds_of(prospect.needed(goal_)) > most || is_over(try_share)) continue;
+      auto const steps = std::ranges::find_if(prospect.tries(), has_run)->steps;
+      prospect.add_time(steps,
+                        pilot_.run(prospect.candidate(), horizon_.time, steps, quick).seconds());
+      any = true;
+    }
+    return any;
   }
 
-  // The fine solution tells the error of the last try, up to its own. Below that, the order does.
-  void judge(Prospect& prospect) {
-    auto& tried = prospect.tried;
-    auto& now = tried.back();
-    double const unknown = fine_.error();
-    if (tried.size() > 1 && now.error < 5 * unknown) {
-      auto const& before = tried[tried.size() - 2];
-      double const ratio = std::pow(
-          prospect.resolution(now.steps) / prospect.resolution(before.steps), -prospect.order);
-      now.error = std::clamp(before.error * ratio, now.error - unknown, now.error + unknown);
+  // By turns, so that noise is the same for all.
+  void time_again() {
+    for (int round = 0; round < rounds; ++round) {
+      double const most = (round == 0 ? doubt : contender) * least_seconds();
+      for (auto& prospect : prospects_) {
+        auto const* const passing = prospect.passing(error_);
+        if (!passing || prospect.seconds_of(passing->steps) > most) continue;
+        if (is_over(1)) return;
+        auto const steps = passing->steps;
+        auto const again = pilot_.run(prospect.candidate(), horizon_.time, steps, quick);
+        prospect.add_time(steps, again.seconds());
+      }
     }
-    now.error = std::max(now.error, 1e-16);
+  }
+
+  Advice to_the_end(Candidate const& candidate, Steps const& steps, double error,
+                    double seconds) const {
+    Advice advice{candidate, steps, 0, error, seconds * parts(), 0};
+    if (!candidate.method->adaptive) {
+      advice.steps.count =
+          static_cast<std::int64_t>(std::ceil(static_cast<double>(steps.count) * parts()));
+      advice.dt = pilot_.end() / static_cast<double>(advice.steps.count);
+    }
+    return advice;
   }
 
   Pilot const& pilot_;
-  Reference const& horizon_;
-  FineSolution const& fine_;
-  double error_;
-  OnTry on_try_;
-  double share_ = 0;  // of the search that is done, roughly
+  Horizon const& horizon_;
+  Known const& fine_;
+  AdviceRequest const& request_;
+  Kokkos::Timer const& clock_;
+  double limit_;         // seconds
+  double error_, goal_;  // accepted; to be reached
   std::vector<Prospect> prospects_;
 };
 
-// Up to the horizon, which is halved until there is one.
-FineSolution fine_solution(Pilot const& pilot, Reference& horizon, double error) {
+// What a search may take, from a coarse run to the end, which a part of it tells.
+double limit_of(Pilot const& pilot) {
+  auto const part = horizon_within(pilot, coarse_share * least_limit);
+  return std::max(least_limit, most_share * part.seconds * pilot.end() / part.time);
+}
+
+// Up to the horizon, which is halved until there is one that is known to a part of `error` and
+// takes no more than `seconds`.
+Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double seconds) {
+  auto const by = fine_tsit5();
+  double const tightest = by.least_tolerance();
   for (int i = 0; i < horizons; ++i) {
-    FineSolution fine(pilot, horizon.horizon, error);
-    if (fine.error() < error / 5) return fine;
-    horizon.why_shorter = fine.failure().value_or(
-        fmt::format("two runs of tsit5 differ by {:.1e} at t = {}", 9 * fine.error(),
-                    time_text(pilot.scene().units, horizon.horizon, 6)));
-    horizon.horizon /= 2;
-    horizon.own_steps /= 2;
+    FineSolution coarser(pilot, horizon.time, by, std::max(error / 10, 10 * tightest));
+    std::string why;
+    while (why.empty()) {
+      if (2 * coarser.seconds() > seconds) {
+        why = fmt::format("a fine solution takes more than {:.2g} s", 2 * coarser.seconds());
+        break;
+      }
+      FineSolution solution(pilot, horizon.time, by, coarser.tolerance() / 10);
+      double const unknown = coarser.distance_to(solution) / 9;
+      bool const is_tightest = solution.tolerance() < 10 * tightest;
+      if (unknown <= error / 30 || (is_tightest && unknown < error / 5))
+        return {std::move(solution), unknown};
+      if (solution.failure())
+        why = *solution.failure();
+      else if (is_tightest)
+        why = fmt::format("two runs of tsit5 differ by {:.1e} at t = {}", 9 * unknown,
+                          time_text(pilot.scene().units, horizon.time, 6));
+      coarser = std::move(solution);
+    }
+    horizon.halve(why);
   }
   throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
 }
@@ -293,17 +273,21 @@ FineSolution fine_solution(Pilot const& pilot, Reference& horizon, double error)
 
 Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   Kokkos::Timer const clock;
-  auto horizon = horizon_alone(pilot, seconds);
-  auto const fine = fine_solution(pilot, horizon, request.error);
-  Search search(pilot, horizon, fine, request);
+  double const limit = limit_of(pilot);
+  if (request.progress) request.progress->announce(limit);
+  auto horizon = horizon_within(pilot, coarse_share * limit);
+  auto const fine = fine_solution(pilot, horizon, request.error, fine_share * limit);
+  Search search(pilot, horizon, fine, request, clock, limit);
   search.run();
   Advised advised;
   advised.others = search.all_advice();
-  advised.horizon = horizon.horizon;
+  advised.horizon = horizon.time;
   advised.why_shorter = horizon.why_shorter;
   if (!advised.others.empty() &&
       !(request.budget && advised.others.front().seconds > *request.budget))
     advised.choice = advised.others.front();
+  if (auto& choice = advised.choice)
+    choice->memory = pilot.plan(choice->candidate, pilot.end(), choice->steps).memory.total();
   advised.seconds = clock.seconds();
   return advised;
 }

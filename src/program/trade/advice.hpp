@@ -13,16 +13,16 @@ struct Advice {
   Candidate candidate;
   Steps steps;  // to the scene's end
   double dt = 0;
-  double error = 0;  // predicted, at the tried horizon
+  double error = 0;  // at the tried horizon
   double seconds = 0;
-  std::int64_t memory = 0;  // bytes
+  std::int64_t memory = 0;  // bytes, of the choice
 };
 
 struct AdviceRequest {
   double error = 1e-4;
   std::optional<double> budget;        // seconds that the run may take
   std::optional<Precision> precision;  // the only one
-  OnTry on_try = {};
+  TrialProgress* progress = nullptr;
 };
 
 /// What was found out, at which horizon.
@@ -35,7 +35,8 @@ struct Advised {
 };
 
 /// Tries every candidate with coarse steps, judges their errors by one fine solution, and goes on
-/// with those that promise to be the cheapest.
+/// with those that promise to be the cheapest. Takes a tenth of the time of the run at most, or 2
+/// s, and a try.
 Advised advise(Pilot const& pilot, AdviceRequest const& request);
 
 }  // namespace cayspin::program::trade

@@ -104,7 +104,7 @@ std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precisio
   return all;
 }
 
-io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t looks,
+io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t intervals,
                Steps const& steps) {
   auto& integrator = scene.integrator;
   candidate.put_into(integrator);
@@ -117,13 +117,13 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
   integrator.max_dt = io::Integrator{}.max_dt;
   if (candidate.method->adaptive) {
     integrator.tolerance = steps.tolerance;
-    integrator.steps = looks;
+    integrator.steps = intervals;
   } else {
     integrator.tolerance.reset();
     integrator.steps = steps.count;
   }
   integrator.dt = horizon / static_cast<double>(integrator.steps);
-  scene.output.every = scene.output.scalars_every = integrator.steps / looks;
+  scene.output.every = scene.output.scalars_every = integrator.steps;
   return scene;
 }
 

@@ -34,9 +34,9 @@ struct Steps {
 /// dear field is evaluated once a step of some, and in each stage of others.
 std::vector<Candidate> candidates(io::Scene const& scene, std::optional<Precision> precision = {});
 
-/// The scene up to `horizon` by a candidate, looked at `looks` times on the way, the last at the
-/// end; a whole number of steps falls between two looks.
-io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t looks,
+/// The scene up to `horizon` by a candidate; adaptive ones are looked at after so many equal
+/// intervals.
+io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std::int64_t intervals,
                Steps const& steps);
 
 }  // namespace cayspin::program::trade

@@ -2,15 +2,9 @@
 #include "fine_solution.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace cayspin::program::trade {
 namespace {
-
-// Its error follows its tolerance.
-Candidate tsit5() {
-  return {{.method = io::find_method("tsit5"), .generator = io::Generator::tangent}};
-}
 
 Looks looks_of(Candidate const& candidate, Steps const& steps) {
   bool const adaptive = candidate.method->adaptive;
@@ -27,39 +21,32 @@ Looks looks_of(Candidate const& candidate, Steps const& steps) {
 
 }  // namespace
 
-FineSolution::FineSolution(Pilot const& pilot, double horizon, double error)
-    : pilot_(pilot), horizon_(horizon), error_(std::numeric_limits<double>::infinity()) {
-  auto const by = tsit5();
-  double const least = by.least_tolerance();
-  auto const run = [&](double tolerance) {
-    tolerance_ = tolerance;
-    auto stretch = this->stretch(by, {0, tolerance});
-    stretch.guarded = false;
-    return pilot.run(by, stretch, {0, tolerance});
-  };
-  auto coarser = run(std::max(error / 10, 10 * least));
-  do {
-    solution_ = run(tolerance_ / 10);
-    error_ = distance(coarser, solution_) / 9;
-    coarser = solution_;
-  } while (!solution_.failure && error_ > error / 30 && tolerance_ >= 10 * least);
+FineSolution::FineSolution(Pilot const& pilot, double horizon, Candidate const& by,
+                           double tolerance)
+    : pilot_(&pilot), by_(by), horizon_(horizon), tolerance_(tolerance) {
+  Steps const steps{0, tolerance};
+  solution_ = pilot.run(by, {0, horizon, pilot.start(), looks_of(by, steps)}, steps);
 }
 
-Stretch FineSolution::stretch(Candidate const& candidate, Steps const& steps) const {
-  return {0, horizon_, pilot_.start(), looks_of(candidate, steps), true};
-}
-
-double FineSolution::distance_of(Outcome const& outcome, Candidate const& candidate,
-                                 Steps const& steps) const {
+Measured FineSolution::measure(Candidate const& candidate, Steps const& steps, bool guarded,
+                               Repeats const& repeats) const {
+  bool const adaptive = candidate.method->adaptive;
   auto const looks = looks_of(candidate, steps);
-  if (outcome.failure || outcome.states.size() != looks.steps.size())
-    return std::numeric_limits<double>::infinity();
-  double largest = 0;
+  Stretch const stretch{0, horizon_, pilot_->start(), looks, guarded};
+  auto const outcome = pilot_->run(candidate, stretch, steps, adaptive ? Repeats{} : repeats);
+  Measured measured{outcome.failure, std::numeric_limits<double>::infinity(), outcome.seconds(),
+                    outcome.summary.evaluations};
+  if (outcome.failure) return measured;
+  measured.error = 0;
   for (std::size_t i = 0; i < looks.steps.size(); ++i)
-    largest = std::max(
-        largest, distance(outcome.states[i],
-                          at(looks.steps[i], candidate.method->adaptive ? parts : steps.count)));
-  return largest;
+    measured.error =
+        std::max(measured.error,
+                 distance(outcome.states[i], at(looks.steps[i], adaptive ? parts : steps.count)));
+  // The many looks at an adaptive run take time of their own.
+  constexpr double long_enough = 0.3;
+  if (adaptive && measured.seconds < long_enough)
+    measured.seconds = pilot_->run(candidate, horizon_, steps, repeats).seconds();
+  return measured;
 }
 
 // From the last of its times before that step on.
@@ -71,14 +58,13 @@ std::vector<double> FineSolution::at(std::int64_t step, std::int64_t steps) cons
   auto const after = std::ranges::upper_bound(times, share, {}, of);
   bool const first = after == times.begin();
   auto const last = static_cast<std::size_t>(after - times.begin()) - 1;
-  auto const& state = first ? pilot_.start() : solution_.states[last];
+  auto const& state = first ? pilot_->start() : solution_.states[last];
   double const begin = first ? 0 : of(times[last]);
   if (share == begin) return state;
-  auto const by = tsit5();
-  auto const rest = pilot_.run(
-      by, {begin * horizon_, (share - begin) * horizon_, state, {1, {1}}, false}, {0, tolerance_});
-  if (rest.failure) return std::vector(state.size(), std::numeric_limits<double>::infinity());
-  return rest.states.front();
+  Stretch const rest{begin * horizon_, (share - begin) * horizon_, state, {1, {1}}};
+  auto const outcome = pilot_->run(by_, rest, {0, tolerance_});
+  if (outcome.failure) return std::vector(state.size(), std::numeric_limits<double>::infinity());
+  return outcome.states.front();
 }
 
 }  // namespace cayspin::program::trade

@@ -4,39 +4,55 @@
 #include "pilot.hpp"
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace cayspin::program::trade {
 
-/// A solution by tsit5 up to a horizon, at a tolerance below the errors to be measured. What
-/// relaxes early is seen, too: half of its times are in the first quarter.
+/// What a run came to, beside a fine solution.
+struct Measured {
+  std::optional<std::string> failure = {};
+  double error = std::numeric_limits<double>::infinity();
+  double seconds = 0;
+  std::int64_t evaluations = 0;
+};
+
+/// A solution by an adaptive method up to a horizon, by which errors are measured.
+///
+/// Runs are looked at after their first step, and after the first steps that end at one of these
+/// times or later. An error is that of frames during the whole motion. What comes to rest does so
+/// early, hence half of the times are in the first quarter: at four equal times any stable step
+/// would do. Steps need not end at the times, which would rule out coarse ones. The solution is
+/// continued to where they end.
 class FineSolution {
  public:
-  /// Of the horizon, in parts of `parts`.
-  static constexpr std::int64_t parts = 1024;
+  static constexpr std::int64_t parts = 1024;  // of the horizon
   static constexpr std::array<std::int64_t, 12> times{1,   4,   16,  64,  128, 256,
                                                       384, 512, 640, 768, 896, parts};
 
-  /// Tightens the tolerance until two of them agree to a tenth of `error`, if they do.
-  FineSolution(Pilot const& pilot, double horizon, double error);
+  FineSolution(Pilot const& pilot, double horizon, Candidate const& by, double tolerance);
 
-  /// Estimated, by the one at ten times the tolerance.
-  double error() const { return error_; }
   double tolerance() const { return tolerance_; }
+  double seconds() const { return solution_.seconds(); }
   std::optional<std::string> const& failure() const { return solution_.failure; }
 
-  /// A candidate's run to the horizon, kept at its first step, and the first from these times on.
-  Stretch stretch(Candidate const& candidate, Steps const& steps) const;
-  /// The largest distance of any spin in such a run, at any step that was kept.
-  double distance_of(Outcome const& outcome, Candidate const& candidate, Steps const& steps) const;
+  /// The largest distance of any spin from another one, at any time.
+  double distance_to(FineSolution const& other) const {
+    return distance(solution_, other.solution_);
+  }
+
+  /// A candidate's run to the horizon. `guarded`: does it fail where `cayspin run` stops?
+  Measured measure(Candidate const& candidate, Steps const& steps, bool guarded,
+                   Repeats const& repeats) const;
 
  private:
   std::vector<double> at(std::int64_t step, std::int64_t steps) const;
 
-  Pilot const& pilot_;
-  double horizon_, tolerance_ = 0, error_;
+  Pilot const* pilot_;
+  Candidate by_;
+  double horizon_, tolerance_;
   Outcome solution_;
 };
 

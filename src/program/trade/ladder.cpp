@@ -9,27 +9,34 @@ namespace {
 
 constexpr double finer_by = 1.5;  // steps of a rung over those of the one before
 
-// A whole number of steps between looks.
-std::int64_t with_looks(double steps) {
-  auto const per_look = std::max<double>(1, std::ceil(steps / Pilot::looks));
-  return static_cast<std::int64_t>(per_look) * Pilot::looks;
+// At least four, so that there is a motion to look at.
+std::int64_t whole(double steps) {
+  return static_cast<std::int64_t>(std::max<double>(4, std::ceil(steps)));
 }
 
 double amount(Rung const& rung, bool of_evaluations) {
   return of_evaluations ? static_cast<double>(rung.evaluations) : rung.seconds;
 }
 
-double interpolated(Ladder const& ladder, double error, bool of_evaluations) {
+// What a rung takes to an error, if one before it that does not get there says more: less, by
+// logarithms.
+double interpolated(Rung const* before, Rung const& rung, double error, bool of_evaluations) {
+  double const last = amount(rung, of_evaluations);
+  if (!before || !(before->error > error) || !(rung.error > 0)) return last;
+  double const share = std::log(before->error / error) / std::log(before->error / rung.error);
+  double const first = amount(*before, of_evaluations);
+  return std::min(last, first * std::pow(last / first, share));
+}
+
+double least(Ladder const& ladder, double error, bool of_evaluations, Ladder* around = nullptr) {
   double best = std::numeric_limits<double>::infinity();
   Rung const* before = nullptr;
   for (auto const& rung : ladder.rungs) {
-    if (rung.error <= error) {
-      best = std::min(best, amount(rung, of_evaluations));
-      if (before && std::isfinite(before->error) && before->error > error && rung.error > 0) {
-        double const share = std::log(before->error / error) / std::log(before->error / rung.error);
-        double const first = amount(*before, of_evaluations);
-        best = std::min(best, first * std::pow(amount(rung, of_evaluations) / first, share));
-      }
+    double const now =
+        rung.error > error ? best : interpolated(before, rung, error, of_evaluations);
+    if (now < best) {
+      best = now;
+      if (around) around->rungs = before ? std::vector{*before, rung} : std::vector{rung};
     }
     before = &rung;
   }
@@ -47,15 +54,15 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
   auto plain = candidate;
   plain.isotropy = io::Isotropy::zero;
   plain.sigma = 0;  // it may make slow modes grow by a little, which is no reason to begin finer
-  auto const plan = pilot.plan(plain, horizon, {Pilot::looks, 0});
+  auto const plan = pilot.plan(plain, horizon, {4, 0});
   double const stable =
       plan.stable_dt > 0 && std::isfinite(plan.stable_dt) ? horizon / plan.stable_dt : 0;
-  return {with_looks(std::max(few, stable)), 0};
+  return {whole(std::max(few, stable)), 0};
 }
 
 Steps finer(Candidate const& candidate, Steps const& steps) {
   if (candidate.method->adaptive) return {0, steps.tolerance / std::sqrt(10.0)};
-  return {with_looks(finer_by * static_cast<double>(steps.count)), 0};
+  return {whole(finer_by * static_cast<double>(steps.count)), 0};
 }
 
 Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& reference,
@@ -63,23 +70,23 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
   Ladder ladder{candidate, {}};
   int worse = 0;
   double best = std::numeric_limits<double>::infinity();
-  Steps steps = coarsest_steps(pilot, candidate, reference.horizon, reference.own_steps);
+  Steps steps =
+      coarsest_steps(pilot, candidate, reference.horizon.time, reference.horizon.own_steps);
   for (int i = 0; i < limits.rungs; ++i, steps = finer(candidate, steps)) {
     if (candidate.method->adaptive && steps.tolerance < candidate.least_tolerance()) break;
-    if (limits.on_try) limits.on_try(limits.share, candidate.name());
-    auto const outcome = pilot.run(candidate, reference.horizon, steps, 3);
-    double const error = distance(outcome, reference.solution);
+    if (limits.progress) limits.progress->show(limits.share, candidate.name());
+    auto const [failure, error, seconds, evaluations] =
+        reference.solution.measure(candidate, steps, false, measured_well);
     double const dt =
-        candidate.method->adaptive ? 0 : reference.horizon / static_cast<double>(steps.count);
-    if (std::isfinite(error))
-      ladder.rungs.push_back({steps, dt, error, outcome.seconds(), outcome.summary.evaluations});
+        candidate.method->adaptive ? 0 : reference.horizon.time / static_cast<double>(steps.count);
+    if (std::isfinite(error)) ladder.rungs.push_back({steps, dt, error, seconds, evaluations});
     worse = error < 0.9 * best ? 0 : worse + 1;
     best = std::min(best, error);
-    bool const far_behind = std::ranges::any_of(others, [&](Ladder const& other) {
-      return outcome.seconds() > limits.far_behind * seconds_to(other, error);
-    });
+    double most = std::numeric_limits<double>::infinity();
+    for (auto const& other : others)
+      most = std::min(most, limits.far_behind * seconds_to(other, error));
     // Round-off, or dt at which the method is of no use.
-    if (error < limits.least_error || outcome.seconds() > limits.seconds || far_behind ||
+    if (error < limits.least_error || seconds > std::min(limits.seconds, most) ||
         (worse > 2 && best < 1e-3) || worse > 12)
       break;
   }
@@ -96,10 +103,14 @@ void mark_front(std::vector<Ladder>& ladders) {
       });
 }
 
-double seconds_to(Ladder const& ladder, double error) { return interpolated(ladder, error, false); }
+double seconds_to(Ladder const& ladder, double error) { return least(ladder, error, false); }
 
-double evaluations_to(Ladder const& ladder, double error) {
-  return interpolated(ladder, error, true);
+double evaluations_to(Ladder const& ladder, double error) { return least(ladder, error, true); }
+
+Ladder around(Ladder const& ladder, double error) {
+  Ladder some{ladder.candidate, {}};
+  least(ladder, error, false, &some);
+  return some;
 }
 
 }  // namespace cayspin::program::trade

@@ -25,12 +25,14 @@ struct Ladder {
   std::vector<Rung> rungs;
 };
 
+inline constexpr Repeats measured_well{3, 5e-3};
+
 struct LadderLimits {
   double least_error = 1e-9;  // nothing finer is run
   double seconds = 10;        // nor anything that takes longer
   double far_behind = 30;     // nor by a candidate so many times slower than another
   int rungs = 40;
-  OnTry on_try = {};
+  TrialProgress* progress = nullptr;
   double share = 0;  // of all ladders that is done
 };
 
@@ -49,6 +51,8 @@ void mark_front(std::vector<Ladder>& ladders);
 /// What a ladder's candidate takes to an error, between rungs by logarithms; infinite where it
 /// does not get there.
 double seconds_to(Ladder const& ladder, double error);
+/// The ladder with the rungs alone from which that comes: two, one or none.
+Ladder around(Ladder const& ladder, double error);
 double evaluations_to(Ladder const& ladder, double error);
 
 }  // namespace cayspin::program::trade

@@ -71,14 +71,6 @@ Outcome run_on(io::Scene const& scene, Plan const& plan, Stretch const& stretch,
 
 }  // namespace
 
-Looks equal_looks(Candidate const& candidate, Steps const& steps) {
-  Looks looks{Pilot::looks, {}};
-  std::int64_t const count = candidate.method->adaptive ? Pilot::looks : steps.count;
-  for (std::int64_t look = 1; look <= Pilot::looks; ++look)
-    looks.steps.push_back(count / Pilot::looks * look);
-  return looks;
-}
-
 double distance(std::vector<double> const& a, std::vector<double> const& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); i += 3)
@@ -111,31 +103,37 @@ double Pilot::end() const {
 }
 
 Plan Pilot::plan(Candidate const& candidate, double horizon, Steps const& steps) const {
-  return make_plan(with(scene_, candidate, horizon, looks, steps), candidate.precision);
+  return make_plan(with(scene_, candidate, horizon, 1, steps), candidate.precision);
 }
 
 Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& steps,
-                   int repetitions) const {
-  return run(candidate, {0, horizon, start_, equal_looks(candidate, steps), false}, steps,
-             repetitions);
+                   Repeats const& repeats) const {
+  std::int64_t const last = candidate.method->adaptive ? 1 : steps.count;
+  return run(candidate, {0, horizon, start_, {1, {last}}}, steps, repeats);
 }
 
 Outcome Pilot::run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
-                   int repetitions) const {
+                   Repeats const& repeats) const {
   auto const scene = with(scene_, candidate, stretch.length, stretch.looks.intervals, steps);
-  auto plan = make_plan(scene, candidate.precision);
+  // No run needs the stable dt of a sigma, which takes long to find.
+  auto planned = scene;
+  if (candidate.isotropy == io::Isotropy::constant)
+    planned.integrator.isotropy = io::Isotropy::zero;
+  planned.integrator.sigma = 0;
+  auto plan = make_plan(planned, candidate.precision);
+  plan.options.sigma = candidate.sigma;
   plan.times.begin = stretch.begin;
   if (candidate.method->adaptive) plan.options.steps.end = plan.times.at(plan.times.steps);
-  constexpr double enough = 5e-3;  // seconds in all: of what takes microseconds, more are run
+  constexpr int most = 100;
+  constexpr double long_enough = 0.3;
   Kokkos::Timer const clock;
   Outcome best;
-  for (int i = 0; i < repetitions || (repetitions > 1 && i < 100 && clock.seconds() < enough);
-       ++i) {
+  for (int i = 0; i < repeats.least || (i < most && clock.seconds() < repeats.seconds); ++i) {
     auto outcome = in_space(space_, candidate.precision, [&]<class Real, class Space>() {
       return run_on<Real, Space>(scene, plan, stretch, stretch.guarded && i == 0);
     });
     if (i == 0 || outcome.seconds() < best.seconds()) std::swap(best, outcome);
-    if (best.failure || best.seconds() > 0.3) break;
+    if (best.failure || best.seconds() > long_enough) break;
   }
   return best;
 }

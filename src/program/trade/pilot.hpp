@@ -16,15 +16,18 @@ struct Looks {
   std::vector<std::int64_t> steps;  // ascending, the last step among them
 };
 
-/// At Pilot::looks equal times.
-Looks equal_looks(Candidate const& candidate, Steps const& steps);
-
 /// A part of a scene's run, from `begin` on.
 struct Stretch {
   double begin, length;
   std::vector<double> const& start;  // (sites, 3)
   Looks looks;
   bool guarded = false;  // does it fail where `cayspin run` stops?
+};
+
+/// How often a run is repeated, to measure its time: the shortest counts.
+struct Repeats {
+  int least = 1;
+  double seconds = 0;  // in all, of what takes less
 };
 
 /// What a run without files came to.
@@ -42,19 +45,17 @@ double distance(Outcome const& a, Outcome const& b);
 /// Runs one scene by one method and another, in one execution space, inside a KokkosSession.
 class Pilot {
  public:
-  static constexpr std::int64_t looks = 4;
-
   Pilot(io::Scene scene, std::string space);
 
   io::Scene const& scene() const { return scene_; }
   std::vector<double> const& start() const { return start_; }
   double end() const;
 
-  /// `repetitions`: of short runs, to measure their time.
+  /// Seen at its end.
   Outcome run(Candidate const& candidate, double horizon, Steps const& steps,
-              int repetitions = 1) const;
+              Repeats const& repeats = {}) const;
   Outcome run(Candidate const& candidate, Stretch const& stretch, Steps const& steps,
-              int repetitions = 1) const;
+              Repeats const& repeats = {}) const;
   /// What is known of such a run beforehand.
   Plan plan(Candidate const& candidate, double horizon, Steps const& steps) const;
 

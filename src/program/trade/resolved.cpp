@@ -74,14 +74,14 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
 }
 
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
-                      OnTry const& on_try) {
+                      TrialProgress* progress) {
   auto const& integrator = scene.integrator;
   if (!integrator.method->automatic) return scene;
   Advised advised;
   if (integrator.steps == 0)
     advised.choice = {{{.method = io::find_method("rkmk4")}}, {}, integrator.dt};  // no steps
   else
-    advised = advise(Pilot(scene, space), {*integrator.error, {}, precision, on_try});
+    advised = advise(Pilot(scene, space), {*integrator.error, {}, precision, progress});
   if (!advised.choice)
     throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g} in {} precision",
                                     scene.path.string(), *integrator.error, to_string(precision)));

@@ -22,7 +22,7 @@ Resolved resolve(io::Scene const& scene, Advice const& advice);
 /// A scene of method "auto" with the method that is advised for its error, in one precision; any
 /// other scene as it is. Inside a KokkosSession. Throws NumbersFailed when nothing gets there.
 io::Scene with_method(io::Scene const& scene, std::string const& space, Precision precision,
-                      OnTry const& on_try = {});
+                      TrialProgress* progress = nullptr);
 
 /// A scene of method "auto" with the method that was chosen for it in a run before, of which the
 /// scene as typed and as resolved are given. None where no such choice was made.

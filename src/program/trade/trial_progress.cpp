@@ -15,6 +15,14 @@ TrialProgress::TrialProgress(bool quiet, bool lines)
   if (terminal_) shown_ = {};  // the first one at once
 }
 
+void TrialProgress::announce(double most_seconds) {
+  most_seconds_ = most_seconds;
+  if (!quiet_ && !terminal_ && lines_) {
+    fmt::print("trying methods for at most {}\n", simulation::duration_text(most_seconds));
+    std::fflush(stdout);
+  }
+}
+
 void TrialProgress::show(double share, std::string const& what) {
   if (quiet_ || (!terminal_ && !lines_)) return;
   auto const now = Clock::now();
@@ -22,10 +30,13 @@ void TrialProgress::show(double share, std::string const& what) {
   if (now - shown_ < pause) return;
   shown_ = now;
   double const elapsed = std::chrono::duration<double>(now - begin_).count();
+  auto const so_far = fmt::format("{} so far", simulation::duration_text(elapsed));
   auto const left =
-      share > 0.02
+      most_seconds_ > 0
+          ? fmt::format("{}, at most {}", so_far, simulation::duration_text(most_seconds_))
+      : share > 0.02
           ? fmt::format("about {} left", simulation::duration_text(elapsed * (1 - share) / share))
-          : fmt::format("{} so far", simulation::duration_text(elapsed));
+          : so_far;
   auto const text = fmt::format("{:5.1f} %  {}  {}", 100 * share, left, what);
   if (terminal_) {
     fmt::print(stderr, "\r{}\x1b[K", fitted(fmt::format("{} {}", bar(share), text)));

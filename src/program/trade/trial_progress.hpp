@@ -2,13 +2,9 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <string>
 
 namespace cayspin::program::trade {
-
-/// Told before each try: the share of the work that is done, and what is tried. Empty: nobody is.
-using OnTry = std::function<void(double share, std::string const& what)>;
 
 /// How far the tries are, with an estimate of the time left. A bar where standard error is a
 /// terminal, so that results in a file or a pipe stay clean; otherwise lines on standard output.
@@ -21,16 +17,17 @@ class TrialProgress {
   TrialProgress(TrialProgress const&) = delete;
   TrialProgress& operator=(TrialProgress const&) = delete;
 
+  /// Before the first try: how long all of them may take.
+  void announce(double most_seconds);
+  /// Before each try: the share of the work that is done, and what is tried.
   void show(double share, std::string const& what);
   void clear();
-  OnTry on_try() {
-    return [this](double share, std::string const& what) { show(share, what); };
-  }
 
  private:
   using Clock = std::chrono::steady_clock;
 
   bool quiet_, lines_, terminal_, drawn_ = false;
+  double most_seconds_ = 0;  // 0: not known
   Clock::time_point begin_ = Clock::now(), shown_ = begin_;
 };
 

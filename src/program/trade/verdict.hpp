@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "advice.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace cayspin::program::trade {
+
+/// How an advice turned out, beside the ladders.
+struct Verdict {
+  double asked;
+  Advised advised;
+  double error = 0, seconds = 0;  // of the advised run
+  double best = 0;                // seconds, of all ladders
+};
+
+/// `pilot`: of the scene up to the reference's horizon, where the ladders end. The advised run and
+/// the best ladders are timed again by turns, so that noise is the same for all.
+Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder> const& ladders,
+              double asked, std::optional<Precision> precision);
+
+}  // namespace cayspin::program::trade

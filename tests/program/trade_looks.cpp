@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What `cayspin trade` and `cayspin advise` look at, what that costs, and how long they may take.
+#include "program_test.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+namespace cayspin::program::test {
+namespace {
+
+using nlohmann::json;
+
+struct Looks : ProgramTest {
+  // All that happens happens in the first twentieth of the run.
+  static std::string at_rest() {
+    return R"toml([system]
+kind = "llg"
+damping = 1.0
+precession = false
+[lattice]
+shape = [20]
+[field]
+exchange = 1.0
+applied = [5.0, 0.0, 0.0]
+[initial]
+expression = ["0.3+0.2*cos(pi*x)", "0.5+0.1*cos(2*pi*x)", "0.8"]
+[integrator]
+method = "rkmk4"
+dt = 0.125
+end = 20.0
+)toml";
+  }
+
+  json trade() const {
+    auto const outcome = start({"trade", write("scene.toml", at_rest()), "--json", "--seconds",
+                                "0.1", "--threads", "1", "--precision", "double"});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return json::parse(outcome.output);
+  }
+  static json const& method(json const& trade, std::string const& name) {
+    return *std::ranges::find_if(trade.at("methods"),
+                                 [&](json const& one) { return one.at("method") == name; });
+  }
+
+  /// At each step of so many, and of steps as many times as fine.
+  std::vector<double> frames(std::int64_t steps, std::int64_t finer) const {
+    std::ostringstream integrator;
+    integrator.precision(17);
+    integrator << "integrator={method='rkmk4',dt=" << 20 / static_cast<double>(steps * finer)
+               << ",steps=" << steps * finer << "}";
+    auto const outcome = start({"run", write("scene.toml", at_rest()), "--quiet", "--threads", "1",
+                                "--output", "out.h5", "--overwrite", "--set", integrator.str(),
+                                "--set", "output.every=" + std::to_string(finer)});
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    return read_dataset("out.h5", "/spins").values;
+  }
+};
+
+// At its end the error of this run is a millionth of that in motion.
+TEST_F(Looks, ErrorsOfTradeAreThoseOfTheMotion) {
+  auto const all = trade();
+  for (auto const& rung : method(all, "rkmk4").at("rungs")) {
+    auto const steps = std::llround(20 / rung.at("dt").get<double>());
+    if (steps < 160 || steps > 400) continue;  // stable, and quick
+    double const largest = distance(frames(steps, 1), frames(steps, 8));
+    EXPECT_GT(rung.at("error").get<double>(), 0.3 * largest) << steps;
+    EXPECT_LT(rung.at("error").get<double>(), 1.01 * largest) << steps;
+  }
+}
+
+TEST_F(Looks, CostsOfErrorsLieBetweenTheRunsOfALadder) {
+  auto const all = trade();
+  int known = 0;
+  for (auto const& one : all.at("methods")) {
+    ASSERT_EQ(one.at("costs").size(), 4u);
+    for (auto const& cost : one.at("costs")) {
+      auto const& rungs = one.at("rungs");
+      bool const is_reached = std::ranges::any_of(
+          rungs, [&](json const& rung) { return rung.at("error") <= cost.at("error"); });
+      EXPECT_EQ(cost.at("seconds").is_null(), !is_reached) << one.at("method");
+      EXPECT_EQ(cost.at("evaluations").is_null(), !is_reached) << one.at("method");
+      known += is_reached;
+    }
+  }
+  EXPECT_GT(known, 20);
+  auto const& rungs = method(all, "rkmk4").at("rungs");
+  auto const& costs = method(all, "rkmk4").at("costs");
+  EXPECT_EQ(costs[2].at("error"), 1e-6);
+  for (std::size_t i = 1; i < rungs.size(); ++i) {
+    double const coarse = rungs[i - 1].at("error"), fine = rungs[i].at("error");
+    if (coarse <= 1e-6 || fine > 1e-6) continue;
+    EXPECT_GT(costs[2].at("evaluations"), rungs[i - 1].at("evaluations"));
+    EXPECT_LE(costs[2].at("evaluations"), rungs[i].at("evaluations"));
+  }
+  // 100^(1/4), by the method's order.
+  double const ratio = double(costs[3].at("evaluations")) / double(costs[2].at("evaluations"));
+  EXPECT_NEAR(ratio, 3.162, 0.3);
+}
+
+// To this error of disordered spins it once took 40 s.
+TEST_F(Looks, AdviceTakesNoLongerThanItSays) {
+  std::string const disordered = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [8, 8, 8]
+boundary = "periodic"
+[field]
+exchange = 1.0
+applied = [0.0, 0.0, 0.5]
+[initial]
+random = { seed = 1 }
+[integrator]
+method = "rkmk4"
+dt = 0.05
+end = 20.0
+)toml";
+  auto const begin = std::chrono::steady_clock::now();
+  auto const outcome =
+      start({"advise", write("scene.toml", disordered), "--error", "1e-8", "--threads", "1"});
+  std::chrono::duration<double> const taken = std::chrono::steady_clock::now() - begin;
+  ASSERT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_TRUE(outcome.output.starts_with("trying methods for at most 2 s\n")) << outcome.output;
+  EXPECT_LT(taken.count(), address_sanitizer ? 20 : 5);
+}
+
+}  // namespace
+}  // namespace cayspin::program::test
