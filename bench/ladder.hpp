@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/cayspin.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Methods from coarse to fine steps, as `cayspin trade` has them: what they take to an error.
+namespace ladder {
+
+using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
+using States = std::vector<std::vector<double>>;  // (sites, 3) at each look
+
+inline constexpr int looks = 4;
+
+/// Seconds of the processor: what neighbours on the machine take does not count.
+class Clock {
+ public:
+  Clock() { reset(); }
+  void reset() { clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &begin_); }
+  double seconds() const {
+    timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec - begin_.tv_sec) +
+           1e-9 * static_cast<double>(now.tv_nsec - begin_.tv_nsec);
+  }
+
+ private:
+  timespec begin_;
+};
+
+/// One run, by any method.
+struct Run {
+  States states;
+  double seconds = 0;            // of stepping
+  std::int64_t evaluations = 0;  // of the right side
+  std::int64_t dear = 0;         // of a dear field
+  std::int64_t steps = 0;
+};
+
+struct Rung {
+  double error, seconds, evaluations, dear, steps;
+};
+
+struct Ladder {
+  std::string name;
+  bool is_own = true;  // of cayspin
+  std::vector<Rung> rungs = {};
+};
+
+/// The largest distance of any spin at any look; those of `run` are divided by their lengths.
+inline double distance(States const& run, States const& reference) {
+  double largest = 0;
+  if (run.size() != reference.size()) return std::numeric_limits<double>::infinity();
+  for (std::size_t look = 0; look < run.size(); ++look)
+    for (std::size_t i = 0; i < run[look].size(); i += 3) {
+      auto const* const m = &run[look][i];
+      auto const* const r = &reference[look][i];
+      double const length = std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+      double const apart =
+          std::hypot(m[0] / length - r[0], m[1] / length - r[1], m[2] / length - r[2]);
+      if (!std::isfinite(apart)) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, apart);
+    }
+  return largest;
+}
+
+/// What a ladder takes to an error, between rungs by logarithms; infinite where it does not get
+/// there.
+inline double amount_to(Ladder const& ladder, double error, double Rung::*amount) {
+  double best = std::numeric_limits<double>::infinity();
+  Rung const* before = nullptr;
+  for (auto const& rung : ladder.rungs) {
+    if (rung.error <= error) {
+      best = std::min(best, rung.*amount);
+      if (before && before->error > error && std::isfinite(before->error)) {
+        double const share = std::log(before->error / error) / std::log(before->error / rung.error);
+        best = std::min(best, before->*amount * std::pow(rung.*amount / before->*amount, share));
+      }
+    }
+    before = &rung;
+  }
+  return best;
+}
+
+struct Limits {
+  double least_error = 3e-7, seconds = 4;
+  int rungs = 24;
+};
+
+/// `run(rung)` from the coarsest, rung 0, on: the shortest of 3 to 100 runs, or of 2 long ones.
+template <class RunOnce>
+Ladder climb(std::string name, bool is_own, States const& reference, Limits const& limits,
+             RunOnce const& run) {
+  Ladder ladder{std::move(name), is_own};
+  double best = std::numeric_limits<double>::infinity();
+  int worse = 0;
+  for (int i = 0; i < limits.rungs; ++i) {
+    Run one = run(i);
+    double const error = distance(one.states, reference);
+    double shortest = one.seconds, all = one.seconds;
+    bool const is_useful = error < 0.5;
+    if (is_useful) {
+      for (int n = 1; n < 100 && (n < 3 || all < 0.3) && (n < 2 || all < 2); ++n) {
+        double const seconds = run(i).seconds;
+        all += seconds;
+        shortest = std::min(shortest, seconds);
+      }
+      ladder.rungs.push_back({error, shortest, static_cast<double>(one.evaluations),
+                              static_cast<double>(one.dear), static_cast<double>(one.steps)});
+    }
+    worse = error < 0.9 * best ? 0 : worse + 1;
+    best = std::min(best, error);
+    bool const is_long = is_useful && shortest > limits.seconds;
+    if (error < limits.least_error || is_long || (worse > 2 && best < 1e-4)) break;
+  }
+  return ladder;
+}
+
+/// Steps of a cayspin stepper: `steps` in all, a multiple of the looks.
+template <class Stepper, class Generator>
+Run take_steps(Stepper& stepper, Generator const& generator, cayspin::Lattice const& lattice,
+               std::vector<double> const& start, double horizon, std::int64_t steps) {
+  Run run;
+  Kokkos::DefaultHostExecutionSpace const exec;
+  Spins spins("bench::spins", lattice);
+  cayspin::copy_from_host(start, spins);
+  Clock clock;
+  auto const look = [&](auto const&, cayspin::Step const& step, auto const& now) {
+    if (step.number > 0) {
+      run.seconds += clock.seconds();  // integrate has fenced
+      run.states.push_back(cayspin::copy_to_host(now));
+    }
+    clock.reset();
+  };
+  auto const summary = cayspin::integrate(exec, stepper, generator, spins,
+                                          {0, horizon / static_cast<double>(steps), steps},
+                                          cayspin::Every(steps / looks, look));
+  run.evaluations = summary.evaluations;
+  run.steps = steps;
+  return run;
+}
+
+inline std::int64_t with_looks(double steps) {
+  return looks * std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(steps / looks)));
+}
+
+/// `fewest` steps on rung 0, and on each next one half as many again.
+inline std::int64_t steps_of(int rung, double fewest) {
+  return with_looks(fewest * std::pow(1.5, rung));
+}
+
+inline void print(std::vector<Ladder> const& ladders, std::vector<double> const& errors) {
+  std::vector<double> best;
+  for (double const error : errors) {
+    double least = std::numeric_limits<double>::infinity();
+    for (auto const& one : ladders)
+      if (one.is_own) least = std::min(least, amount_to(one, error, &Rung::seconds));
+    best.push_back(least);
+  }
+  std::printf("%-34s", "ms (evaluations) times the best");
+  for (double const error : errors) std::printf(" | %-26.0e", error);
+  std::printf("\n");
+  for (auto const& one : ladders) {
+    std::printf("%-34s", one.name.c_str());
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      double const seconds = amount_to(one, errors[i], &Rung::seconds);
+      if (std::isfinite(seconds))
+        std::printf(" | %9.4g (%7.0f) %6.2f", 1e3 * seconds,
+                    amount_to(one, errors[i], &Rung::evaluations), seconds / best[i]);
+      else
+        std::printf(" | %26s", "-");
+    }
+    std::printf("\n");
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace ladder
