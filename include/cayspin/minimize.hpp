@@ -76,8 +76,8 @@ class Minimizer {
   }
 
  private:
-  static constexpr double largest_turn = 1.5;  // of any spin in a step
-  static constexpr double least_turn = 1e-5;   // of the spin that turns most, out of a saddle
+  static constexpr double largest_turn = 1;   // of any spin in a step
+  static constexpr double least_turn = 1e-5;  // of the spin that turns most, out of a saddle
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
   static Spins named(char const* name, Spins const& like) {

@@ -48,6 +48,18 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
   }
 }
 
+// Long waves go before walls form, whose vortices would move by a cell an iteration.
+TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
+  auto const lattice = Lattice::square(96, 96);
+  for (unsigned const seed : {1U, 2U, 3U, 4U, 5U}) {
+    this->spins =
+        spins_of<typename TestFixture::Spins>(lattice, random_directions(lattice.sites(), seed));
+    auto const found = minimize(this->exec, film(lattice, 2), this->spins, {.torque = 1e-3});
+    EXPECT_EQ(found.end, MinimizeEnd::converged) << seed;
+    EXPECT_LE(found.evaluations, 150) << seed;
+  }
+}
+
 // What the preconditioner is for: without it they grow as the root of the exchange.
 TYPED_TEST(Films, TakeManyMoreWithoutThePreconditioner) {
   auto const start = random_directions(n * n, 1);

@@ -31,13 +31,14 @@ class Preconditioner {
   std::array<double, 3> const& couplings() const { return couplings_; }
 
   /// The curvature along the last step, of square length `step_square`, that exchange does not
-  /// explain becomes the constant. Small constants make long steps far from rest; near rest they
-  /// make the stiffest long waves the hardest to settle.
+  /// explain becomes the constant. Small constants make long steps far from rest: waves as long as
+  /// the lattice are gone before walls and vortices form, which move by a cell an iteration. Near
+  /// rest they make the stiffest long waves the hardest to settle.
   void follow_curvature(double product, double exchange_energy, double step_square, double torque) {
     double const rest = (product - exchange_energy) / step_square;
     if (!std::isfinite(rest)) return;
-    double const least = torque < first_shift_ ? first_shift_ : 1e-3 * first_shift_;
-    shift_ = std::clamp(std::sqrt(shift_ * std::max(rest, 0.2 * shift_)), least, 30 * first_shift_);
+    double const least = torque < first_shift_ ? first_shift_ : 1e-6 * first_shift_;
+    shift_ = std::clamp(std::max(rest, 0.25 * shift_), least, 30 * first_shift_);
   }
   /// As it is before any step.
   void forget_curvature() { shift_ = first_shift_; }
