@@ -25,9 +25,9 @@ SCENES = (
     ("Slab", "slab_switching", ()),
     ("Heisenberg, 8^3", "heisenberg", ()),
     ("Film, 256 x 256", "film_256",
-     ("--set", "lattice.shape=[256,256]", "--set", "integrator.end=10", "--seconds", "20")),
+     ("--set", "lattice.shape=[256,256]", "--set", "integrator.end=10", "--seconds", "10")),
     ("Heisenberg, 64^3", "heisenberg_64",
-     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "20")),
+     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "10")),
     ("One spin in a field", "macrospin", ()),
     ("Rotating field", "macrospin_rotating_field", ()),
     ("Rigid bodies", "rigid_body_ensemble", ()),
@@ -38,6 +38,9 @@ SCENES = (
     ("Slab, weak field, damping 1", "slab_weak_field_overdamped", ()),
 )
 HEADINGS = {"The same, damping 0.02": "Film, damping 0.02"}
+
+
+COLUMNS = ("scene", "1e-2", "1e-4", "1e-6", "1e-8", "single: 1e-2", "1e-4", "1e-6", "spread")
 
 
 def measure(program, title, name, arguments, folder):
@@ -76,11 +79,15 @@ def text(ratio):
 
 def ratio_row(title, found):
     gains = [f"{text(found[2 * i])} ({text(found[2 * i + 1])})" for i in range(len(ERRORS))]
-    return f"| {title} | " + " | ".join(gains + [text(ratio) for ratio in found[8:]]) + " |"
+    return row_of((title, *gains, *map(text, found[8:])))
 
 
 def three_digits(number):
     return f"{number:#.3g}".rstrip(".") if number < 1000 else f"{float(f'{number:.3g}'):.0f}"
+
+
+def row_of(cells):
+    return f"| {' | '.join(cells)} |"
 
 
 def cost_row(method, unit):
@@ -89,7 +96,7 @@ def cost_row(method, unit):
         seconds = cost(method, "seconds", error)
         cells.append("-" if math.isinf(seconds) else
                      f"{three_digits(seconds / unit)} ({cost(method, 'evaluations', error):.0f})")
-    return f"| {method['method']} | " + " | ".join(cells) + " |"
+    return row_of((method["method"], *cells))
 
 
 def with_tables(page, trades, rows):
@@ -98,12 +105,16 @@ def with_tables(page, trades, rows):
     trade, lines, replaced = None, [], False
     by_heading = {HEADINGS.get(title, title): title for title in trades}
     for line in page.splitlines():
-        heading, first = re.match("### (.*)", line), re.match(r"\| ([^|]*) \|", line)
+        heading, first = re.match("### (.*)", line), re.match(r"\| ?([^|]*?) ?\|", line)
+        if lines and lines[-1] == row_of(COLUMNS):
+            line = "|---" * len(COLUMNS) + "|"
         replaced = replaced and bool(first)
         if line.startswith("#"):
             trade = trades.get(by_heading.get(heading and heading[1]))
         if first and first[1] in rows:
             line = rows[first[1]]
+        elif first and first[1] == COLUMNS[0]:
+            line = row_of(COLUMNS)
         if replaced:
             continue
         lines.append(line)

@@ -241,8 +241,11 @@ class PlotTrade(ScriptTest):
         self.assertTrue(row.startswith("| Film, 16 x 16 | 3.00 (-) | 3.00 (-) | 3.00 (-) | - (-)"))
         self.assertTrue(row.endswith("| 2.00 | 2.00 | 2.00 |"), row)
         found = trade_report.with_tables(page, {title: self.trade | {"name": title}}, {title: row})
-        self.assertIn(f"\n{row}\n| Slab | 7 (7) |\n", found)
-        self.assertIn("| rkmk4 | 1870 (75) | 5920 (237) | 18700 (749) | - |\n### Slab", found)
+        self.assertTrue(found.startswith(
+            "| scene | 1e-2 | 1e-4 | 1e-6 | 1e-8 | single: 1e-2 | 1e-4 | 1e-6 | spread |\n"
+            f"{'|---' * 9}|\n{row}\n| Slab | 7 (7) |\n"), found)
+        self.assertIn("| rkmk4 | 1870 (75) | 5920 (237) | 18700 (749) | - |\n", found)
+        self.assertEqual(len(found.splitlines()), 4 + 3 + 5 + 4, found)  # five methods are drawn
         self.assertTrue(found.endswith("| rkmk4 | 1 (1) |\n"))
 
     def test_what_is_no_trade(self):
