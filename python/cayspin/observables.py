@@ -10,17 +10,7 @@ import numpy as np
 
 from cayspin import arguments
 from cayspin._cayspin import CayspinError
-
-
-def _half_solid_angle(a, b, c):
-    """Of three spins, within -pi .. pi; 0 where they are in one plane to round-off."""
-    def dot(u, v):
-        return np.einsum("...i,...i", u, v)
-
-    of_a, of_b, of_c = (np.sqrt(dot(u, u)) for u in (a, b, c))
-    volume, lengths = dot(a, np.cross(b, c)), of_a * of_b * of_c
-    rest = lengths + dot(a, b) * of_c + dot(b, c) * of_a + dot(c, a) * of_b
-    return np.where(np.abs(volume) < 1e-15 * lengths + 1e-300, 0, np.arctan2(volume, rest))
+from cayspin.texture.charge import half_solid_angles
 
 
 def topological_charge(spins: Any, boundary: Sequence[str] = ("open", "open")) -> np.ndarray:
@@ -41,13 +31,7 @@ def topological_charge(spins: Any, boundary: Sequence[str] = ("open", "open")) -
     if len(boundary) != 2 or not set(boundary) <= {"open", "periodic"}:
         raise CayspinError(f"topological_charge: boundary {boundary!r}; accepted: two words, each "
                            '"open" or "periodic"')
-    for axis, word in zip((-2, -3), boundary):
-        if word == "periodic" and spins.shape[axis] > 1:
-            spins = np.concatenate((spins, spins.take([0], axis)), axis)
-    here, east = spins[..., :-1, :-1, :], spins[..., :-1, 1:, :]
-    north, beyond = spins[..., 1:, :-1, :], spins[..., 1:, 1:, :]
-    angle = _half_solid_angle(here, east, north) + _half_solid_angle(beyond, north, east)
-    return angle.sum((-2, -1)) / (2 * np.pi)
+    return half_solid_angles(spins, boundary).sum((-2, -1)) / (2 * np.pi)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
-from cayspin import _cayspin, arguments, sites
+from cayspin import _cayspin, arguments, sites, texture
 from cayspin.averages import Averages
 from cayspin.scene import Scene
 
@@ -205,6 +205,26 @@ class Simulation:
             raise _cayspin.CayspinError(f"spins: an array of shape {values.shape}; accepted: one "
                                         f"that broadcasts to {shape}") from None
         self._run.set_spins(sites.by_plane(values, self._scene._scene.cell_sites))
+
+    def plot(self, axes: Any = None, **options: Any) -> Any:
+        """Draws the spins now into matplotlib axes, which it returns. Options are those of
+        cayspin.texture.draw: plane="z=0", quantity="charge", colors="safe", before=other_spins.
+        Raises CayspinError for other planes and words."""
+        try:
+            return texture.draw(self._texture(), axes, **options)
+        except ValueError as error:
+            raise _cayspin.CayspinError(f"plot: {error}") from None
+
+    def _texture(self):
+        scene, spins = self._scene, self.spins
+        _, boundary, si = texture.lattice_of(scene.text)
+        cell, places = scene.cell, None
+        if spins.ndim == 5 or np.count_nonzero(cell - np.diag(np.diag(cell))):
+            numbers = np.stack(np.meshgrid(*map(np.arange, spins.shape[-4:-1]), indexing="ij"), -1)
+            places = np.stack([(numbers[..., ::-1] + site) @ cell for site in scene.basis])
+            places = places.reshape(spins.shape)
+        return texture.Texture(spins, np.diag(cell), boundary, places, si,
+                               texture.time_text(self.time, si))
 
     def field(self) -> np.ndarray:
         """The effective field H of every site now, in the shape of the spins, read-only."""

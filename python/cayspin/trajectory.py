@@ -9,7 +9,7 @@ from typing import Any, Sequence
 
 import numpy as np
 
-from cayspin import arguments, observables
+from cayspin import arguments, observables, texture
 from cayspin._cayspin import CayspinError, complete_file
 from cayspin.scene import Scene
 
@@ -134,6 +134,24 @@ class Trajectory:
             if key not in options:
                 options[key] = getattr(self._crystal(key), attribute)
         return observables.dispersion(_Frames(spins, chosen), dt, path, **options)
+
+    def plot(self, frame: int = -1, axes: Any = None, *, difference_to: int | None = None,
+             **options: Any) -> Any:
+        """Draws the spins of a frame into matplotlib axes, which it returns: films and planes as
+        colours with arrows, crystals by their sites, chains as lines. `difference_to`: another
+        frame, and |difference| is drawn. Lengths are in the units of the scene.
+
+        Options are those of cayspin.texture.draw: plane="z=0", quantity="charge", colors="safe",
+        limit, key. Raises CayspinError for other frames, planes and words.
+        """
+        frame = arguments.whole(frame, "plot: frame")
+        if difference_to is not None:
+            difference_to = arguments.whole(difference_to, "plot: difference_to")
+        try:
+            shown, options["before"] = texture.of_file(self.file, frame, difference_to)
+            return texture.draw(shown, axes, **options)
+        except ValueError as error:
+            raise CayspinError(f"{self.path}: {error}") from None
 
     def to_xarray(self):
         """An xarray.Dataset of the frames, whose variables are read when they are used."""

@@ -56,20 +56,29 @@ def _series(file, group=""):
     return Series(*(column[:whole] for column in columns))
 
 
-def _require_undamaged(file, frames, spins):
-    """Compares frames with their checksums. Files of early versions have none."""
+def require_undamaged(file, frames, spins, first=0):
+    """Compares frames, the first of this number, with their checksums. Files of early versions have
+    none."""
     if "checksum" not in file:
         return
-    stored, steps = _dataset(file, "checksum", 1), _dataset(file, "step", 1)
+    those = slice(first, first + len(spins))
+    stored, steps = (_dataset(file, name, 1)[those] for name in ("checksum", "step"))
     sublattices = None
     if spins.ndim == 6:
-        sublattices = _dataset(file, "sublattice_magnetization", 3, (spins.shape[1], 3))
+        sublattices = _dataset(file, "sublattice_magnetization", 3, (spins.shape[1], 3))[those]
     for i, frame in enumerate(spins):
         numbers = (frames.time[i], frames.energy[i], frames.norm_defect[i],
                    *frames.magnetization[i])
         of_sites = None if sublattices is None else sublattices[i]
         if checksum.of_frame(steps[i], numbers, frame, of_sites) != int(stored[i]):
-            raise ValueError(f"frame {i} is damaged: its checksum differs")
+            raise ValueError(f"frame {first + i} is damaged: its checksum differs")
+
+
+def require_undamaged_frame(file, number, spins):
+    """The same of one frame."""
+    frames = _series(file)
+    require_undamaged(file, Series(*(column[number:] for column in vars(frames).values())),
+                      spins[None], number)
 
 
 def read_trajectory(path):
@@ -86,7 +95,7 @@ def read_trajectory(path):
                 raise SystemExit(f"{path}: it holds no frame")
             samples = _series(file, "scalars/")
             spins = spins[:count]
-            _require_undamaged(file, frames, spins)
+            require_undamaged(file, frames, spins)
             spins = spins.reshape(count, -1, *spins.shape[-3:])
             return Trajectory(
                 path=str(path),

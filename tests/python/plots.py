@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -117,6 +118,99 @@ class PlotTrajectory(ScriptTest):
         file = write(self.folder / "chain.h5")
         png = self.folder / "none" / "chain.png"
         self.assert_refused(png, png, "cannot write", self.plot(file, "--output", png))
+
+
+class PlotTexture(ScriptTest):
+    """A film with +x at the lower left, -x at the lower right, -z above and one site empty."""
+
+    RED, CYAN, DARK = (255, 0, 0), (0, 255, 255), (25, 25, 25)
+
+    def setUp(self):
+        super().setUp()
+        self.file = write(self.folder / "film.h5")
+        film = np.zeros((20, 1, 8, 10, 3))
+        film[..., :4, :5, 0], film[..., :4, 5:, 0], film[..., 4:, :, 2] = 1, -1, -1
+        film[0] = [0, 1, 0]
+        film[:, 0, 7, 9] = 0
+        with h5py.File(self.file, "r+") as data:
+            del data["spins"], data["checksum"]
+            data["spins"] = film
+
+    def plot(self, *arguments, file=None):
+        return self.run_script("plot_texture.py", file or self.file, *arguments)
+
+    def assert_no_picture(self, part, *arguments, file=None):
+        result = self.plot(*arguments, file=file)
+        self.assertEqual((result.returncode, result.stdout), (2, ""), result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertIn(part, result.stderr)
+
+    def test_a_film(self):
+        png = self.folder / "film_texture.png"
+        size = 8.1, 0.8 * 5.5 + 1.1
+        self.assert_drawn(png, size, (self.RED, self.CYAN, self.DARK), self.plot())
+        pixels = np.round(255 * matplotlib.image.imread(png)[..., :3]).astype(int)
+
+        def at(x, y):
+            column = 160 * (0.75 + 5.5 * x / 10)
+            return tuple(pixels[round(160 * (size[1] - 0.6 - 4.4 * y / 8)), round(column)])
+
+        self.assertEqual(at(0.05, 0.2), self.RED)
+        self.assertEqual(at(9.95, 0.2), self.CYAN)
+        self.assertEqual(at(0.1, 7.8), self.DARK)
+        self.assertEqual(at(9.5, 7.5), (255, 255, 255))
+
+    def test_other_frames_and_quantities(self):
+        png = self.folder / "other.png"
+        size = 8.1, 0.8 * 5.5 + 1.1
+        for arguments in (("--frame", 0), ("--colors", "safe"), ("--difference", 0), ("--charge",),
+                          ("--plane", "z=0")):
+            with self.subTest(arguments):
+                self.assert_drawn(png, size, (), self.plot(*arguments, "--output", png))
+        self.plot("--frame", 0, "--output", png)
+        self.assert_has_color(png, (128, 255, 0))
+
+    def test_chain_and_vector_graphics(self):
+        chain, svg = write(self.folder / "chain.h5"), self.folder / "chain.svg"
+        self.assert_drawn(self.folder / "chain_texture.png", (8.1, 4.7), (), self.plot(file=chain))
+        result = self.plot("--output", svg, file=chain)
+        self.assertEqual((result.returncode, result.stdout), (0, f"{svg}\n"))
+        self.assertIn("<svg", svg.read_text())
+
+    def test_movie(self):
+        movie = self.folder / "film.gif"
+        for arguments in ((), ("--difference", 0)):
+            result = self.plot("--movie", movie, *arguments)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertEqual(result.stdout, f"{movie}\n")
+            content = movie.read_bytes()
+            self.assertEqual(content[:6], b"GIF89a")
+            self.assertEqual(struct.unpack("<HH", content[6:10]), (810, 550))
+        self.assertFalse((self.folder / "film_texture.png").exists())
+        self.assert_no_picture("a movie that ends in .mp4 or .gif", "--movie", "film.avi")
+        self.assert_no_picture("--fps 0", "--movie", movie, "--fps", 0)
+        if not shutil.which("ffmpeg"):
+            self.assert_no_picture("finds no ffmpeg", "--movie", self.folder / "film.mp4")
+
+    def test_refusals(self):
+        self.assert_no_picture("frame 20; accepted: -20 to 19", "--frame", 20)
+        self.assert_no_picture("frame -21", "--difference", -21)
+        self.assert_no_picture("plane 'z=1'; accepted: z=0 to z=0", "--plane", "z=1")
+        self.assert_no_picture("plane 'top'", "--plane", "top")
+        self.assert_no_picture("cannot write", "--output", self.folder / "none" / "film.png")
+        self.assert_no_picture("there is no such file", file=self.folder / "none.h5")
+        text, other = self.folder / "text.h5", self.folder / "other.h5"
+        text.write_text("not a trajectory\n")
+        self.assert_no_picture("cannot be opened", file=text)
+        h5py.File(other, "w").close()
+        self.assert_no_picture("no trajectory, it has no spins", file=other)
+        chain = write(self.folder / "chain.h5")
+        self.assert_no_picture("a crystal or a chain", "--charge", file=chain)
+        crystal = write(self.folder / "crystal.h5", cell_sites=2)
+        self.assert_no_picture("have no positions", file=crystal)
+        with h5py.File(chain, "r+") as data:
+            data["spins"][4, 0, 0, 2, 1] += 1
+        self.assert_no_picture("frame 4 is damaged", "--frame", 4, file=chain)
 
 
 class PlotDemo(ScriptTest):

@@ -1,0 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Pictures of spin textures, with numpy and matplotlib alone. Errors are ValueErrors of one line.
+
+    axes = draw(of_file(h5py.File("film.h5"), frame=-1)[0])
+"""
+
+from .pictures import draw, largest
+from .spins import Texture, frame_number, lattice_of, of_file, time_text
+
+__all__ = ["Texture", "draw", "frame_number", "largest", "lattice_of", "of_file", "time_text"]

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""The solid angles of spins on a plane (Berg and Luescher 1981)."""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+
+
+def _half_solid_angle(a, b, c):
+    """Of three spins, within -pi .. pi; 0 where they are in one plane to round-off."""
+    def dot(u, v):
+        return np.einsum("...i,...i", u, v)
+
+    of_a, of_b, of_c = (np.sqrt(dot(u, u)) for u in (a, b, c))
+    volume, lengths = dot(a, np.cross(b, c)), of_a * of_b * of_c
+    rest = lengths + dot(a, b) * of_c + dot(b, c) * of_a + dot(c, a) * of_b
+    return np.where(np.abs(volume) < 1e-15 * lengths + 1e-300, 0, np.arctan2(volume, rest))
+
+
+def half_solid_angles(spins: np.ndarray, boundary: Sequence[str]) -> np.ndarray:
+    """Half the solid angle of the two triangles of each square of neighbours, of spins
+    (..., ny, nx, 3): (..., ny - 1, nx - 1), and one more along what `boundary`, two words for
+    x and y, calls "periodic". Over 2 pi, its sum is the topological charge."""
+    for axis, word in zip((-2, -3), boundary):
+        if word == "periodic" and spins.shape[axis] > 1:
+            spins = np.concatenate((spins, spins.take([0], axis)), axis)
+    here, east = spins[..., :-1, :-1, :], spins[..., :-1, 1:, :]
+    north, beyond = spins[..., 1:, :-1, :], spins[..., 1:, 1:, :]
+    return _half_solid_angle(here, east, north) + _half_solid_angle(beyond, north, east)

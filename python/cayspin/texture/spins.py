@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Spins at one time, and the plane of them that is drawn."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import Any, Sequence
+
+import numpy as np
+
+AXES = "xyz"
+
+
+@dataclasses.dataclass
+class Texture:
+    """Spins at one time, and where they are."""
+
+    spins: np.ndarray  #: (nz, ny, nx, 3), of crystals (site, nz, ny, nx, 3); 0 where none is
+    spacing: Sequence[float] = (1.0, 1.0, 1.0)  #: of cells along x, y and z
+    boundary: Sequence[str] = ("open", "open", "open")  #: or "periodic"
+    positions: np.ndarray | None = None  #: of the sites of a crystal, in the shape of `spins`
+    si: bool = False  #: lengths are in m, otherwise in reduced units
+    title: str = ""
+
+
+@dataclasses.dataclass
+class Plane:
+    """A plane of a texture. Its axes, 0 to 2 for x to z: `right`, `up` and `normal`."""
+
+    right: int
+    up: int
+    normal: int
+    number: int  #: counted from 0 along the normal
+    of: int  #: planes
+
+    def cut(self, values: np.ndarray) -> np.ndarray:
+        """Values (..., nz, ny, nx, 3) of this plane: (..., up, right, 3)."""
+        return np.take(values, self.number, axis=values.ndim - 2 - self.normal)
+
+    @property
+    def axes(self) -> list[int]:
+        """Components along right, up and the normal."""
+        return [self.right, self.up, self.normal]
+
+
+def plane_of(texture: Texture, plane: str | None) -> Plane:
+    """The plane of a text such as "z=0", or for None the middle one across the shortest axis."""
+    extents = texture.spins.shape[-2:-5:-1]
+    if plane is None:
+        normal = min((2, 1, 0), key=lambda axis: extents[axis])
+        number = extents[normal] // 2
+    else:
+        found = re.fullmatch(r"\s*([xyz])\s*=\s*(\d{1,18})\s*", str(plane))
+        if not found:
+            raise ValueError(f"plane {plane!r}; accepted: an axis and the number of a plane, as in "
+                             '"z=0"')
+        normal, number = AXES.index(found[1]), int(found[2])
+        if number >= extents[normal]:
+            raise ValueError(f"plane {plane!r}; accepted: {found[1]}=0 to "
+                             f"{found[1]}={extents[normal] - 1}")
+    right, up = [axis for axis in range(3) if axis != normal]
+    return Plane(right, up, normal, number, extents[normal])
+
+
+def lattice_of(scene: str) -> tuple[list[float], list[str], bool]:
+    """Spacing and boundary along x, y and z in the text of a scene, and whether it is in SI."""
+    if not scene:
+        return [1.0] * 3, ["open"] * 3, False
+    try:
+        import tomllib
+    except ImportError:
+        raise ValueError("to read the text of a scene takes Python 3.11") from None
+    tables = tomllib.loads(scene)
+    found = []
+    for key, otherwise in (("spacing", 1.0), ("boundary", "open")):
+        given = tables.get("lattice", {}).get(key, otherwise)
+        given = given if isinstance(given, list) else [given] * 3
+        found.append(given + [otherwise] * (3 - len(given)))
+    return found[0], found[1], tables.get("units") == "SI"
+
+
+def time_text(time: float, si: bool) -> str:
+    """A time for titles: in reduced units, or in s with a prefix."""
+    if not si:
+        return f"t = {time:.6g}"
+    from matplotlib.ticker import EngFormatter
+
+    return f"t = {EngFormatter('s')(float(f'{time:.6g}'))}"
+
+
+def frame_number(file: Any, frame: int) -> int:
+    """A frame of an open trajectory file counted from 0. Negative ones count from the end."""
+    count = min(len(file["spins"]), len(file["time"]))
+    if not -count <= frame < count:
+        accepted = f"{-count} to {count - 1}" if count else "a file that holds frames"
+        raise ValueError(f"frame {frame}; accepted: {accepted}")
+    return frame % count
+
+
+def of_file(file: Any, frame: int = -1,
+            before: int | None = None) -> tuple[Texture, np.ndarray | None]:
+    """A frame of an open trajectory file (h5py.File), and the spins of the frame `before`. Raises
+    ValueError for frames that are not in it, and for a file of other content."""
+    missing = [name for name in ("spins", "time") if name not in file]
+    if missing or file["spins"].ndim not in (5, 6) or file["spins"].shape[-1] != 3:
+        raise ValueError(f"no trajectory, it has no {missing[0] if missing else 'frames of spins'};"
+                         " accepted: a file that cayspin wrote")
+    number = frame_number(file, frame)
+    spacing, boundary, si = lattice_of(file.attrs.get("scene", ""))
+    title = f"frame {number}, {time_text(file['time'][number], si)}"
+    other = None
+    if before is not None:
+        before = frame_number(file, before)
+        other, title = file["spins"][before], f"{title}, difference to frame {before}"
+    positions = file["positions"][:] if "positions" in file else None
+    return Texture(file["spins"][number], spacing, boundary, positions, si, title), other
