@@ -54,12 +54,15 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   auto const& integrator = scene.integrator;
   auto const together = steps_between_looks(scene, advice.candidate.method->adaptive);
   double const time = integrator.dt * static_cast<double>(together);  // reduced
-  std::int64_t const parts = advice.candidate.method->adaptive
-                                 ? 1
-                                 : static_cast<std::int64_t>(std::ceil(time / advice.dt - 1e-9));
-  Resolved resolved{time * scene.units.time / static_cast<double>(parts),
-                    integrator.steps / together * parts,
-                    {}};
+  auto const looks = integrator.steps / together;
+  std::int64_t parts = 1;
+  if (!advice.candidate.method->adaptive) {
+    // A multiple of four steps in all: a restart can go on with them to ends at quarters.
+    std::int64_t const unit = looks > 0 ? 4 / std::gcd<std::int64_t>(4, looks) : 1;
+    auto const least = static_cast<std::int64_t>(std::ceil(time / advice.dt - 1e-9));
+    parts = (least + unit - 1) / unit * unit;
+  }
+  Resolved resolved{time * scene.units.time / static_cast<double>(parts), looks * parts, {}};
   resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
   if (has_dear_field(scene) && advice.candidate.substeps == 0)
     resolved.overrides.emplace_back(without_dear(scene));
