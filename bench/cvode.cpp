@@ -202,10 +202,7 @@ void heisenberg(char const* name) {
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
-  if (Kokkos::DefaultHostExecutionSpace().concurrency() > 1) {
-    std::fprintf(stderr, "set OMP_NUM_THREADS=1: seconds are those of one thread\n");
-    return 2;
-  }
+  if (!ladder::has_one_thread()) return 2;
   std::pair<char const*, std::function<void(char const*)>> const scenes[] = {
       {"slab_fine", [](auto name) { slab_fine(name, 0.05); }},
       {"slab_fine_damped", [](auto name) { slab_fine(name, 0.5); }},

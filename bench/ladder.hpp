@@ -22,6 +22,13 @@ using States = std::vector<std::vector<double>>;  // (sites, 3) at each look
 
 inline constexpr int looks = 4;
 
+/// Seconds are those of one thread: says so where there are more.
+inline bool has_one_thread() {
+  if (Kokkos::DefaultHostExecutionSpace().concurrency() == 1) return true;
+  std::fprintf(stderr, "set OMP_NUM_THREADS=1: seconds are those of one thread\n");
+  return false;
+}
+
 /// Seconds of the processor: what neighbours on the machine take does not count.
 class Clock {
  public:

@@ -183,10 +183,7 @@ void report(ladder::Ladder const& ladder) {
 
 int main(int argc, char** argv) {
   Kokkos::ScopeGuard const kokkos(argc, argv);
-  if (Kokkos::DefaultHostExecutionSpace().concurrency() > 1) {
-    std::fprintf(stderr, "set OMP_NUM_THREADS=1: seconds are those of one thread\n");
-    return 2;
-  }
+  if (!ladder::has_one_thread()) return 2;
   Demag const demag(film(), DemagnetizingField<double>(film()));
   Own const own(demag);
   auto const coarse = own(Rkmk4<Spins>(own.like()), 2000).states;

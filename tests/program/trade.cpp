@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // `cayspin trade` and `cayspin advise`: their errors are those of the runs they name.
+#include "early_rest.hpp"
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -236,24 +237,13 @@ every = 10
 
 // All that happens happens in the first fiftieth of the run.
 TEST_F(Watched, ASlabThatComesToRestEarly) {
-  std::string const scene = R"toml([system]
-kind = "llg"
-damping = 1.0
-precession = false
-[lattice]
-shape = [20]
-[field]
-exchange = 1.0
-applied = [5.0, 0.0, 0.0]
-[initial]
-expression = ["0.3+0.2*cos(pi*x)", "0.5+0.1*cos(2*pi*x)", "0.8"]
-[integrator]
+  std::string const scene = early_rest(R"toml([integrator]
 method = "rkmk8"
 dt = 0.01
 end = 20.0
 [output]
 every = 20
-)toml";
+)toml");
   // Errors of adaptive steps at rest rise and fall between the looks.
   for (char const* error : {"1e-3", "1e-6"}) EXPECT_LT(this->error(scene, error), 4) << error;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What `cayspin trade` and `cayspin advise` look at, what that costs, and how long they may take.
+#include "early_rest.hpp"
 #include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
@@ -15,24 +16,8 @@ namespace {
 using nlohmann::json;
 
 struct Looks : ProgramTest {
-  // All that happens happens in the first twentieth of the run.
   static std::string at_rest() {
-    return R"toml([system]
-kind = "llg"
-damping = 1.0
-precession = false
-[lattice]
-shape = [20]
-[field]
-exchange = 1.0
-applied = [5.0, 0.0, 0.0]
-[initial]
-expression = ["0.3+0.2*cos(pi*x)", "0.5+0.1*cos(2*pi*x)", "0.8"]
-[integrator]
-method = "rkmk4"
-dt = 0.125
-end = 20.0
-)toml";
+    return early_rest("[integrator]\nmethod = \"rkmk4\"\ndt = 0.125\nend = 20.0\n");
   }
 
   json trade() const {

@@ -9,7 +9,8 @@
 
 namespace cayspin::test {
 
-/// The largest defect of the order conditions of weights w at fraction s of a step, of one order.
+/// The largest defect of the order conditions of weights w at fraction s of a step, of one order up
+/// to 6.
 template <class Tableau, class Weight>
 double defect(int of_order, double s, Weight const& w) {
   constexpr int n = Tableau::stages;
@@ -38,6 +39,29 @@ double defect(int of_order, double s, Weight const& w) {
         {by(ccc, c), 5},          {by(cc, ac), 10},           {by(ac, ac), 20},
         {by(c, acc), 15},         {times_a(ccc), 20},         {by(c, times_a(ac)), 30},
         {times_a(by(c, ac)), 40}, {times_a(times_a(cc)), 60}, {times_a(times_a(ac)), 120}};
+  if (of_order == 6) {
+    Column const c4 = by(cc, cc), aac = times_a(ac), accc = times_a(ccc), c_ac = by(c, ac);
+    conditions = {{by(c4, c), 6},
+                  {by(ccc, ac), 12},
+                  {by(c, by(ac, ac)), 24},
+                  {by(cc, acc), 18},
+                  {by(ac, acc), 36},
+                  {by(c, accc), 24},
+                  {times_a(c4), 30},
+                  {by(cc, aac), 36},
+                  {by(ac, aac), 72},
+                  {by(c, times_a(c_ac)), 48},
+                  {times_a(by(cc, ac)), 60},
+                  {times_a(by(ac, ac)), 120},
+                  {by(c, times_a(acc)), 72},
+                  {times_a(by(c, acc)), 90},
+                  {times_a(accc), 120},
+                  {by(c, times_a(aac)), 144},
+                  {times_a(by(c, aac)), 180},
+                  {times_a(times_a(c_ac)), 240},
+                  {times_a(times_a(acc)), 360},
+                  {times_a(times_a(aac)), 720}};
+  }
   double largest = 0;
   for (auto const& [column, density] : conditions) {
     double sum = 0;

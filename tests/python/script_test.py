@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""What tests of the scripts that draw share. Arguments: FOLDER_OF_SCRIPTS WRITER_OF_TRAJECTORIES."""
+
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib.image
+import numpy as np
+
+SCRIPTS, WRITER = map(pathlib.Path, sys.argv[1:3])
+sys.path.insert(0, str(SCRIPTS))
+
+BLUE, RED = (0x1B, 0x5F, 0xA7), (0xCF, 0x3F, 0x2B)
+PIXELS_PER_INCH = 160
+
+
+def write(path, sites=5, length=1.0, cell_sites=1):
+    subprocess.run([WRITER, path, str(sites), str(length), str(cell_sites)], check=True)
+    return path
+
+
+def dimensions(png):
+    content = png.read_bytes()
+    assert content[:8] == b"\x89PNG\r\n\x1a\n" and content[12:16] == b"IHDR", content[:16]
+    return struct.unpack(">II", content[16:24])
+
+
+class ScriptTest(unittest.TestCase):
+    fonts = tempfile.TemporaryDirectory()  # Matplotlib makes a list of them once
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_script(self, name, *arguments):
+        return subprocess.run([sys.executable, "-B", SCRIPTS / name, *map(str, arguments)],
+                              env=os.environ | {"MPLCONFIGDIR": self.fonts.name},
+                              capture_output=True, text=True)
+
+    def assert_drawn(self, png, inches, colors, result):
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.stdout, f"{png}\n")
+        self.assertEqual(dimensions(png), tuple(round(PIXELS_PER_INCH * side) for side in inches))
+        self.assertTrue(15_000 < png.stat().st_size < 3_000_000, png.stat().st_size)
+        for color in colors:
+            self.assert_has_color(png, color)
+
+    def assert_has_color(self, png, color):
+        pixels = np.round(255 * matplotlib.image.imread(png)[..., :3]).astype(int)
+        count = int(np.all(abs(pixels - color) <= 2, axis=-1).sum())
+        self.assertGreater(count, 300, f"{png.name}: pixels of the color {color}")
+
+    def assert_refused(self, png, file, part, result):
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertTrue(result.stderr.startswith(f"{file}: "), result.stderr)
+        self.assertIn(part, result.stderr)
+        self.assertFalse(png.exists())
