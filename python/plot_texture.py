@@ -11,9 +11,7 @@ import h5py
 from cayspin_plots import style
 from cayspin_plots.read import require_undamaged_frame
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parent / "cayspin"))
-
-import texture  # noqa: E402  part of the package that needs nothing compiled
+import texture  # of python/cayspin, which cayspin_plots has put on the path
 
 MOVIES = {".mp4": ("ffmpeg",), ".gif": ("pillow", "ffmpeg")}
 
