@@ -20,16 +20,16 @@ from .reader import Reader
 from .run import Run
 
 PAGE = pathlib.Path(__file__).resolve().parent / "page"
-FILES = ("page.js", "spins.js", "lines.js", "page.css", "icon.svg")
+SCRIPT = "text/javascript"
+FILES = {"/page.js": SCRIPT, "/spins.js": SCRIPT, "/lines.js": SCRIPT, "/page.css": "text/css",
+         "/icon.svg": "image/svg+xml"}
 
 
 class _Handler(tornado.web.RequestHandler):
-    needs_token = True
-
     def set_default_headers(self):
         ancestors = self.settings["frame_ancestors"]
-        self.set_header("Content-Security-Policy", "default-src 'self'; base-uri 'none'; "
-                                                   f"form-action 'none'; frame-ancestors {ancestors}")
+        policy = f"default-src 'self'; base-uri 'none'; frame-ancestors {ancestors}"
+        self.set_header("Content-Security-Policy", policy)
         self.set_header("X-Content-Type-Options", "nosniff")
         self.set_header("Referrer-Policy", "no-referrer")
         self.set_header("Cache-Control", "no-store")
@@ -42,8 +42,8 @@ class _Handler(tornado.web.RequestHandler):
             self.refuse(403, f"host {host}: not of this page; accepted: {' or '.join(hosts)}")
         elif origin != f"http://{host}":
             self.refuse(403, f"origin {origin}: another page; accepted: http://{host}")
-        elif self.needs_token and not hmac.compare_digest(token.encode(),
-                                                          self.settings["token"].encode()):
+        elif self.request.path not in FILES and not hmac.compare_digest(
+                token.encode(), self.settings["token"].encode()):
             self.refuse(403, "token: missing or wrong; accepted: the address that cayspin printed")
 
     def refuse(self, status, sentence):
@@ -62,27 +62,16 @@ class _Handler(tornado.web.RequestHandler):
         return int(text)
 
 
-class _Nothing(_Handler):
-    needs_token = False
-
-    def prepare(self):
-        super().prepare()
-        if not self._finished:
-            self.refuse(404, f"{self.request.path}: there is no such page; accepted: /")
-
-
-class _File(_Handler):
-    needs_token = False
-
-    def get(self, name):
-        kind = {"js": "text/javascript", "css": "text/css", "svg": "image/svg+xml"}
-        self.set_header("Content-Type", f"{kind[name.rpartition('.')[2]]}; charset=utf-8")
-        self.finish((PAGE / name).read_bytes())
-
-
 class _Page(_Handler):
     def get(self):
-        self.finish((PAGE / "index.html").read_bytes())
+        path = self.request.path
+        if path == "/":
+            self.finish((PAGE / "index.html").read_bytes())
+        elif path in FILES:
+            self.set_header("Content-Type", FILES[path])
+            self.finish((PAGE / path[1:]).read_bytes())
+        else:
+            self.refuse(404, f"{path}: there is no such page; accepted: /")
 
 
 class _Data(_Handler):
@@ -108,7 +97,7 @@ class _Steering(_Handler):
     def post(self):
         run, action = self.settings["run"], self.get_query_argument("action", "")
         if run is None:
-            self.refuse(403, "steer: the page did not start this run; accepted: the page of a scene")
+            self.refuse(403, "steer: the page started no run; accepted: the page of a scene")
         elif action not in ("pause", "resume", "stop"):
             self.refuse(400, f"action {action!r}: unknown; accepted: pause, resume, stop")
         else:
@@ -125,9 +114,8 @@ async def serve(reader: Reader, run: Run | None, port: int, announce: Callable[[
         raise ValueError(f"--port {port}: {error.strerror}; accepted: a free port") from None
     port, token = sockets[0].getsockname()[1], secrets.token_urlsafe(24)
     application = tornado.web.Application(
-        [("/", _Page), (f"/({'|'.join(map(re.escape, FILES))})", _File),
-         ("/(news|frame|positions|path)", _Data), ("/steer", _Steering)],
-        default_handler_class=_Nothing, log_function=lambda handler: None, reader=reader, run=run,
+        [("/(news|frame|positions|path)", _Data), ("/steer", _Steering)],
+        default_handler_class=_Page, log_function=lambda handler: None, reader=reader, run=run,
         hosts=[f"127.0.0.1:{port}", f"localhost:{port}"], token=token,
         frame_ancestors="http://127.0.0.1:* http://localhost:*" if in_notebook else "'none'")
     tornado.httpserver.HTTPServer(application).add_sockets(sockets)

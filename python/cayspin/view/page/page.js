@@ -7,7 +7,8 @@ const number = id => Number($(id).value);
 const sleep = time => new Promise(done => setTimeout(done, time));
 const token = new URLSearchParams(location.search).get("token") ?? "";
 const spins = new Spins($("spins"));
-const times = [], rows = [], problems = {}; // of the frames; of the samples: [t, energy, mx, my, mz]
+const times = [], problems = {}; // times of the frames
+const rows = []; // of the samples: [t, energy, mx, my, mz]
 let news, about, laidOut, playing = 0, place = null, path = [];
 
 function say(who, text) {
@@ -179,14 +180,8 @@ async function play() {
   }
 }
 
-async function steer(action) {
-  try {
-    await ask("steer", {action}, "POST");
-    await readNews();
-  } catch (error) {
-    say("steer", error.message);
-  }
-}
+const steer = action => ask("steer", {action}, "POST").then(
+  readNews, error => say("steer", error.message));
 
 $("play").onclick = play;
 $("pause").onclick = () => steer(news.run === "paused" ? "resume" : "pause");
@@ -204,7 +199,8 @@ $("spins").onclick = ({offsetX, offsetY, target}) => {
   choose(spins.nearest(offsetX / target.clientWidth, 1 - offsetY / target.clientHeight));
 };
 $("spins").onkeydown = event => {
-  const step = {ArrowLeft: -1, ArrowRight: 1, ArrowUp: extents()[0], ArrowDown: -extents()[0]}[event.key];
+  const row = extents()[0];
+  const step = {ArrowLeft: -1, ArrowRight: 1, ArrowUp: row, ArrowDown: -row}[event.key];
   if (!step) return;
   event.preventDefault();
   choose(Math.min(Math.max((place ?? 0) + step, 0), spins.sites - 1));

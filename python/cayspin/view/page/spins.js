@@ -122,12 +122,10 @@ export class Spins {
     return [(site % columns + 0.5) / columns, (Math.floor(site / columns) + 0.5) / rows];
   }
   nearest(x, y) {
-    const [columns, rows] = this.extents, {width, height} = this.canvas;
-    if (!this.positions)
-      return Math.min(Math.floor(y * rows), rows - 1) * columns + Math.min(Math.floor(x * columns), columns - 1);
+    const {width, height} = this.canvas;
     let best = 0, least = Infinity;
     for (let site = 0; site < this.sites; ++site) {
-      const [right, up] = this.at(site), depth = this.positions[3 * site + 2];
+      const [right, up] = this.at(site), depth = this.positions?.[3 * site + 2] ?? 0;
       const away = Math.hypot((right - x) * width, (up - y) * height) + 1e-3 * depth;
       if (away < least) [best, least] = [site, away];
     }
@@ -138,7 +136,7 @@ export class Spins {
   drawKey(onto, safe) {
     const side = 160, spins = new Int8Array(3 * side * side);
     for (let site = 0; site < side * side; ++site) {
-      const x = (site % side + 0.5) / side * 2 - 1, y = (Math.floor(site / side) + 0.5) / side * 2 - 1;
+      const [x, y] = [site % side, Math.floor(site / side)].map(at => (2 * at + 1) / side - 1);
       const radius = Math.hypot(x, y), part = 127 * Math.sin(Math.PI * radius) / radius;
       if (radius < 1) spins.set([x * part, y * part, 127 * Math.cos(Math.PI * radius)], 3 * site);
     }
