@@ -6,9 +6,10 @@ const $ = id => document.getElementById(id);
 const number = id => Number($(id).value);
 const sleep = time => new Promise(done => setTimeout(done, time));
 const token = new URLSearchParams(location.search).get("token") ?? "";
-const spins = new Spins($("spins"));
 const times = [], problems = {}; // times of the frames
 const rows = []; // of the samples: [t, energy, mx, my, mz]
+window.onerror = text => say("page", text);
+const spins = new Spins($("spins"));
 let news, about, laidOut, playing = 0, place = null, path = [];
 
 function say(who, text) {
@@ -17,7 +18,8 @@ function say(who, text) {
 }
 
 async function ask(what, parameters, method = "GET") {
-  const answer = await fetch(`${what}?${new URLSearchParams({...parameters, token})}`, {method});
+  const answer = await fetch(`${what}?${new URLSearchParams({...parameters, token})}`, {method})
+    .catch(() => { throw new Error("cayspin view has ended; accepted: start it again"); });
   if (!answer.ok) throw new Error((await answer.text()).trim());
   return answer;
 }
@@ -159,7 +161,7 @@ const readNews = lastOf("news", async () => {
 
 // A run under way loses at most a fiftieth of its time to this page.
 async function follow() {
-  while (!news || news.more || news.state === "under way") {
+  while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
     const start = performance.now();
     if (!document.hidden) await readNews();
     if (!news?.more) await sleep(Math.max(1000, 50 * (performance.now() - start)));
