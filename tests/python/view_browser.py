@@ -1,35 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """The page of `cayspin view` in a browser: its pictures, its controls and its console."""
 
-import contextlib
-import io
-import shutil
 import sys
 import time
 import unittest
 
 import h5py
-import matplotlib.image
 import numpy as np
+from browser_test import Browser, has_browser
 from script_test import write
-from view_test import LONG_SCENE, Page, ViewTest
+from view_test import LONG_SCENE
 
 import cayspin_plots  # noqa: F401  puts `texture` on the path
 from texture import checksum
 from texture.colors import hue_colors, map_colors
 
-try:
-    from selenium import webdriver
-    from selenium.common.exceptions import WebDriverException
-    from selenium.webdriver.common.action_chains import ActionChains
-    from selenium.webdriver.common.keys import Keys
-    from selenium.webdriver.support.ui import Select
-except ImportError:
-    webdriver = None
-
-FLAGS = ("--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-         "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--window-size=1200,900",
-         "--force-device-scale-factor=1")
+UP, LEFT, HOME = "\ue013", "\ue012", "\ue011"  # keys of WebDriver
 RENDERER = """const gl = document.createElement("canvas").getContext("webgl2");
 return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);"""
 # Frames that appear within so many milliseconds while the slider is pulled on and on.
@@ -54,78 +40,6 @@ def random_spins(*shape):
     return spins / np.linalg.norm(spins, axis=-1, keepdims=True)
 
 
-class Browser(ViewTest):
-    @classmethod
-    def setUpClass(cls):
-        options = webdriver.ChromeOptions()
-        options.binary_location = shutil.which("chromium")
-        for flag in FLAGS:
-            options.add_argument(flag)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-        service = webdriver.chrome.service.Service(shutil.which("chromedriver"))
-        cls.driver = webdriver.Chrome(service=service, options=options)
-        cls.addClassCleanup(cls.driver.quit)
-        cls.driver.set_script_timeout(60)
-
-    def open(self, *arguments):
-        page = Page(self, *arguments)
-        self.driver.get(page.address)
-        self.wait(lambda: self.shown() is not None)
-        return page
-
-    def tearDown(self):
-        with contextlib.suppress(WebDriverException):
-            self.assertEqual([entry["message"] for entry in self.driver.get_log("browser")], [])
-        for command, options in (("clearDeviceMetricsOverride", {}),
-                                 ("setEmulatedMedia", {"features": []})):
-            self.driver.execute_cdp_cmd(f"Emulation.{command}", options)
-
-    def wait(self, what, seconds=20):
-        end = time.monotonic() + seconds
-        while not what():
-            self.assertLess(time.monotonic(), end, self.element("message").text)
-            time.sleep(0.02)
-
-    def element(self, name):
-        return self.driver.find_element("id", name)
-
-    def shown_text(self):
-        return self.driver.execute_script("return document.body.dataset.shown") or ""
-
-    def shown(self):
-        """The number of the frame that is drawn."""
-        return int(self.shown_text().split()[0]) if self.shown_text() else None
-
-    def pull(self, slider, value):
-        self.driver.execute_script(
-            "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))",
-            self.element(slider), value)
-
-    def go_to(self, frame):
-        self.pull("frame", frame)
-        self.wait(lambda: self.shown() == frame)
-
-    def pixels(self, canvas="spins"):
-        png = matplotlib.image.imread(io.BytesIO(self.element(canvas).screenshot_as_png))
-        return np.round(255 * png[..., :3]).astype(int)
-
-    def assert_colors(self, expected, tolerance=4):
-        """Of cells in rows from the bottom up, in their middles."""
-        pixels, (rows, columns) = self.pixels(), expected.shape[:2]
-        up, right = ((np.arange(count) + 0.5) / count for count in (rows, columns))
-        found = pixels[np.ix_((pixels.shape[0] * (1 - up)).astype(int),
-                              (pixels.shape[1] * right).astype(int))]
-        off = abs(found - 255 * expected).max()
-        self.assertLessEqual(off, tolerance, f"off by {off} of 255")
-
-    def click_cell(self, column, row, columns, rows):
-        canvas = self.element("spins")
-        width, height = canvas.size["width"], canvas.size["height"]
-        ActionChains(self.driver).move_to_element_with_offset(
-            canvas, round((column + 0.5) / columns * width - width / 2),
-            round(height / 2 - (row + 0.5) / rows * height)).click().perform()
-
-
 class Pictures(Browser):
     def test_a_film(self):
         file, spins = self.film()
@@ -142,7 +56,7 @@ class Pictures(Browser):
             self.go_to(frame)
             self.assert_colors(hue_colors(spins[frame, 0]))
         self.assertIn("12 of 0 to 19, t = 1.2", self.element("time").text)
-        Select(self.element("colors")).select_by_value("safe")
+        self.select("colors", "safe")
         normal = np.where(spins[12, 0].any(-1), spins[12, 0, ..., 2], np.nan)
         self.wait(lambda: "safe" in self.shown_text())
         self.assert_colors(map_colors(normal, "safe", -1, 1)[0], 6)
@@ -168,7 +82,7 @@ class Pictures(Browser):
         self.wait(lambda: self.element("number").text == "z=2 of 3")
         self.wait(lambda: "z=2" in self.shown_text())
         self.assert_colors(hue_colors(spins[19, 2]))
-        Select(self.element("normal")).select_by_visible_text("y")
+        self.select("normal", "1")
         self.wait(lambda: "y=2" in self.shown_text())
         self.assert_colors(hue_colors(spins[19, :, 2][..., [0, 2, 1]]))
         self.assertIn("up: +z", self.element("directions").text)
@@ -211,10 +125,10 @@ class Controls(Browser):
         self.wait(lambda: "Site 27 of z=0: m = (-1.0000, 0.0000, 0.0000)" in
                   self.element("spin").text)
         self.assertTrue((self.pixels("sphere").max(-1) < 100).any())
-        self.element("spins").send_keys(Keys.ARROW_UP, Keys.ARROW_UP, Keys.ARROW_LEFT)
+        self.element("spins").send_keys(UP, UP, LEFT)
         self.wait(lambda: "Site 46 of z=0: m = (0.0000, 0.0000, -1.0000)" in
                   self.element("spin").text)
-        self.element("frame").send_keys(Keys.HOME)
+        self.element("frame").send_keys(HOME)
         self.wait(lambda: "m = (0.0000, 1.0000, 0.0000)" in self.element("spin").text)
 
     def test_play(self):
@@ -295,7 +209,7 @@ class Large(Browser):
 
 
 if __name__ == "__main__":
-    if webdriver is None or not shutil.which("chromium") or not shutil.which("chromedriver"):
+    if not has_browser():
         print("skipped: it takes chromium, chromium-driver and python3-selenium")
         sys.exit(77)
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
