@@ -60,14 +60,17 @@ function fit(width, height) {
 }
 
 async function layOutCrystal() {
-  const at = new Float32Array(await bytes("positions", {plane: plane()})), sites = at.length / 3;
+  const at = new Float32Array(await bytes("positions", {plane: plane()}));
   const low = [Infinity, Infinity, Infinity], high = low.map(end => -end);
   at.forEach((end, i) => {
     low[i % 3] = Math.min(low[i % 3], end);
     high[i % 3] = Math.max(high[i % 3], end);
   });
   const [width, height, depth] = high.map((end, i) => end - low[i]);
-  const apart = Math.sqrt(width * height / sites) || Math.max(width, height) / (sites - 1) || 1;
+  const [columns, lines] = extents(), edge = to => [at[3 * to] - at[0], at[3 * to + 1] - at[1]];
+  const a = edge(columns > 1 ? 1 : 0), b = edge(lines > 1 ? columns : 0);
+  const area = Math.abs(a[0] * b[1] - a[1] * b[0]) * columns * lines / (at.length / 3); // of a site
+  const apart = Math.sqrt(area) || Math.max(Math.hypot(...a), Math.hypot(...b)) || 1;
   const half = [width / 2 + 0.7 * apart, height / 2 + 0.7 * apart, -(depth || 1)];
   spins.place(at.map((end, i) => (end - (low[i % 3] + high[i % 3]) / 2) / half[i % 3]),
               0.43 * apart / half[1]);
@@ -99,7 +102,7 @@ function drawGraphs() {
   const [x, y] = spins.at(place);
   $("mark").style.left = `${100 * x}%`;
   $("mark").style.bottom = `${100 * y}%`;
-  const m = path[number("frame")]?.map(part => part.toFixed(4)).join(", ");
+  const m = path[number("frame")]?.map(part => part.toFixed(3)).join(", ");
   $("spin").textContent = `Site ${place} of ${plane()}${m ? `: m = (${m})` : ""}`;
 }
 
