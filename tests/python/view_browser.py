@@ -169,15 +169,15 @@ class Controls(Browser):
         self.wait(lambda: self.shown() > 2)  # it follows by itself
         self.element("pause").click()
         self.wait(lambda: self.element("state").text == "paused")
-        time.sleep(2.5)
+        time.sleep(5)  # what is written already appears
         shown = self.shown()
-        time.sleep(1.5)
+        time.sleep(3)
         self.assertEqual(self.shown(), shown)
         self.assertEqual(self.element("pause").text, "Go on")
         self.element("pause").click()
         self.wait(lambda: self.shown() > shown)
         self.go_to(1)
-        time.sleep(1.5)
+        time.sleep(3)
         self.assertEqual(self.shown(), 1)  # one that is looked at stays
         self.element("stop").click()
         self.wait(lambda: self.element("state").text == "ended early")

@@ -162,12 +162,13 @@ const readNews = lastOf("news", async () => {
   trace();
 });
 
-// A run under way loses at most a fiftieth of its time to this page.
+// A run under way loses about a fiftieth of its time to this page.
 async function follow() {
   while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
     const start = performance.now();
     if (!document.hidden) await readNews();
-    if (!news?.more) await sleep(Math.max(1000, 50 * (performance.now() - start)));
+    const took = performance.now() - start;
+    if (!news?.more) await sleep(Math.min(Math.max(2000, 50 * took), 10000));
   }
 }
 
