@@ -98,7 +98,7 @@ class Pictures(Browser):
         self.assert_colors(hue_colors(spins[0]))
 
     def test_a_crystal(self):
-        places = np.array([[0, 0], [2, 0], [1, 1], [3, 1], [0.5, 2], [2, 2.2]])
+        places = np.array([[0, 0], [1.2, 0], [6, 0.5], [3, 1], [0.5, 2], [4, 2.2]])
         spins, positions = random_spins(20, 2, 1, 1, 3), np.zeros((2, 1, 1, 3, 3))
         positions[..., :2] = places.reshape(2, 1, 1, 3, 2)
         spins[:, 1, 0, 0, 0] = 0
@@ -107,7 +107,7 @@ class Pictures(Browser):
         self.open(file)
         pixels = self.pixels()
         low, high = places.min(0), places.max(0)
-        edge = 0.7 * 2  # of a chain of cells
+        edge = 0.7 * 1.2  # of a chain of cells
         part = (places - low + edge) / (high - low + 2 * edge)
         colors = 255 * hue_colors(spins[19].reshape(-1, 3))
         for (right, up), color in zip(part, colors):
