@@ -68,6 +68,8 @@ def main():
                    "with numpy, h5py and tornado")
     except ValueError as error:
         message = error
+    except OSError as error:
+        message = f"cayspin view: {error.strerror or error}"
     except KeyboardInterrupt:
         return
     else:
