@@ -54,9 +54,10 @@ function fit(width, height) {
   const aspect = Math.min(Math.max(width / height, 0.1), 12), {style, parentElement} = $("stage");
   style.width = `${Math.min(parentElement.clientWidth, 0.7 * innerHeight * aspect)}px`;
   style.aspectRatio = aspect;
-  const {clientWidth, clientHeight} = $("spins");
-  $("spins").width = clientWidth * devicePixelRatio;
-  $("spins").height = clientHeight * devicePixelRatio;
+  const {clientWidth, clientHeight} = $("spins"); // a pixel for a cell is enough
+  const most = about.crystal ? [Infinity, Infinity] : extents();
+  $("spins").width = Math.min(clientWidth * devicePixelRatio, most[0]);
+  $("spins").height = Math.min(clientHeight * devicePixelRatio, most[1]);
 }
 
 async function layOutCrystal() {
@@ -165,7 +166,7 @@ const readNews = lastOf("news", async () => {
 // A run under way loses about a fiftieth of its time to this page.
 async function follow() {
   while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
-    const start = performance.now();
+    const start = about ? performance.now() : Infinity; // the first look takes long
     if (!document.hidden) await readNews();
     const took = performance.now() - start;
     if (!news?.more) await sleep(Math.min(Math.max(2000, 50 * took), 10000));
