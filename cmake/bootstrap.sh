@@ -174,7 +174,7 @@ if [ "$preset" = mpi ]; then
 fi
 
 install_packages install "${packages[@]}"
-[ "$verb" = build ] || start_installing_drawing
+start_installing_drawing
 provide_kokkos
 case "$verb $preset" in
   "test release" | "test-all release" | "test host-device") provide_nanobind ;;
@@ -187,7 +187,11 @@ case $verb in
     provide_interchange_tools
     print_cmake_option
     ;;
-  build) build cayspin_program cayspin_c; say "the program: $build_dir/bin/cayspin" ;;
+  build)
+    finish_installing_drawing
+    build cayspin_program cayspin_c
+    say "the program: $build_dir/bin/cayspin"
+    ;;
   compile)
     finish_installing_drawing
     build all

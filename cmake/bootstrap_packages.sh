@@ -6,12 +6,12 @@
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
-program=(libcli11-dev nlohmann-json3-dev libfftw3-dev)
+program=(libcli11-dev nlohmann-json3-dev libfftw3-dev help2man)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib)
 mpi=(mpich libmpich-dev)
 tests=("${mpi[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev doxygen pkg-config
-  python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray)
+  python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray zsh)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
 

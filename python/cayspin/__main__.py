@@ -8,6 +8,7 @@ from cayspin.trade import program
 
 
 def main():
+    os.environ.setdefault("CAYSPIN_PYTHON", sys.executable)  # for `plot` and `view`
     os.execv(program(), ["cayspin", *sys.argv[1:]])
 
 
