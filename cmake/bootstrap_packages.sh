@@ -8,10 +8,11 @@ core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the heade
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
 program=(libcli11-dev nlohmann-json3-dev libfftw3-dev help2man)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
-drawing=(python3-h5py python3-matplotlib)
+drawing=(python3-h5py python3-matplotlib python3-tornado)
 mpi=(mpich libmpich-dev)
 tests=("${mpi[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev doxygen pkg-config
-  python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray zsh)
+  python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray chromium chromium-driver
+  python3-selenium zsh)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
 

@@ -38,11 +38,11 @@ def parse_arguments():
 def import_libraries():
     """After --help, which needs none of them."""
     global h5py, require_undamaged_frame, style, texture
-    sys.path.append(str(pathlib.Path(__file__).resolve().parent / "cayspin"))
     import h5py
-    import texture
     from cayspin_plots import style
     from cayspin_plots.read import require_undamaged_frame
+
+    import texture  # of python/cayspin, which cayspin_plots has put on the path
 
 
 def movie_writer(path, fps):

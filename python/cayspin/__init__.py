@@ -18,7 +18,8 @@ from cayspin.scene import Scene
 from cayspin.simulation import Minimum, Simulation
 from cayspin.trade import Advice, Trade, advise, trade
 from cayspin.trajectory import Trajectory, open
+from cayspin.view import View, view
 
 __all__ = ["Advice", "Average", "Averages", "CayspinError", "Dispersion", "Minimum", "NumbersFailed",
-           "Scene", "SceneError", "Simulation", "Trade", "Trajectory", "__version__", "advise",
-           "average", "dispersion", "open", "topological_charge", "trade"]
+           "Scene", "SceneError", "Simulation", "Trade", "Trajectory", "View", "__version__",
+           "advise", "average", "dispersion", "open", "topological_charge", "trade", "view"]

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import h5py
 import numpy as np
-
-from cayspin_plots import checksum
+from texture import checksum
 
 
 @dataclass

@@ -5,6 +5,8 @@
 """
 
 from .pictures import draw, largest
-from .spins import Texture, frame_number, lattice_of, of_file, time_text
+from .spins import (Texture, frame_number, lattice_of, of_file, plane_of, require_trajectory,
+                    time_text)
 
-__all__ = ["Texture", "draw", "frame_number", "largest", "lattice_of", "of_file", "time_text"]
+__all__ = ["Texture", "draw", "frame_number", "largest", "lattice_of", "of_file", "plane_of",
+           "require_trajectory", "time_text"]

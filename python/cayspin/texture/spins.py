@@ -98,14 +98,19 @@ def frame_number(file: Any, frame: int) -> int:
     return frame % count
 
 
-def of_file(file: Any, frame: int = -1,
-            before: int | None = None) -> tuple[Texture, np.ndarray | None]:
-    """A frame of an open trajectory file (h5py.File), and the spins of the frame `before`. Raises
-    ValueError for frames that are not in it, and for a file of other content."""
+def require_trajectory(file: Any) -> None:
+    """Raises ValueError for an open file of other content."""
     missing = [name for name in ("spins", "time") if name not in file]
     if missing or file["spins"].ndim not in (5, 6) or file["spins"].shape[-1] != 3:
         raise ValueError(f"no trajectory, it has no {missing[0] if missing else 'frames of spins'};"
                          " accepted: a file that cayspin wrote")
+
+
+def of_file(file: Any, frame: int = -1,
+            before: int | None = None) -> tuple[Texture, np.ndarray | None]:
+    """A frame of an open trajectory file (h5py.File), and the spins of the frame `before`. Raises
+    ValueError for frames that are not in it, and for a file of other content."""
+    require_trajectory(file)
     number = frame_number(file, frame)
     spacing, boundary, si = lattice_of(file.attrs.get("scene", ""))
     title = f"frame {number}, {time_text(file['time'][number], si)}"

@@ -4,15 +4,17 @@
 import numpy as np
 
 MASK = (1 << 64) - 1
+WEIGHTS = np.arange(1 << 18, 0, -1.0)  # so many that sums are exact in doubles
 
 
 def fletcher32(data):
     """Of an even number of bytes."""
-    words = np.frombuffer(data, ">u2").astype(np.uint64)
+    words = np.frombuffer(data, ">u2")
     total = total_of_totals = 0
-    for block in np.array_split(words, len(words) // (1 << 20) + 1):
-        weights = np.arange(len(block), 0, -1, dtype=np.uint64)
-        total_of_totals = _folded(total_of_totals + len(block) * total + int(weights @ block))
+    for first in range(0, len(words), len(WEIGHTS)):
+        block = words[first:first + len(WEIGHTS)].astype(np.float64)
+        weighted = int(np.einsum("i,i", WEIGHTS[-len(block):], block))
+        total_of_totals = _folded(total_of_totals + len(block) * total + weighted)
         total = _folded(total + int(block.sum()))
     return total_of_totals << 16 | total
 

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""A page in the browser that shows the spins of a trajectory file, also while a run writes it."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import subprocess
+import sys
+import tempfile
+
+
+class View:
+    """A page, which a notebook shows in its output. A process of its own serves it, because HDF5
+    is not for several threads. `address` opens in any browser of this machine."""
+
+    def __init__(self, path: str | os.PathLike):
+        from cayspin import arguments
+        from cayspin._cayspin import CayspinError
+        from cayspin.trade import program
+
+        command = [sys.executable, "-m", "cayspin.view", "--no-browser", "--in-notebook", "--",
+                   arguments.file_name(path, "view")]
+        with tempfile.TemporaryFile("w+") as messages:
+            self._server = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=messages, text=True,
+                env={**os.environ, "CAYSPIN_PROGRAM": program()}, start_new_session=True)
+            self.address = self._server.stdout.readline().strip()
+            if not self.address:
+                self.close()
+                messages.seek(0)
+                raise CayspinError(messages.read().strip().rpartition("\n")[2])
+        atexit.register(self.close)
+
+    def close(self) -> None:
+        """Ends the page, and the run that it started."""
+        self._server.stdin.close()
+        self._server.wait()
+        self._server.stdout.close()
+        atexit.unregister(self.close)
+
+    def _repr_html_(self) -> str:
+        return (f'<iframe src="{self.address}" title="Spins" width="100%" height="720" '
+                'style="border: 0"></iframe>')
+
+
+def view(path: str | os.PathLike) -> View:
+    """Shows a trajectory file, or starts the run of a scene file and shows it. Needs h5py and
+    tornado. Raises CayspinError for other files."""
+    return View(path)

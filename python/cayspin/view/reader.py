@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Reads a trajectory file for a page, also while a run writes it. Errors are ValueErrors."""
+
+from __future__ import annotations
+
+import fcntl
+import pathlib
+import time
+from typing import Any, Callable
+
+import h5py
+import numpy as np
+
+from ..texture import Texture, checksum, lattice_of, plane_of, require_trajectory
+
+OF_FRAMES = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
+OF_SAMPLES = ("time", "energy", "magnetization")
+MOST_ROWS = 20000  # in one answer
+
+
+def _undamaged(file, number):
+    """The spins of a frame that agree with their checksum, which early versions have none of."""
+    spins = file["spins"][number]
+    if "checksum" in file:
+        row = [file[name][number] for name in ("time", "energy", "norm_defect")]
+        means = file["sublattice_magnetization"][number] if spins.ndim == 5 else None
+        found = checksum.of_frame(file["step"][number], [*row, *file["magnetization"][number]],
+                                  spins, means)
+        if found != int(file["checksum"][number]):
+            raise ValueError(f"frame {number} is damaged: its checksum differs; accepted: another")
+    return spins
+
+
+def _small(spins):
+    """Directions as 8-bit integers; 0 where there is no spin."""
+    spins = spins.astype(np.float32, copy=False)
+    right, up, normal = (np.abs(spins[..., axis]) for axis in range(3))
+    largest = np.maximum(np.maximum(right, up), normal)
+    scale = 127 / np.where(largest > 0, largest, 1)
+    return np.rint(spins * scale[..., None]).astype(np.int8)
+
+
+def _cut(values, plane):
+    """Values of a plane, with components along right, up and the normal."""
+    cut = plane_of(Texture(values), plane)
+    return cut.cut(values)[..., cut.axes]
+
+
+def _is_locked(path):
+    with open(path, "rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except OSError:
+            return True
+    return False
+
+
+class Reader:
+    """Opens the file for each answer, and only reads it. Of a run under way it believes what two
+    looks have seen: the last row may be half written."""
+
+    def __init__(self, path: str | pathlib.Path):
+        self.path = pathlib.Path(path)
+        self.frames = self.samples = 0  # that are believed
+        self._seen, self._identity, self._kept = (0, 0), None, (None, None)
+        if not self.path.is_file():
+            raise ValueError(f"{path}: there is no such file; accepted: a file that cayspin wrote")
+        self._read(self._look)
+
+    def _read(self, read: Callable) -> Any:
+        """What `read` returns of the open file, which may be whole in a moment."""
+        for tries_left in range(10, -1, -1):
+            try:
+                with h5py.File(self.path, "r", locking=False) as file:
+                    require_trajectory(file)
+                    return read(file)
+            except ValueError as error:
+                raise ValueError(f"{self.path}: {error}") from None
+            except (OSError, KeyError, RuntimeError) as error:
+                reason = " ".join(str(error.args[-1]).split())
+            if tries_left:
+                time.sleep(0.05)
+        raise ValueError(f"{self.path}: cannot be read: {reason}; accepted: a file that cayspin "
+                         "wrote")
+
+    def _look(self, file):
+        status = self.path.stat()
+        if self._identity != status.st_ino:
+            self._seen, self._identity, self._kept = (0, 0), status.st_ino, (None, None)
+        complete = bool(file.attrs["complete"])
+        scalars = file["scalars"]
+        counts = (min(len(file[name]) for name in OF_FRAMES),
+                  min(len(scalars[name]) for name in OF_SAMPLES))
+        self.frames, self.samples = counts if complete else map(min, counts, self._seen)
+        self._seen = counts
+        if complete:
+            return "complete"
+        quiet = time.time() - status.st_mtime > 10 and not _is_locked(self.path)
+        return "ended early" if file.attrs["wall_seconds"] > 0 or quiet else "under way"
+
+    def news(self, frames: int, samples: int) -> dict:
+        """What is new to a page that has so many frames and samples; all the rest for 0 frames."""
+        def read(file):
+            news = {"state": self._look(file), "file": self._identity, "frames": self.frames}
+            last = min(self.samples, samples + MOST_ROWS)
+            rows = np.column_stack([file["scalars"][name][samples:last] for name in OF_SAMPLES])
+            news["rows"] = np.where(np.isfinite(rows), rows, None).tolist()
+            news["times"] = file["time"][frames:self.frames].tolist()
+            news["more"] = last < self.samples
+            if not frames:
+                news["about"] = self._about(file)
+            return news
+        return self._read(read)
+
+    def _about(self, file):
+        shape, scene = file["spins"].shape[1:-1], file.attrs.get("scene", "")
+        has_positions = "positions" in file
+        if len(shape) == 4 and not has_positions:
+            raise ValueError("the sites of the crystal have no positions; accepted: a file of a "
+                             "scene")
+        spacing, _, si = lattice_of(scene)
+        plane = plane_of(Texture(np.empty((*shape, 0))), None)
+        return {"name": self.path.name, "scene": scene, "extents": shape[:-4:-1], "si": si,
+                "spacing": spacing, "crystal": has_positions, "normal": plane.normal,
+                "plane": plane.number}
+
+    def frame(self, number: int, plane: str) -> bytes:
+        """Spins of a plane, 3 bytes each, in rows from the bottom up."""
+        if number >= self.frames:
+            accepted = f"0 to {self.frames - 1}" if self.frames else "a file that holds frames"
+            raise ValueError(f"frame {number}; accepted: {accepted}")
+        if self._kept[0] != number:
+            self._kept = number, self._read(lambda file: _small(_undamaged(file, number)))
+        return _cut(self._kept[1], plane).tobytes()
+
+    def positions(self, plane: str) -> bytes:
+        """Of the sites of a crystal, 3 floats each, in the order of `frame`."""
+        return self._read(lambda file: _cut(file["positions"][:], plane)).astype("<f4").tobytes()
+
+    def path_of(self, place: int, plane: str, first: int) -> bytes:
+        """A site's spins from a frame on, 3 floats each; `place` counts the sites of `frame`."""
+        def read(file):
+            shape = file["spins"].shape[1:-1]
+            numbers = np.arange(np.prod(shape)).reshape(*shape, 1)
+            numbers = plane_of(Texture(numbers), plane).cut(numbers).ravel()
+            if place >= len(numbers):
+                raise ValueError(f"place {place}; accepted: 0 to {len(numbers) - 1}")
+            last = max(first, min(self.frames, first + 500))
+            return file["spins"][(slice(first, last), *np.unravel_index(numbers[place], shape))]
+        return self._read(read).astype("<f4").tobytes()

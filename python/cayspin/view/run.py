@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""A run of a scene that a page starts, pauses and stops."""
+
+from __future__ import annotations
+
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+
+
+def _output_of(scene):
+    """`output.file`; None for a scene that `cayspin run` refuses with its own message."""
+    import tomllib
+
+    try:
+        output = tomllib.loads(scene.read_text(encoding="utf-8")).get("output")
+    except (OSError, ValueError):
+        return None
+    name = output.get("file") if isinstance(output, dict) else None
+    return pathlib.Path(name) if name and isinstance(name, str) else None
+
+
+class Run:
+    """Starts `cayspin run SCENE` and waits for its file. Raises ValueError when it refuses."""
+
+    def __init__(self, program: str, scene: pathlib.Path):
+        self.output, self._paused = _output_of(scene), False
+        was_there = self.output is None or self.output.exists()
+        self._messages = tempfile.TemporaryFile()
+        try:
+            # A session of its own: an interrupt from the terminal reaches it once, from stop().
+            self._process = subprocess.Popen(
+                [program, "run", scene, "--quiet"], stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL, stderr=self._messages, start_new_session=True)
+        except OSError as error:
+            raise ValueError(f"{program}: cannot be started: {error.strerror}; accepted: the "
+                             "program cayspin") from None
+        try:
+            while self._process.poll() is None and (was_there or not self.output.exists()):
+                time.sleep(0.02)
+        except BaseException:
+            self.close()
+            raise
+        if was_there or not self.output.exists():
+            raise ValueError(self.message() or f"{scene}: the run wrote no new file; accepted: a "
+                                               "scene with a new output.file")
+
+    def state(self) -> str:
+        if self._process.poll() is not None:
+            return "ended"
+        return "paused" if self._paused else "running"
+
+    def message(self) -> str:
+        """The last line that it wrote on standard error."""
+        self._messages.seek(0)
+        return self._messages.read().decode(errors="replace").strip().rpartition("\n")[2]
+
+    def pause(self) -> None:
+        self._send(signal.SIGSTOP, paused=True)
+
+    def resume(self) -> None:
+        self._send(signal.SIGCONT, paused=False)
+
+    def stop(self) -> None:
+        """Ends it after the step under way; its file keeps what was written."""
+        self._send(signal.SIGINT, signal.SIGCONT, paused=False)
+
+    def close(self) -> None:
+        """Stops it and waits for its end."""
+        if self._process.poll() is None:
+            self.stop()
+            self._process.wait()
+        self._messages.close()
+
+    def _send(self, *signals, paused):
+        for number in signals:
+            self._process.send_signal(number)  # nothing once it has ended
+        self._paused = paused

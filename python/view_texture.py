@@ -1,0 +1,16 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""What `cayspin view` starts: the package's view, which needs nothing compiled."""
+
+import pathlib
+import sys
+import types
+
+package = types.ModuleType("cayspin")  # without its compiled part
+package.__path__ = [str(pathlib.Path(__file__).resolve().parent / "cayspin")]
+sys.modules["cayspin"] = package
+
+from cayspin.view.__main__ import main  # noqa: E402
+
+if __name__ == "__main__":
+    main()

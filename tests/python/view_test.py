@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""What tests of the page in the browser share: TEST.py FOLDER_OF_SCRIPTS WRITER PROGRAM."""
+
+import http.client
+import json
+import os
+import subprocess
+import sys
+import urllib.parse
+
+import h5py
+import numpy as np
+from script_test import SCRIPTS, ScriptTest, write
+
+PROGRAM = sys.argv[3]
+
+LONG_SCENE = """
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [24, 16]
+[field]
+exchange = 1.0
+applied = [0, 0, 1]
+[initial]
+random = { seed = 1 }
+[integrator]
+method = "rkmk4"
+dt = 0.01
+steps = 100000000
+[output]
+file = "long.h5"
+every = 20000
+"""
+
+
+class Answer:
+    def __init__(self, response):
+        self.status, self.headers, self.body = response.status, response.headers, response.read()
+
+    @property
+    def text(self):
+        return self.body.decode()
+
+
+class Page:
+    """A page that the script serves."""
+
+    def __init__(self, test, *arguments, cwd=None):
+        self.process = subprocess.Popen(
+            [sys.executable, "-B", SCRIPTS / "view_texture.py", "--no-browser",
+             *map(str, arguments)], cwd=cwd or test.folder, env={**os.environ,
+                                                                "CAYSPIN_PROGRAM": PROGRAM},
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        test.addCleanup(self.close)
+        self.address = self.process.stdout.readline().strip()
+        parts = urllib.parse.urlsplit(self.address)
+        self.host, self.port = parts.netloc, parts.port
+        self.token = urllib.parse.parse_qs(parts.query).get("token", [""])[0]
+
+    def ask(self, path, method="GET", headers=None, **query):
+        """The answer to a path as it is; `query` has the token unless it is given."""
+        query = urllib.parse.urlencode({"token": self.token, **query})
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
+        try:
+            connection.request(method, f"{path}?{query}", headers=headers or {})
+            return Answer(connection.getresponse())
+        finally:
+            connection.close()
+
+    def news(self, frames=0, samples=0):
+        return json.loads(self.ask("/news", frames=frames, samples=samples).text)
+
+    def close(self):
+        self.process.terminate()
+        output, errors = self.process.communicate(timeout=20)
+        return self.process.returncode, output, errors
+
+
+class ViewTest(ScriptTest):
+    def replace_spins(self, file, spins, scene=None, **datasets):
+        with h5py.File(file, "r+") as data:
+            del data["spins"], data["checksum"]
+            data["spins"] = spins
+            for name, values in datasets.items():
+                data[name] = values
+            if scene is not None:
+                data.attrs["scene"] = scene
+
+    def film(self):
+        """A film of 10 x 8 with +x at the lower left, -x at the lower right, -z above and one
+        empty site; +y in the first frame."""
+        spins = np.zeros((20, 1, 8, 10, 3))
+        spins[..., :4, :5, 0], spins[..., :4, 5:, 0], spins[..., 4:, :, 2] = 1, -1, -1
+        spins[0] = [0, 1, 0]
+        spins[:, 0, 7, 9] = 0
+        file = write(self.folder / "film.h5")
+        self.replace_spins(file, spins, "[lattice]\nshape = [10, 8]\n")
+        return file, spins
