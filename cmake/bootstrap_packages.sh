@@ -10,7 +10,8 @@ program=(libcli11-dev nlohmann-json3-dev libfftw3-dev)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib)
 mpi=(mpich libmpich-dev)
-tests=("${mpi[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev doxygen pkg-config
+docs=(doxygen python3-sphinx python3-myst-parser furo) # the pages as a site
+tests=("${mpi[@]}" "${docs[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev pkg-config
   python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
