@@ -19,6 +19,7 @@ class CheckSite(unittest.TestCase):
         with tempfile.TemporaryDirectory() as name:
             site = pathlib.Path(name).resolve()
             (site / "api").mkdir()
+            (site / "api/index.html").touch()
             (site / "p.png").touch()
             for file, text in ({"index": GOOD, "b": OTHER} | files).items():
                 (site / f"{file.replace('__', '/')}.html").write_text(text, encoding="utf-8")
@@ -35,8 +36,8 @@ class CheckSite(unittest.TestCase):
                          ["link to index.html#end: no such place"])
         self.assertEqual(self.faults(index=GOOD.replace("p.png", "q.png")),
                          ["link to q.png: not there"])
-        self.assertEqual(self.faults(api__c='<a href="../d.html">d</a>'),
-                         ["link to ../d.html: not there"])
+        self.assertEqual(self.faults(index=GOOD + '<a href="api/class.html">class</a>'),
+                         ["link to api/class.html: not there"])
         self.assertEqual(self.faults(b=OTHER + '<a href="../../out.html">out</a>'),
                          ["link to ../../out.html: not there"])
         self.assertEqual(self.faults(b=OTHER + '<a href="https://example.org/x">x</a>'), [])
