@@ -109,8 +109,9 @@ install_python_package() {
 # Warnings are errors.
 build_site() {
   local candidate
+  provide_site_theme
   for candidate in python3 /usr/bin/python3; do
-    "$candidate" -c 'import furo, myst_parser, sphinx' 2>/dev/null || continue
+    PYTHONPATH=$deps/site "$candidate" -c 'import furo, myst_parser, sphinx' 2>/dev/null || continue
     say "build the site (all of it in build/logs/site.log)"
     logged site "$candidate" -B docs/site/build_site.py build/docs
     say "the site: $root/build/docs/site/index.html"
@@ -202,6 +203,7 @@ esac
 case $verb in
   deps)
     provide_style_tools
+    provide_site_theme
     provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
@@ -215,6 +217,7 @@ case $verb in
     ;;
   test | test-all)
     provide_style_tools
+    provide_site_theme
     [ "$verb" = test ] || provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools

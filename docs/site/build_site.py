@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Builds the documentation as a site: FOLDER/site/index.html, with Doxygen's pages in site/api.
 
-Needs Sphinx, myst-parser, the theme furo, and Doxygen. Warnings are errors.
+Needs Doxygen, Sphinx, myst-parser, and the theme furo (requirements.txt), which may be in
+.deps/site. Warnings are errors.
 """
 
 import argparse
+import os
 import pathlib
 import shutil
 import subprocess
@@ -24,12 +26,14 @@ def run_doxygen(program, folder):
 
 
 def run_sphinx(source, site):
+    paths = filter(None, [str(ROOT / ".deps/site"), os.environ.get("PYTHONPATH")])
     subprocess.run([sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html",
-                    "-d", site.parent / "doctrees", source, site], check=True)
+                    "-d", site.parent / "doctrees", source, site], check=True,
+                   env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)})
 
 
 def build(folder, doxygen):
-    for name in ("source", "doxygen", "site"):
+    for name in ("source", "doxygen", "doctrees", "site"):
         shutil.rmtree(folder / name, ignore_errors=True)
         (folder / name).mkdir(parents=True)
     run_doxygen(doxygen, folder / "doxygen")

@@ -19,6 +19,7 @@ html_extra_path = ["../doxygen"]  # api/, by Doxygen
 html_use_index = False
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
 
 
 def describe(app, pagename, templatename, context, doctree):

@@ -66,6 +66,9 @@ def check(site):
         faults += [(path.relative_to(site), sentence) for sentence in found]
     if not (site / "api/index.html").is_file():
         faults.append((pathlib.Path("api/index.html"), "not there"))
+    styles = "".join(path.read_text(encoding="utf-8") for path in site.glob("_static/**/furo.css"))
+    if "prefers-color-scheme:dark" not in styles.replace(" ", ""):
+        faults.append((pathlib.Path("_static"), "no dark colours where the system asks for them"))
     print(f"{len(pages)} pages, {sum(len(page.links) for page in pages.values())} links")
     return faults
 

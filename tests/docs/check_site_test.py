@@ -15,11 +15,15 @@ OTHER = f'{HEAD}<h1>B</h1><h2 id="part">Part</h2><a href="index.html#top">a</a>'
 
 
 class CheckSite(unittest.TestCase):
+    style = "@media (prefers-color-scheme: dark) {}"
+
     def faults(self, **files):
         with tempfile.TemporaryDirectory() as name:
             site = pathlib.Path(name).resolve()
             (site / "api").mkdir()
             (site / "api/index.html").touch()
+            (site / "_static").mkdir()
+            (site / "_static/furo.css").write_text(self.style, encoding="utf-8")
             (site / "p.png").touch()
             for file, text in ({"index": GOOD, "b": OTHER} | files).items():
                 (site / f"{file.replace('__', '/')}.html").write_text(text, encoding="utf-8")
@@ -41,6 +45,10 @@ class CheckSite(unittest.TestCase):
         self.assertEqual(self.faults(b=OTHER + '<a href="../../out.html">out</a>'),
                          ["link to ../../out.html: not there"])
         self.assertEqual(self.faults(b=OTHER + '<a href="https://example.org/x">x</a>'), [])
+
+    def test_dark_colours(self):
+        self.style = ""
+        self.assertEqual(self.faults(), ["no dark colours where the system asks for them"])
 
     def test_images(self):
         for text in ('alt=""', ""):
