@@ -81,8 +81,9 @@ def main(arguments):
     if len(arguments) == 3:
         doxygen, root, folder = arguments
         site = pathlib.Path(folder) / "site"
-        subprocess.run([sys.executable, "-B", f"{root}/docs/site/build_site.py", folder,
-                        "--doxygen", doxygen], check=True)
+        if subprocess.run([sys.executable, "-B", f"{root}/docs/site/build_site.py", folder,
+                           "--doxygen", doxygen], check=False).returncode != 0:
+            return 1
     faults = check(site.resolve())
     for path, sentence in faults:
         print(f"{path}: {sentence}")
