@@ -4,6 +4,7 @@ project = "cayspin"
 author = "the authors of cayspin"
 extensions = ["myst_parser"]
 language = "en"
+smartquotes = False  # m' is a derivative
 root_doc = "index"
 myst_heading_anchors = 4  # the anchors that GitHub gives to headings
 highlight_language = "none"
