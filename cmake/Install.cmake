@@ -22,6 +22,13 @@ if(TARGET cayspin_io)
 endif()
 if(TARGET cayspin_program)
   install(TARGETS cayspin_program cayspin_reproduce cayspin_extremes RUNTIME)
+  include(cmake/InstallScripts.cmake)
+  cayspin_install_scripts(.)
+  install(FILES src/program/completion/cayspin.bash RENAME cayspin
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES src/program/completion/_cayspin
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  include(cmake/ManPages.cmake)
 endif()
 
 if(Kokkos_DIR)

@@ -5,7 +5,7 @@ set -euo pipefail
 
 usage() {
   cat <<'TXT'
-Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|demo|bench|gpu [--preset NAME]
+Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|docs|demo|bench|gpu [--preset NAME]
   deps     install everything that any of the others needs, and print the option for CMake
   build    build the program into build/NAME/bin
   compile  build everything and run nothing: for a GPU that is elsewhere
@@ -13,6 +13,7 @@ Usage: bash cmake/bootstrap.sh deps|build|compile|test|test-all|python|demo|benc
   test-all the same, with the tests that compile the library once more: each header alone, with
            sanitizers, for nvcc, by clang, on a device that host threads play
   python   build the Python package and install it into build/venv
+  docs     build the documentation as a site, build/docs/site/index.html
   demo     build one small program, run a switching slab three ways and draw it: a first look
   bench    build and run the benchmarks; print and draw them beside their goals
   gpu      on a machine with a GPU: test and bench, and one report with the model of the GPU beside
@@ -105,6 +106,20 @@ install_python_package() {
   say "import cayspin with $venv/bin/python; the program: $venv/bin/cayspin"
 }
 
+# Warnings are errors.
+build_site() {
+  local candidate
+  provide_site_theme
+  for candidate in python3 /usr/bin/python3; do
+    PYTHONPATH=$deps/site "$candidate" -c 'import furo, myst_parser, sphinx' 2>/dev/null || continue
+    say "build the site (all of it in build/logs/site.log)"
+    logged site "$candidate" -B docs/site/build_site.py build/docs
+    say "the site: $root/build/docs/site/index.html"
+    return
+  done
+  fail "no python3 with sphinx, myst_parser and furo"
+}
+
 # Fails at once, before anything is built, where nothing could run.
 require_gpu() {
   case $preset in
@@ -150,6 +165,12 @@ while [ $# -gt 0 ]; do
 done
 build_dir=$root/build/$preset
 
+if [ "$verb" = docs ]; then
+  install_packages docs "${docs[@]}"
+  build_site
+  exit 0
+fi
+
 case $verb in
   deps) packages=("${everything[@]}") parts=() ;;
   demo) packages=("${core[@]}" "${io[@]}") parts=(APP) ;;
@@ -174,7 +195,7 @@ if [ "$preset" = mpi ]; then
 fi
 
 install_packages install "${packages[@]}"
-[ "$verb" = build ] || start_installing_drawing
+start_installing_drawing
 provide_kokkos
 case "$verb $preset" in
   "test release" | "test-all release" | "test host-device") provide_nanobind ;;
@@ -182,12 +203,17 @@ esac
 case $verb in
   deps)
     provide_style_tools
+    provide_site_theme
     provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools
     print_cmake_option
     ;;
-  build) build cayspin_program cayspin_c; say "the program: $build_dir/bin/cayspin" ;;
+  build)
+    finish_installing_drawing
+    build cayspin_program cayspin_c
+    say "the program: $build_dir/bin/cayspin"
+    ;;
   compile)
     finish_installing_drawing
     build all
@@ -195,6 +221,7 @@ case $verb in
     ;;
   test | test-all)
     provide_style_tools
+    provide_site_theme
     [ "$verb" = test ] || provide_nvdisasm
     finish_installing_drawing
     provide_interchange_tools

@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # shellcheck shell=bash disable=SC2034,SC2154
 # Sourced by bootstrap.sh. The Debian packages by what needs them, install_packages for them, and
-# provide_style_tools, provide_nvdisasm and provide_interchange_tools for what tests of these names
-# run.
+# provide_style_tools, provide_site_theme, provide_nvdisasm and provide_interchange_tools for what
+# tests of these names run.
 
 core=(g++ cmake ninja-build git ca-certificates python3 python3-pip) # the header library, Kokkos
 io=(libhdf5-dev libfmt-dev libmuparser-dev libtomlplusplus-dev libeigen3-dev) # scenes and files
-program=(libcli11-dev nlohmann-json3-dev libfftw3-dev)
+program=(libcli11-dev nlohmann-json3-dev libfftw3-dev help2man)
 python=(python3-dev python3-venv) # the Python package, with nanobind from the package index
 drawing=(python3-h5py python3-matplotlib python3-tornado)
 mpi=(mpich libmpich-dev)
-tests=("${mpi[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev doxygen pkg-config
+# The pages as a site. Its theme comes from the package index: Debian's furo has no dark colours.
+docs=(doxygen python3-sphinx python3-myst-parser sphinx-basic-ng python3-bs4)
+tests=("${mpi[@]}" "${docs[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev pkg-config
   python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray chromium chromium-driver
-  python3-selenium)
+  python3-selenium zsh)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
 
@@ -67,6 +69,9 @@ provide_tools() {
 
 # What the test `style` runs.
 provide_style_tools() { provide_tools style python3 "$root/tests/style/requirements.txt"; }
+
+# The theme of the site.
+provide_site_theme() { provide_tools site python3 "$root/docs/site/requirements.txt"; }
 
 # nvdisasm, which the test `sass` runs where there is nvcc.
 provide_nvdisasm() {

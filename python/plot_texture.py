@@ -7,17 +7,11 @@ import argparse
 import pathlib
 import sys
 
-import h5py
-from cayspin_plots import style
-from cayspin_plots.read import require_undamaged_frame
-
-import texture  # of python/cayspin, which cayspin_plots has put on the path
-
 MOVIES = {".mp4": ("ffmpeg",), ".gif": ("pillow", "ffmpeg")}
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="cayspin plot", description=__doc__)
     parser.add_argument("file", type=pathlib.Path, metavar="FILE.h5")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="PICTURE",
                         help="its ending chooses the kind, .png, .svg or .pdf "
@@ -39,6 +33,16 @@ def parse_arguments():
                         help="all frames, .mp4 (by ffmpeg) or .gif, in place of a picture")
     parser.add_argument("--fps", type=float, default=20, help="frames in a second (default: 20)")
     return parser.parse_args()
+
+
+def import_libraries():
+    """After --help, which needs none of them."""
+    global h5py, require_undamaged_frame, style, texture
+    import h5py
+    from cayspin_plots import style
+    from cayspin_plots.read import require_undamaged_frame
+
+    import texture  # of python/cayspin, which cayspin_plots has put on the path
 
 
 def movie_writer(path, fps):
@@ -104,7 +108,11 @@ def run(arguments):
 def main():
     arguments = parse_arguments()
     try:
+        import_libraries()
         run(arguments)
+    except ImportError as error:
+        message = (f"cayspin plot: {sys.executable} has no {error.name}; accepted: a Python with "
+                   "h5py and matplotlib in CAYSPIN_PYTHON")
     except (OSError, KeyError, ValueError) as error:
         message = f"{arguments.file}: {error.args[-1]}"
     except SystemExit as error:

@@ -27,8 +27,9 @@ def draw(trajectory, panels, site):
     rows_of_components = 3 if "components" in panels else 0
     narrow = [panel for panel in panels if panel != "components"]
     heights = [1.9] * rows_of_components + [4.0] * ((len(narrow) + 1) // 2)
-    figure = style.plt.figure(figsize=(11, sum(heights) + 0.3), constrained_layout=True)
-    grid = figure.add_gridspec(len(heights), 2, height_ratios=heights)
+    columns = 2 if rows_of_components or len(narrow) > 1 else 1
+    figure = style.plt.figure(figsize=(5.5 * columns, sum(heights) + 0.3), constrained_layout=True)
+    grid = figure.add_gridspec(len(heights), columns, height_ratios=heights)
     if rows_of_components:
         axes = [figure.add_subplot(grid[row, :]) for row in range(3)]
         components.draw_components(axes, trajectory)

@@ -25,9 +25,9 @@ SCENES = (
     ("Slab", "slab_switching", ()),
     ("Heisenberg, 8^3", "heisenberg", ()),
     ("Film, 256 x 256", "film_256",
-     ("--set", "lattice.shape=[256,256]", "--set", "integrator.end=10", "--seconds", "10")),
+     ("--set", "lattice.shape=[256,256]", "--set", "integrator.end=10", "--seconds", "4")),
     ("Heisenberg, 64^3", "heisenberg_64",
-     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "10")),
+     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "4")),
     ("One spin in a field", "macrospin", ()),
     ("Rotating field", "macrospin_rotating_field", ()),
     ("Rigid bodies", "rigid_body_ensemble", ()),
@@ -43,15 +43,20 @@ HEADINGS = {"The same, damping 0.02": "Film, damping 0.02"}
 COLUMNS = ("scene", "1e-2", "1e-4", "1e-6", "1e-8", "single: 1e-2", "1e-4", "1e-6", "spread")
 
 
-def measure(program, title, name, arguments, folder):
+def printed(program, name, arguments):
     scene = ROOT / f"scenes/{re.sub('_(256|64)$', '', name)}.toml"
     command = [program, "trade", scene, "--json", "--threads", "1", *arguments]
     done = subprocess.run(command, capture_output=True, text=True,
                           env=os.environ | {"OMP_NUM_THREADS": "1"})
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, command))}: {done.stderr.strip()}")
-    (folder / f"{name}.json").write_text(done.stdout)
-    return json.loads(done.stdout) | {"name": title}
+    return done.stdout
+
+
+def measure(program, title, name, arguments, path):
+    if not path.exists():
+        path.write_text(printed(program, name, arguments))
+    return json.loads(path.read_text()) | {"name": title}
 
 
 def best(trade, error, keep):
@@ -131,7 +136,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", default=ROOT / "build/release/bin/cayspin", type=pathlib.Path)
     parser.add_argument("--folder", default=ROOT / "build/trade", type=pathlib.Path,
-                        help="for what trade prints")
+                        help="for what trade prints; what is there is not measured again")
     parser.add_argument("--repetitions", default=1, type=int,
                         help="ratios are medians; the spread is that of the median ratio")
     arguments = parser.parse_args()
@@ -139,8 +144,9 @@ def main():
     trades, rows = {}, {}
     for title, name, options in SCENES:
         found = []
-        for _ in range(arguments.repetitions):
-            trades[title] = measure(arguments.program, title, name, options, arguments.folder)
+        for repetition in range(arguments.repetitions):
+            path = arguments.folder / f"{name}_{repetition}.json"
+            trades[title] = measure(arguments.program, title, name, options, path)
             found.append(ratios(trades[title]))
         medians = [statistics.median(column) for column in zip(*found)]
         spreads = [max(column) / min(column) for column in zip(*found)

@@ -48,6 +48,7 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stability.hpp>
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>
+#include <cayspin/stepper/adaptive_stiff_gauss.hpp>
 #include <cayspin/stepper/corrected_euler.hpp>
 #include <cayspin/stepper/energy_projection.hpp>
 #include <cayspin/stepper/field_extrapolation.hpp>
@@ -56,7 +57,6 @@
 #include <cayspin/stepper/multirate.hpp>
 #include <cayspin/stepper/red_black.hpp>
 #include <cayspin/stepper/series4.hpp>
-#include <cayspin/stepper/stiff_gauss.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
 #include <cayspin/stepper/tableau_order6.hpp>
 #include <cayspin/stepper/two_point.hpp>

@@ -8,12 +8,7 @@ from cayspin.trade import program
 
 
 def main():
-    if sys.argv[1:2] == ["view"]:
-        from cayspin.view.__main__ import main as view
-
-        os.environ["CAYSPIN_PROGRAM"] = program()
-        del sys.argv[1]
-        return view()
+    os.environ.setdefault("CAYSPIN_PYTHON", sys.executable)  # for `plot` and `view`
     os.execv(program(), ["cayspin", *sys.argv[1:]])
 
 

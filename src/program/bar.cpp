@@ -21,8 +21,6 @@ std::string bar(double share) {
   return fmt::format("[{:#<{}}{:.<{}}]", "", filled, "", width - filled);
 }
 
-namespace {
-
 bool has_blocks() {
   for (char const* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
     char const* const value = std::getenv(name);
@@ -33,8 +31,6 @@ bool has_blocks() {
   }
   return false;
 }
-
-}  // namespace
 
 std::string sparkline(std::span<double const> values) {
   constexpr std::size_t width = 40;

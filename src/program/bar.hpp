@@ -10,6 +10,9 @@ namespace cayspin::program {
 /// Is it one that understands what moves the cursor?
 bool is_terminal(std::FILE* stream);
 
+/// Has the locale block characters?
+bool has_blocks();
+
 /// "[#####...................]"
 std::string bar(double share);
 

@@ -8,6 +8,7 @@
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
+#include "terminal_picture.hpp"
 #include "trade/resolved.hpp"
 
 #include <cayspin/io/relax.hpp>
@@ -147,9 +148,15 @@ bool is_start_checked(Plan const& plan) {
   return plan.lattice.sites() <= most_sites_checked && fits(plan);
 }
 
-void check_start(io::Scene const& scene) {
+// Returns the spins.
+std::vector<double> check_start(io::Scene const& scene) {
   if (scene.system.kind == io::SystemKind::rigid_body) io::inertia(scene);
-  io::initial_spins(scene);
+  return io::initial_spins(scene);
+}
+
+void draw(io::Scene const& scene, std::vector<double> const& start) {
+  if (!start.empty() && terminal_shows_pictures())
+    fmt::print("{}", terminal_picture(scene.lattice, start));
 }
 
 void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
@@ -207,7 +214,7 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
     throw UsageError(fmt::format(
         "--ranks {}: the scene is for cayspin relax, which runs on one rank", *options.ranks));
   auto const plan = make_plan_to_relax(scene, options.precision);
-  if (is_start_checked(plan)) check_start(scene);
+  auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
   if (options.json) {
     print_json_to_relax(scene, plan, options.precision);
     return Status::done;
@@ -216,6 +223,7 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   print("relax", search_text(scene));
   print_memory(plan, options.precision, "search");
   print_output(scene, plan);
+  draw(scene, start);
   return Status::done;
 }
 
@@ -232,11 +240,13 @@ int check(CheckOptions const& options) {
   }
   auto const plan = make_plan(scene, options.precision);
   auto const repeated = repeated_on(options, scene, plan);
-  if (is_start_checked(plan)) check_start(scene);
-  if (options.json)
+  auto const start = is_start_checked(plan) ? check_start(scene) : std::vector<double>();
+  if (options.json) {
     print_json(scene, plan, options.precision, repeated);
-  else
+  } else {
     print_text(scene, plan, options.precision, repeated);
+    draw(scene, start);
+  }
   return Status::done;
 }
 

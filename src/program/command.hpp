@@ -61,6 +61,12 @@ struct CheckOptions : SceneOptions {
   bool json = false;
 };
 
+struct NewOptions {
+  std::string kind;
+  std::optional<std::filesystem::path> output;
+  bool overwrite = false;
+};
+
 /// Of commands that try methods, in both precisions or in one.
 struct TryOptions : SceneOptions {
   std::optional<Precision> precision;
@@ -106,6 +112,8 @@ int relax(RelaxOptions const& options);
 int sweep_over(SweepOptions const& options);
 int watch(WatchOptions const& options);
 int check(CheckOptions const& options);
+int write_new(NewOptions const& options);
+std::string names_of_new_scenes();  // "film, chain, ..."
 int trade_off(TradeOptions const& options);
 int advise_on(AdviseOptions const& options);
 int methods();
@@ -115,5 +123,9 @@ int export_ovf(ExportOptions const& options);
 /// Becomes the program of this name that lies beside this one, with the arguments after the
 /// command. Throws UsageError when it cannot.
 [[noreturn]] void become_sibling(std::string const& name, char** argv);
+
+/// The same for a Python script of this name in share/cayspin/python, beside the folder of this
+/// program.
+[[noreturn]] void become_script(std::string const& name, char** argv);
 
 }  // namespace cayspin::program

@@ -126,6 +126,14 @@ void add_try_options(CLI::App& command, TryOptions& options) {
   add_quiet_flag(command, options);
 }
 
+CLI::App* add_new(CLI::App& app, NewOptions& options) {
+  auto* command = app.add_subcommand("new", "Write a commented scene to begin with");
+  command->add_option("KIND", options.kind, names_of_new_scenes())->required();
+  command->add_option("--output", options.output, "The file to write (default: KIND.toml)");
+  command->add_flag("--overwrite", options.overwrite, "Replace a file that exists");
+  return command;
+}
+
 CLI::App* add_trade(CLI::App& app, TradeOptions& options) {
   auto* command = app.add_subcommand(
       "trade", "Measure error against time and evaluations for every method on a scene");
@@ -200,6 +208,7 @@ int perform(int argc, char** argv) {
   SweepOptions sweep_options;
   WatchOptions watch_options;
   CheckOptions check_options;
+  NewOptions new_options;
   TradeOptions trade_options;
   AdviseOptions advise_options;
   std::filesystem::path info_file;
@@ -209,6 +218,7 @@ int perform(int argc, char** argv) {
   auto* const sweep_command = add_sweep(app, sweep_options);
   auto* const watch_command = add_watch(app, watch_options);
   auto* const check_command = add_check(app, check_options);
+  auto* const new_command = add_new(app, new_options);
   auto* const trade_command = add_trade(app, trade_options);
   auto* const advise_command = add_advise(app, advise_options);
   auto* const methods_command =
@@ -220,6 +230,9 @@ int perform(int argc, char** argv) {
   app.add_subcommand("reproduce",
                      "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's");
   app.add_subcommand("extremes", "Behaviour of every method at extreme inputs");
+  app.add_subcommand("plot", "Draw the spins of a trajectory file, one frame or a movie");
+  app.add_subcommand("view",
+                     "Look at a trajectory file in the browser, also while a run writes it");
 
   auto const ranks = launched_ranks();
   ranks->together([&] {
@@ -231,12 +244,15 @@ int perform(int argc, char** argv) {
   start_others_alone();
   for (std::string const command : {"reproduce", "extremes"})
     if (argc > 1 && argv[1] == command) become_sibling("cayspin-" + command, argv);
+  for (std::string const command : {"plot", "view"})
+    if (argc > 1 && argv[1] == command) become_script(command + "_texture.py", argv);
   if (auto const status = ranks->together([&] { return parse(app, argc, argv); })) return *status;
   if (*run_command) return run(run_options, *ranks);
   if (*relax_command) return relax(relax_options);
   if (*sweep_command) return sweep_over(sweep_options);
   if (*watch_command) return watch(watch_options);
   if (*check_command) return check(check_options);
+  if (*new_command) return write_new(new_options);
   if (*trade_command) return trade_off(trade_options);
   if (*advise_command) return advise_on(advise_options);
   if (*methods_command) return methods();

@@ -4,6 +4,7 @@
 #include "method_list.hpp"
 
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>
+#include <cayspin/stepper/adaptive_stiff_gauss.hpp>
 #include <cayspin/stepper/corrected_euler.hpp>
 #include <cayspin/stepper/field_extrapolation.hpp>
 #include <cayspin/stepper/implicit.hpp>
@@ -95,6 +96,10 @@ template <int Order>
 struct Stiff {
   template <class Spins, class, class>
   using Stepper = StiffGauss<Spins, Order>;
+};
+struct AdaptiveStiff {
+  template <class Spins, class, class>
+  using Stepper = AdaptiveStiffGauss2<Spins>;
 };
 template <int Order>
 struct FieldExtrapolation {

@@ -40,6 +40,7 @@ template <int Order>
 struct RedBlack;
 template <int Order>
 struct Stiff;
+struct AdaptiveStiff;
 }  // namespace family
 
 /// A method and what makes its steppers.
@@ -165,6 +166,11 @@ inline constexpr auto method_list = [] {
       row<ImplicitMidpoint>(lie({.word = "implicit_midpoint", .order = 2, .trials = {plain}})),
       row<Stiff<2>>(lie({.word = "stiff2", .order = 2, .stiff = true, .trials = {plain}})),
       row<Stiff<4>>(lie({.word = "stiff4", .order = 4, .stiff = true, .trials = {plain}})),
+      row<AdaptiveStiff>(lie({.word = "stiff2_adaptive",
+                              .order = 2,
+                              .adaptive = true,
+                              .stiff = true,
+                              .trials = {plain}})),
       row<CommutatorFree>(lie({.word = "cf4",
                                .order = 4,
                                .evaluations = 4,

@@ -93,5 +93,45 @@ TEST_F(Terminal, AWatchedRunIsDrawn) {
     EXPECT_TRUE(contains(outcome.output, part));
 }
 
+// Half blocks: the upper half of a character has one colour, what is behind it another.
+TEST_F(Terminal, CheckDrawsTheStartWhereColoursAreThere) {
+  write("film.toml", R"(
+[system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [4, 4]
+[field]
+applied = [0, 0, 1]
+[initial]
+expression = ["x < 0.5 ? 1 : 0", "0", "x < 0.5 ? 0 : 1"]
+[integrator]
+method = "heun"
+dt = 0.1
+steps = 1
+)");
+  auto const check = [&](char const* term, char const* colorterm, char const* no_color) {
+    ::setenv("LC_ALL", "C.UTF-8", 1);
+    ::setenv("TERM", term, 1);
+    ::setenv("COLORTERM", colorterm, 1);
+    ::setenv("NO_COLOR", no_color, 1);
+    auto const outcome = on_terminal({"check", "film.toml"});
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return outcome.output;
+  };
+  // Red to the right along +x, light grey along +z; 16 of 32 columns each.
+  auto const all = check("xterm", "truecolor", "");
+  std::string const red = "\x1b[38;2;255;0;0m\x1b[48;2;255;0;0m▀",
+                    grey = "\x1b[38;2;230;230;230m\x1b[48;2;230;230;230m▀";
+  EXPECT_TRUE(contains(all, red + grey));
+  EXPECT_FALSE(contains(all, grey + red));
+  std::size_t halves = 0;
+  for (std::size_t at = 0; (at = all.find("▀", at)) != std::string::npos; ++at) ++halves;
+  EXPECT_EQ(halves, 32U * 16U);
+  EXPECT_TRUE(contains(check("xterm-256color", "", ""), "\x1b[38;5;196m\x1b[48;5;196m▀"));
+  EXPECT_FALSE(contains(check("dumb", "", ""), "▀"));
+  EXPECT_FALSE(contains(check("xterm", "truecolor", "1"), "▀"));
+}
+
 }  // namespace
 }  // namespace cayspin::program::test

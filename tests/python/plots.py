@@ -45,7 +45,7 @@ class PlotTrajectory(ScriptTest):
         file = write(self.folder / "chain.h5")
         png = self.folder / "energy.png"
         result = self.plot(file, "--panels", "energy", "--output", png)
-        self.assert_drawn(png, (11, 4.3), (BLUE,), result)
+        self.assert_drawn(png, (5.5, 4.3), (BLUE,), result)
 
     def test_truncated_file(self):
         file = write(self.folder / "chain.h5")

@@ -3,7 +3,7 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
-#include <cayspin/stepper/stiff_gauss.hpp>
+#include <cayspin/stepper/adaptive_stiff_gauss.hpp>
 
 #include <tuple>
 
@@ -42,7 +42,8 @@ using Kinds = ::testing::Types<
     FieldExtrapolation4<Field<double>>, Estimating<Field<double>>, AdaptiveRkmk<Field<double>>,
     AdaptiveRkmk<Field<float>>, AdaptiveStereographic<Field<double>, tableau::BogackiShampine3>,
     AdaptiveProjected<Field<double>>, StiffGauss2<Field<double>>, StiffGauss2<Field<float>>,
-    StiffGauss4<Field<double>>>;
+    StiffGauss4<Field<double>>, AdaptiveStiffGauss2<Field<double>>,
+    AdaptiveStiffGauss2<Field<float>>>;
 TYPED_TEST_SUITE(Checkpoints, Kinds);
 
 template <class Stepper>

@@ -3,10 +3,18 @@
 #include "../support/backends.hpp"
 
 #include <cayspin/cayspin.hpp>
-#include <cayspin/stepper/stiff_gauss.hpp>
+#include <cayspin/stepper/adaptive_stiff_gauss.hpp>
 
 namespace cayspin::test {
 namespace {
+
+template <class Of>
+Of made_like(typename Of::spins_type const& spins) {
+  if constexpr (AdaptiveStepper<Of>)
+    return Of(spins, {.tolerance = 0.1});
+  else
+    return Of(spins);
+}
 
 template <class Exec, class Stepper>
 auto end_of(Lattice const& lattice, Exec const& exec) {
@@ -22,7 +30,7 @@ auto end_of(Lattice const& lattice, Exec const& exec) {
   LandauLifshitz const generator(
       EffectiveField(Exchange(lattice, 20), UniaxialAnisotropy(1, {1, 2, 2}), Zeeman({0, 1, 0})),
       0.1);
-  Stepper stepper(spins);
+  Stepper stepper = made_like<Stepper>(spins);
   for (int n = 0; n < 4; ++n) stepper.step(exec, generator, spins, 0.005 * n, 0.005);
   return copy_to_host(spins);
 }
@@ -41,6 +49,8 @@ TYPED_TEST(StiffBits, AreTheSameOnSerialAndOpenMP) {
               (end_of<Kokkos::OpenMP, StiffGauss2<Field>>(lattice, {})));
     EXPECT_EQ((end_of<Kokkos::Serial, StiffGauss4<Field>>(lattice, {})),
               (end_of<Kokkos::OpenMP, StiffGauss4<Field>>(lattice, {})));
+    EXPECT_EQ((end_of<Kokkos::Serial, AdaptiveStiffGauss2<Field>>(lattice, {})),
+              (end_of<Kokkos::OpenMP, AdaptiveStiffGauss2<Field>>(lattice, {})));
   }
 }
 #endif

@@ -155,7 +155,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     memory_.exchange_begin_and_end();
     double const t = end_time_;
     while (true) {
-      double const dt = within_end(t, next_dt_);
+      double const dt = detail::step_within(options_.end - t, next_dt_);
       if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
       double const error = try_step(exec, generator, t, dt, asked);
       double const on = controller_.next_dt(dt, error);
@@ -170,9 +170,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
       }
       ++rejected_;
       next_dt_ = on;
-      double const least =
-          std::max(options_.min_dt, 16 * std::numeric_limits<double>::epsilon() * std::abs(t));
-      if (!(on >= least) || on == 0) give_up(t, on);
+      if (!(on >= detail::least_step(options_, t)) || on == 0) give_up(t, on);
     }
   }
 
@@ -303,18 +301,9 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
         detail::LargestOfSites<Real>{memory_.square.array()})[0];
   }
 
-  /// A step that reaches the end exactly, without a very short last step.
-  double within_end(double t, double dt) const {
-    double const left = options_.end - t;
-    if (dt >= left * (1 - 1e-9)) return left;
-    return 2 * dt > left ? 0.5 * left : dt;
-  }
-
   [[noreturn]] void give_up(double t, double dt) {
     memory_.exchange_begin_and_end();
-    throw StepTooSmall(this->label("::step: from t = ") + detail::to_text(t) +
-                       " the tolerance needs a step below " + detail::to_text(dt) +
-                       "; the numbers are not finite, or the field is not smooth");
+    detail::throw_step_too_small(this->label(""), t, dt);
   }
 
   std::string name_,

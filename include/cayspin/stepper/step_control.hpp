@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/text.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -33,6 +35,24 @@ struct StepOptions {
 };
 
 namespace detail {
+
+/// A step of dt, where `left` is left to the end: one that reaches the end exactly, without a very
+/// short last step.
+inline double step_within(double left, double dt) {
+  if (dt >= left * (1 - 1e-9)) return left;
+  return 2 * dt > left ? 0.5 * left : dt;
+}
+
+/// The shortest step from t.
+inline double least_step(StepOptions const& options, double t) {
+  return std::max(options.min_dt, 16 * std::numeric_limits<double>::epsilon() * std::abs(t));
+}
+
+[[noreturn]] inline void throw_step_too_small(std::string const& region, double t, double dt) {
+  throw StepTooSmall(region + "::step: from t = " + to_text(t) +
+                     " the tolerance needs a step below " + to_text(dt) +
+                     "; the numbers are not finite, or the field is not smooth");
+}
 
 /// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): the next dt from
 /// the errors of this step and the one before. Plain host arithmetic on a maximum over sites, so

@@ -46,17 +46,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   static constexpr int work_fields = 2 + 5 * stages + History::fields + (sizeof(Real) == 8 ? 4 : 8);
 
   explicit StiffGauss(Spins const& like, StiffOptions options = {})
-      : detail::StepperBase<Spins>(name, like.lattice()), options_(options) {
-    std::string const prefix = std::string(name) + "::";
-    auto const& lattice = like.lattice();
-    x_ = detail::numbered_fields<Spins, count>(prefix + "generator", lattice);
-    stage_ = detail::numbered_fields<Spins, count>(prefix + "stage", lattice);
-    end_ = Spins(prefix + "end", lattice);
-    start_ = Spins(prefix + "start", lattice);
-    residual_ = Residual(prefix + "residual", lattice);
-    solution_ = detail::numbered_fields<Solution, count>(prefix + "solution", lattice);
-    history_ = {prefix + "earlier", lattice};
-  }
+      : StiffGauss(name, like, options) {}
 
   /// Evaluations of the generator so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
@@ -93,18 +83,11 @@ class StiffGauss : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
-    for (Spins const* own : {&end_, &start_}) this->require_other_memory(spins, *own);
-    for (auto const* own : {&x_, &stage_})
-      for (Spins const& field : *own) this->require_other_memory(spins, field);
-    if (!exchange_.known) {
-      evaluations_done_ += exchange_.measure(exec, measure_label_, generator, stage_[0], t);
-      make_solver();
-      contraction_ = 1;
-    }
+    make_ready(exec, generator, spins, t);
     if (dt != last_dt_) history_.forget();
     last_dt_ = dt;
     moved_ = false;
-    if (!advance(exec, generator, spins, t, dt, &history_, options_.halvings)) {
+    if (!advance(exec, generator, spins, t, dt, &history_, solving_.halvings)) {
       if (moved_) swap(spins, start_);
       throw NotConverged(this->label("::step: the equation of the step from t = ") +
                          detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
@@ -112,12 +95,37 @@ class StiffGauss : public detail::StepperBase<Spins> {
     }
   }
 
- private:
+ protected:
   using Solver = detail::SpinWaveSolver<Real, MemorySpace>;
   using Solution = typename Solver::Solution;
   using Residual = SiteField<Real, 3 * stages, MemorySpace>;
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
   static constexpr auto name = Order == 2 ? "StiffGauss2" : "StiffGauss4";
+
+  StiffGauss(std::string const& own_name, Spins const& like, StiffOptions const& options)
+      : detail::StepperBase<Spins>(own_name, like.lattice()), solving_(options) {
+    std::string const prefix = own_name + "::";
+    auto const& lattice = like.lattice();
+    x_ = detail::numbered_fields<Spins, count>(prefix + "generator", lattice);
+    stage_ = detail::numbered_fields<Spins, count>(prefix + "stage", lattice);
+    end_ = Spins(prefix + "end", lattice);
+    start_ = Spins(prefix + "start", lattice);
+    residual_ = Residual(prefix + "residual", lattice);
+    solution_ = detail::numbered_fields<Solution, count>(prefix + "solution", lattice);
+    history_ = {prefix + "earlier", lattice};
+  }
+
+  /// Before a step: the spins are not the stepper's own memory, and exchange is known.
+  template <class Exec, class Generator>
+  void make_ready(Exec const& exec, Generator const& generator, Spins const& spins, double t) {
+    for (Spins const* own : {&end_, &start_}) this->require_other_memory(spins, *own);
+    for (auto const* own : {&x_, &stage_})
+      for (Spins const& field : *own) this->require_other_memory(spins, field);
+    if (exchange_.known) return;
+    evaluations_done_ += exchange_.measure(exec, measure_label_, generator, stage_[0], t);
+    make_solver();
+    contraction_ = 1;
+  }
 
   void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
 
@@ -139,17 +147,19 @@ class StiffGauss : public detail::StepperBase<Spins> {
            advance(exec, generator, spins, t + 0.5 * dt, 0.5 * dt, nullptr, halvings - 1);
   }
 
-  /// Leaves the spins after the step in end_, and A at its stages in x_.
-  template <class Exec, class Generator>
+  /// Leaves the spins after the step in end_, and A at its stages in x_. `Shifted`: corrections
+  /// have K + local_ for K.
+  template <bool Shifted = false, class Exec, class Generator>
   bool solve(Exec const& exec, Generator const& generator, Spins const& spins, double t, double dt,
              History* history) {
     bool const has_history = history != nullptr && history->is_complete();
     guess(exec, spins, history, dt);
     double change = 0, tolerance = 0, smallest = std::numeric_limits<double>::infinity();
     int stalled = 0;
-    for (int i = 0; i < options_.iterations; ++i) {
+    for (int i = 0; i < solving_.iterations; ++i) {
       double const before = change;
-      change = correct(exec, generator, spins, t, dt);
+      corrections_ = i + 1;
+      change = correct<Shifted>(exec, generator, spins, t, dt);
       if (!(change < 1)) return false;  // out of the reach of its solution, or not a number
       if (i == 0) {
         tolerance = tolerance_of(generator, has_history ? history : nullptr, change);
@@ -173,7 +183,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
   /// Of the error that corrections leave, given the first of them.
   template <class Generator>
   double tolerance_of(Generator const& generator, History* history, double first) const {
-    if (options_.tolerance > 0) return options_.tolerance;
+    if (solving_.tolerance > 0) return solving_.tolerance;
     if constexpr (requires { generator.is_conservative(); })
       if (generator.is_conservative()) return 4 * epsilon;
     if (history != nullptr) return history->tolerance(first);
@@ -188,22 +198,32 @@ class StiffGauss : public detail::StepperBase<Spins> {
       kernel.x[s] = x_[s].output(false);
       kernel.stage[s] = stage_[s].output(false);
     }
-    if (history != nullptr) history->extrapolate_in(kernel);
+    if (history != nullptr) history->extrapolate_in(kernel, extrapolated_);
     detail::for_each_site<Real>(exec, guess_label_, spins.layout(), kernel);
   }
 
   /// A correction of x_, with the spins at the stages and at the end of the step. Returns the
   /// largest change of dt x_.
-  template <class Exec, class Generator>
+  template <bool Shifted, class Exec, class Generator>
   double correct(Exec const& exec, Generator const& generator, Spins const& spins, double t,
                  double dt) {
     for (std::size_t s = 0; s < count; ++s) residual(exec, generator, s, t, dt);
-    detail::CorrectStage<stages, Real> kernel{{}, spins.array(), {},
-                                              {}, end_.array(),  static_cast<Real>(dt)};
+    detail::CorrectStage<stages, Shifted, Real> kernel{};
+    kernel.spins = spins.array();
+    kernel.end = end_.array();
+    kernel.dt = static_cast<Real>(dt);
     std::complex<double> const step(dt * exchange_.damping, -dt * exchange_.precession);
     for (std::size_t s = 0; s < count; ++s) {
-      auto const eigenvalue = s == 0 ? Gauss::eigenvalue : std::conj(Gauss::eigenvalue);
-      solver_.solve(exec, step * eigenvalue, residual_, stage_[0], solution_[s], s == 1);
+      auto b = step * (s == 0 ? Gauss::eigenvalue : std::conj(Gauss::eigenvalue));
+      if constexpr (Shifted) {
+        auto const factor = 1.0 / (1.0 + b * local_);
+        b *= factor;
+        if (s == 0) {
+          kernel.real = static_cast<Real>(factor.real());
+          kernel.imaginary = static_cast<Real>(factor.imag());
+        }
+      }
+      solver_.solve(exec, b, residual_, stage_[0], solution_[s], s == 1);
       kernel.solution[s] = solution_[s].array();
       kernel.x[s] = x_[s].array();
       kernel.stage[s] = stage_[s].array();
@@ -217,21 +237,24 @@ class StiffGauss : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void residual(Exec const& exec, Generator const& generator, std::size_t s, double t, double dt) {
     auto prepared = detail::prepare_term(generator, exec, stage_[s], t + Gauss::nodes[s] * dt);
-    auto const all = residual_.array();
-    detail::OutputArray<Real, 3> const part{
-        {all.data + 3 * static_cast<std::ptrdiff_t>(s) * all.stride, all.stride}, false};
     double share = 1;
     if constexpr (stages == 2) share = s == 0 ? 0.5 : -0.5 / Gauss::turned;
-    detail::for_each_site<Real>(exec, residual_label_, residual_.layout(),
-                                detail::ResidualStage<decltype(prepared), Real>{
-                                    std::move(prepared), stage_[s].array(), x_[s].array(),
-                                    x_[s].output(false), part, static_cast<Real>(share)});
+    detail::for_each_site<Real>(
+        exec, residual_label_, residual_.layout(),
+        detail::ResidualStage<decltype(prepared), Real>{
+            std::move(prepared), stage_[s].array(), x_[s].array(), x_[s].output(false),
+            part_of_residual(s), static_cast<Real>(share)});
     ++evaluations_done_;
+  }
+
+  detail::OutputArray<Real, 3> part_of_residual(std::size_t s) const {
+    auto const all = residual_.array();
+    return {{all.data + 3 * static_cast<std::ptrdiff_t>(s) * all.stride, all.stride}, false};
   }
 
   std::string guess_label_ = this->label("::guess"), residual_label_ = this->label("::residual"),
               correct_label_ = this->label("::correct"), measure_label_ = this->label("::measure");
-  StiffOptions options_;
+  StiffOptions solving_;
   std::array<Spins, count> x_, stage_;
   Spins end_, start_;
   Residual residual_;
@@ -239,10 +262,13 @@ class StiffGauss : public detail::StepperBase<Spins> {
   History history_;
   Solver solver_;
   detail::MeasuredExchange exchange_;
+  double local_ = 0;
   double last_dt_ = 0;
-  double contraction_ = 1;  // of the last two corrections that were compared
-  int unmeasured_ = 0;      // steps since then
-  bool moved_ = false;      // start_ holds the spins before the step
+  double contraction_ = 1;              // of the last two corrections that were compared
+  int unmeasured_ = 0;                  // steps since then
+  int corrections_ = 0;                 // of the last step
+  int extrapolated_ = History::fields;  // earlier values that a guess takes
+  bool moved_ = false;                  // start_ holds the spins before the step
   std::int64_t evaluations_done_ = 0, halvings_done_ = 0;
 };
 

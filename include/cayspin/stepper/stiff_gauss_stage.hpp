@@ -64,12 +64,13 @@ struct ResidualStage {
 };
 
 /// x + the solution across the spins at the stages, and the spins there and at the end of the step.
+/// `Scaled`: solutions are multiplied by a complex factor, that of a second one by its conjugate.
 /// Values: the largest |change|^2.
-template <int Stages, class Real>
+template <int Stages, bool Scaled, class Real>
 struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
   SiteArray<Real, 3> spins, x[std::size_t{Stages}], stage[std::size_t{Stages}], end;
-  Real dt;
+  Real dt, real, imaginary;  // parts of the factor
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -95,9 +96,14 @@ struct CorrectStage {
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void corrections(Site const& site,
                                                Vec3<Value> (&v)[std::size_t{Stages}]) const {
-    auto const part = [&](int s, int c) {
+    auto const loaded = [&](int s, int c) {
       return Vec3<Value>{site.load(solution[s], c), site.load(solution[s], c + 1),
                          site.load(solution[s], c + 2)};
+    };
+    auto const part = [&](int s, int c) -> Vec3<Value> {
+      if constexpr (!Scaled) return loaded(s, c);
+      auto const turned = as_value<Value>((c == 0) == (s == 0) ? -imaginary : imaginary);
+      return multiply_add(turned, loaded(s, 3 - c), as_value<Value>(real) * loaded(s, c));
     };
     if constexpr (Stages == 1) {
       v[0] = part(0, 0) + cross(Vec3<Value>(site.load(stage[0])), part(0, 3));
@@ -108,6 +114,108 @@ struct CorrectStage {
       v[0] = (a + c) + cross(Vec3<Value>(site.load(stage[0])), b + d);
       v[1] = turned * ((d - b) + cross(Vec3<Value>(site.load(stage[1])), a - c));
     }
+  }
+};
+
+/// The sum of A.m.
+template <class Generator, class Real>
+struct SumAlongSpins {
+  Generator generator;
+  SiteArray<Real, 3> spins;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, spins);
+    values[0] = dot(evaluate(generator, stencil), stencil.center());
+  }
+};
+
+/// The largest |A x m|^2.
+template <class Generator, class Real>
+struct LargestRateOfStage {
+  Generator generator;
+  SiteArray<Real, 3> spins;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, spins);
+    auto const rate = cross(evaluate(generator, stencil), stencil.center());
+    values[0] = dot(rate, rate);
+  }
+};
+
+/// A sum of A at stages, across the spins at one.
+template <class Real>
+struct SecondDifference {
+  SiteArray<Real, 3> values[3];
+  double weights[3];
+  SiteArray<Real, 3> stage;
+  OutputArray<Real, 3> difference;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    store(site, zero<typename Site::value_type>(), 3);
+  }
+  /// Of so many values, and of what is there already.
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
+    for (int i = 0; i < count; ++i)
+      sum = multiply_add(as_value<Value>(weights[i]), Vec3<Value>(site.load(values[i])), sum);
+    Vec3<Value> const m = site.load(stage);
+    site.store(multiply_add(Value(-dot(sum, m) / dot(m, m)), m, sum), difference);
+  }
+};
+
+/// The same with A at the end of the step in place of the third value.
+template <class Generator, class Real>
+struct SecondDifferenceWithEnd {
+  Generator generator;
+  SecondDifference<Real> of_two;  // its third weight is that of A at the end
+  SiteArray<Real, 3> end;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Stencil<Site, Real> const stencil(site, end);
+    Vec3<Value> const m = stencil.center(), a = evaluate(generator, stencil);
+    Vec3<Value> const across = multiply_add(Value(-dot(a, m) / dot(m, m)), m, a);
+    of_two.store(site, as_value<Value>(of_two.weights[2]) * across, 2);
+  }
+};
+
+/// The spins within a step: those at its begin, turned by `whole` A of its stage, and by `slope`
+/// times the change of A since the stage before.
+template <class Real>
+struct StiffDenseOutput {
+  SiteArray<Real, 3> begin, last, before;
+  OutputArray<Real, 3> out;
+  Real whole = 0, slope = 0;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> const a = site.load(last);
+    Vec3<Value> const change = a - Vec3<Value>(site.load(before));
+    Vec3<Value> const f[1] = {multiply_add(Value(slope), change, Value(whole) * a)};
+    Vec3<Value> stage[1];
+    site.store(GaussLegendre<1>::solve(f, Vec3<Value>(site.load(begin)), stage), out);
+  }
+};
+
+/// The largest |v|^2 of a solution (v', v''), v = v' + m x v''.
+template <class Real>
+struct LargestSolution {
+  SiteArray<Real, 6> solution;
+  SiteArray<Real, 3> stage;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    auto const part = [&](int c) {
+      return Vec3<Value>{site.load(solution, c), site.load(solution, c + 1),
+                         site.load(solution, c + 2)};
+    };
+    Vec3<Value> const v = part(0) + cross(Vec3<Value>(site.load(stage)), part(3));
+    values[0] = dot(v, v);
   }
 };
 

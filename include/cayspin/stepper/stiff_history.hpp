@@ -26,7 +26,7 @@ struct StiffOptions {
 
 namespace detail {
 
-/// The last three values of A at stages of earlier steps, the last one first.
+/// The last three values of A at stages of earlier steps, the last one first, and their times.
 template <class Spins, int Stages>
 class StiffHistory {
   using Real = typename Spins::value_type;
@@ -41,17 +41,34 @@ class StiffHistory {
       : earlier_(numbered_fields<Spins, std::size_t{fields}>(name, lattice)) {}
 
   bool is_complete() const { return known_ == fields; }
+  int known() const { return known_; }
   void forget() {
     known_ = 0;
+    times_ = times_of_equal_steps();
     usual_ = std::numeric_limits<double>::infinity();
   }
   /// Takes x of the last step, and leaves other memory in it.
   void remember(std::array<Spins, std::size_t{Stages}>& x) {
     std::rotate(earlier_.begin(), earlier_.end() - Stages, earlier_.end());
-    for (std::size_t i = 0; i < x.size(); ++i) swap(x[x.size() - 1 - i], earlier_[i]);
+    std::rotate(times_.begin(), times_.end() - Stages, times_.end());
+    for (double& time : times_) time -= 1;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      swap(x[x.size() - 1 - i], earlier_[i]);
+      times_[i] = node(x.size() - 1 - i) - 1;
+    }
     known_ = std::min(known_ + Stages, fields);
   }
+  /// The next step is `ratio` times as long as the one before.
+  void rescale(double ratio) {
+    for (double& time : times_) time /= ratio;
+  }
 
+  /// For cayspin::exchange_memory; of steps that are not equal, times, too.
+  template <class Visit>
+  void visit_times(Visit const& visit) {
+    for (std::size_t i = 0; i < times_.size(); ++i)
+      visit("earlier_time_" + std::to_string(i), times_[i]);
+  }
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("known", known_);
@@ -60,13 +77,49 @@ class StiffHistory {
       visit("earlier_" + std::to_string(i), earlier_[static_cast<std::size_t>(i)]);
   }
 
-  void extrapolate_in(Guess& kernel) const {
-    kernel.count = known_;
-    for (int i = 0; i < known_; ++i) {
+  void extrapolate_in(Guess& kernel, int most) const {
+    kernel.count = std::min(known_, most);
+    for (int i = 0; i < kernel.count; ++i) {
       kernel.earlier[i] = earlier_[static_cast<std::size_t>(i)].array();
       for (int stage = 0; stage < Stages; ++stage)
-        kernel.coefficients[stage][i] = coefficient(stage, i);
+        kernel.coefficients[stage][i] = coefficient(stage, i, kernel.count);
     }
+  }
+
+  /// The second derivative of A over 2 in units of dt, from x of a step, of the one before, and of
+  /// the one before that or at the end of the step. Of a first step the first derivative.
+  SecondDifference<Real> second_difference(Spins const& x, bool has_end) const
+    requires(Stages == 1)
+  {
+    SecondDifference<Real> kernel{};
+    kernel.values[0] = kernel.values[1] = kernel.values[2] = x.array();
+    for (int i = 0; i < known_ && i < 2; ++i)
+      kernel.values[i + 1] = earlier_[static_cast<std::size_t>(i)].array();
+    double const now = node(0), before = times_[0], other = has_end ? 1 : times_[1];
+    if (known_ > 0) {
+      kernel.weights[0] = 1 / ((now - before) * (now - other));
+      kernel.weights[1] = 1 / ((before - now) * (before - other));
+      kernel.weights[2] = 1 / ((other - now) * (other - before));
+    } else {
+      kernel.weights[2] = 1 / (other - now);
+      kernel.weights[0] = -kernel.weights[2];
+    }
+    return kernel;
+  }
+
+  /// Within the last step, after this share of it: A was nearly linear since the step before.
+  StiffDenseOutput<Real> dense_output(double dt, double share) const
+    requires(Stages == 1)
+  {
+    StiffDenseOutput<Real> kernel;
+    kernel.last = kernel.before = earlier_[0].array();
+    kernel.whole = static_cast<Real>(share * dt);
+    if (known_ > 1) {
+      kernel.before = earlier_[1].array();
+      double const slope = 0.5 * (share - 1) * share * dt / (times_[0] - times_[1]);
+      kernel.slope = static_cast<Real>(slope);
+    }
+    return kernel;
   }
 
   /// Of the error that corrections leave, given the first of them. Spin waves that are too short
@@ -80,20 +133,27 @@ class StiffHistory {
   }
 
  private:
+  using Times = std::array<double, std::size_t{fields}>;
+
+  static constexpr double node(std::size_t stage) { return GaussLegendre<Stages>::nodes[stage]; }
+  static constexpr Times times_of_equal_steps() {
+    Times times{};
+    for (int i = 0; i < fields; ++i)
+      times[static_cast<std::size_t>(i)] =
+          node(static_cast<std::size_t>(Stages - 1 - i % Stages)) - i / Stages - 1;
+    return times;
+  }
   // Lagrange's.
-  double coefficient(int stage, int i) const {
-    auto const& nodes = GaussLegendre<Stages>::nodes;
-    auto const time = [&](int k) {  // in units of dt
-      return nodes[static_cast<std::size_t>(Stages - 1 - k % Stages)] - k / Stages - 1;
-    };
+  double coefficient(int stage, int i, int count) const {
+    auto const at = [&](int k) { return times_[static_cast<std::size_t>(k)]; };
     double product = 1;
-    for (int k = 0; k < known_; ++k)
-      if (k != i)
-        product *= (nodes[static_cast<std::size_t>(stage)] - time(k)) / (time(i) - time(k));
+    for (int k = 0; k < count; ++k)
+      if (k != i) product *= (node(static_cast<std::size_t>(stage)) - at(k)) / (at(i) - at(k));
     return product;
   }
 
   std::array<Spins, std::size_t{fields}> earlier_;
+  Times times_ = times_of_equal_steps();  // from the begin of the next step, in units of dt
   int known_ = 0;
   double usual_ = std::numeric_limits<double>::infinity();  // first correction
 };

@@ -2,6 +2,7 @@
 #include "fine_solution.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cayspin::program::trade {
 namespace {
@@ -26,6 +27,28 @@ FineSolution::FineSolution(Pilot const& pilot, double horizon, Candidate const& 
     : pilot_(&pilot), by_(by), horizon_(horizon), tolerance_(tolerance) {
   Steps const steps{0, tolerance};
   solution_ = pilot.run(by, {0, horizon, pilot.start(), looks_of(by, steps)}, steps);
+}
+
+void FineSolution::continue_by(Candidate const& method, double error) {
+  constexpr std::int64_t fewest = 64, most = 8 * parts;
+  for (auto count = fewest; count <= most; count *= 2) {
+    Looks looks{1, {}};
+    std::vector<std::size_t> compared;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (times[i] * count % parts != 0) continue;
+      looks.steps.push_back(times[i] * count / parts);
+      compared.push_back(i);
+    }
+    auto const outcome =
+        pilot_->run(method, {0, horizon_, pilot_->start(), std::move(looks)}, {count, 0});
+    double largest = outcome.failure ? std::numeric_limits<double>::infinity() : 0;
+    for (std::size_t i = 0; i < outcome.states.size(); ++i)
+      largest = std::max(largest, distance(outcome.states[i], solution_.states[compared[i]]));
+    if (largest > error) continue;
+    by_ = method;
+    equal_steps_ = count;
+    return;
+  }
 }
 
 Measured FineSolution::measure(Candidate const& candidate, Steps const& steps, bool guarded,
@@ -61,8 +84,12 @@ std::vector<double> FineSolution::at(std::int64_t step, std::int64_t steps) cons
   auto const& state = first ? pilot_->start() : solution_.states[last];
   double const begin = first ? 0 : of(times[last]);
   if (share == begin) return state;
-  Stretch const rest{begin * horizon_, (share - begin) * horizon_, state, {1, {1}}};
-  auto const outcome = pilot_->run(by_, rest, {0, tolerance_});
+  Steps const continued{
+      static_cast<std::int64_t>(std::ceil((share - begin) * static_cast<double>(equal_steps_))),
+      equal_steps_ > 0 ? 0 : tolerance_};
+  Looks const end{1, {std::max<std::int64_t>(1, continued.count)}};
+  Stretch const rest{begin * horizon_, (share - begin) * horizon_, state, end};
+  auto const outcome = pilot_->run(by_, rest, continued);
   if (outcome.failure) return std::vector(state.size(), std::numeric_limits<double>::infinity());
   return outcome.states.front();
 }

@@ -43,6 +43,11 @@ class FineSolution {
     return distance(solution_, other.solution_);
   }
 
+  /// From now on it is continued by equal steps of this method, as long as they can be for a run
+  /// to the horizon to come within `error` of it, if there are such. Short continuations are
+  /// cheaper by them than by the tolerance.
+  void continue_by(Candidate const& method, double error);
+
   /// A candidate's run to the horizon. `guarded`: does it fail where `cayspin run` stops?
   Measured measure(Candidate const& candidate, Steps const& steps, bool guarded,
                    Repeats const& repeats) const;
@@ -54,6 +59,7 @@ class FineSolution {
   Candidate by_;
   double horizon_, tolerance_;
   Outcome solution_;
+  std::int64_t equal_steps_ = 0;  // to the horizon, of continuations; 0: they have the tolerance
 };
 
 }  // namespace cayspin::program::trade

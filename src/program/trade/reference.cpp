@@ -59,12 +59,13 @@ Horizon horizon_within(Pilot const& pilot, double seconds) {
 }
 
 Reference converged_reference(Pilot const& pilot, double seconds) {
-  auto horizon = horizon_within(pilot, seconds / 40);
+  auto horizon = horizon_within(pilot, seconds / 10);
   for (int halving = 0; halving < most_halvings; ++halving) {
     FineSolution first(pilot, horizon.time, by("tsit5"), tightest);
     double const uncertainty =
         first.distance_to(FineSolution(pilot, horizon.time, by("dp5"), tightest));
     if (uncertainty < enough) {
+      first.continue_by(by("rkmk8"), enough);
       horizon.own_steps = pilot.run(fine_tsit5(), horizon.time, {0, 1e-2}).summary.own_steps;
       return {horizon, std::move(first), uncertainty};
     }

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "command.hpp"
+#include "files/file_beside.hpp"
+#include "new_scenes.hpp"
+#include "simulation/failure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+namespace cayspin::program {
+namespace {
+
+std::string replaced(std::string text, std::string_view what, std::string const& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+}  // namespace
+
+std::string names_of_new_scenes() {
+  std::string names;
+  for (auto const& scene : new_scenes) names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.kind);
+  return names;
+}
+
+int write_new(NewOptions const& options) {
+  auto const scene = std::ranges::find(new_scenes, options.kind, &NewScene::kind);
+  if (scene == new_scenes.end())
+    throw UsageError(fmt::format("new {}: accepted: {}", options.kind, names_of_new_scenes()));
+  auto const path = options.output.value_or(options.kind + ".toml");
+  io::FileBeside file(path, options.overwrite);
+  file.stream() << replaced(std::string(scene->text), scene->path, path.string());
+  file.commit();
+  fmt::print("{0}: try `cayspin check {0}`, then `cayspin run {0}`\n", path.string());
+  return Status::done;
+}
+
+}  // namespace cayspin::program

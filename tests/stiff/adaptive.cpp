@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Stiff steps that follow a tolerance.
+#include "../support/figures.hpp"
+#include "thin_slab.hpp"
+
+#include <cayspin/stepper/adaptive_stiff_gauss.hpp>
+
+namespace cayspin::test {
+namespace {
+
+using Stepper = AdaptiveStiffGauss2<Spins>;
+constexpr double end_time = 2;
+
+/// The largest error at times early and late, half of them in the first quarter.
+double error_of(Stepper& stepper, Slab const& slab, std::vector<Spins> const& exact) {
+  auto spins = smooth_start(slab.lattice);
+  double largest = 0, t = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    double const next = end_time / std::exp2(static_cast<double>(exact.size() - 1 - i));
+    stepper.step(Space(), slab.natural(), spins, t, next - t);
+    t = next;
+    largest = std::max(largest, largest_distance(spins, exact[i]));
+  }
+  return largest;
+}
+
+std::vector<Spins> exact_spins(Slab const& slab) {
+  auto spins = smooth_start(slab.lattice);
+  AdaptiveRkmk<Spins> stepper(spins, {.tolerance = 1e-10});
+  std::vector<Spins> all;
+  double t = 0;
+  for (int i = 8; i >= 0; --i) {
+    double const next = end_time / std::exp2(i);
+    stepper.step(Space(), slab.natural(), spins, t, next - t);
+    t = next;
+    all.push_back(copy_of(spins));
+  }
+  return all;
+}
+
+TEST(AdaptiveStiff, TheErrorFollowsTheTolerance) {
+  Slab const slab = slab_of(40, 0.05);
+  auto const exact = exact_spins(slab);
+  std::vector<double> tolerances, errors;
+  for (double const tolerance : {1.0, 1e-1, 1e-2, 1e-3, 1e-4}) {
+    Stepper stepper(smooth_start(slab.lattice), {.tolerance = tolerance});
+    tolerances.push_back(tolerance);
+    errors.push_back(error_of(stepper, slab, exact));
+    std::printf("    tolerance %.0e: error %.2e, %ld steps\n", tolerance, errors.back(),
+                static_cast<long>(stepper.accepted_steps()));
+    EXPECT_LT(errors.back(), tolerance);
+  }
+  // A step of dt has an error of dt^3, and all of them together one of dt^2.
+  expect_order("error over tolerance", fitted_order(tolerances, errors), 2.0 / 3, 0.15);
+}
+
+TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
+  Slab const slab = slab_of(40, 0.5);
+  auto spins = smooth_start(slab.lattice);
+  AdaptiveRkmk<Spins> fine(copy_of(spins), {.tolerance = 1e-10});
+  Stepper stepper(spins, {.tolerance = 1e-2});
+  auto exact = copy_of(spins);
+  double largest = 0;
+  constexpr int looks = 400;
+  for (int i = 0; i < looks; ++i) {
+    double const dt = end_time / looks;
+    stepper.step(Space(), slab.natural(), spins, i * dt, dt);
+    fine.step(Space(), slab.natural(), exact, i * dt, dt);
+    largest = std::max(largest, largest_distance(spins, exact));
+  }
+  EXPECT_LT(stepper.accepted_steps(), looks / 2);
+  expect_below("at any look", largest, 1e-3);  // 1.4e-3 by a constant A
+}
+
+TEST(AdaptiveStiff, AskingOftenDoesNotChangeTheSteps) {
+  Slab const slab = slab_of(40, 0.5);
+  auto seldom = smooth_start(slab.lattice), often = copy_of(seldom);
+  StepOptions const options{.tolerance = 1e-2, .end = end_time};
+  Stepper one(seldom, options), many(often, options);
+  one.step(Space(), slab.natural(), seldom, 0, end_time);
+  advance(many, slab.natural(), often, end_time / 256, 256);
+  EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
+  EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
+}
+
+// Ten times as long a run hardly takes more: spins are at rest.
+TEST(AdaptiveStiff, RestTakesFewSteps) {
+  for (std::int64_t const cells : {100, 400}) {
+    SCOPED_TRACE(cells);
+    Slab const slab = slab_of(cells, 0.5);
+    auto spins = smooth_start(slab.lattice);
+    Stepper stepper(spins, {.tolerance = 0.1});
+    stepper.step(Space(), slab.natural(), spins, 0, 20);
+    auto const soon = stepper.evaluations_done();
+    EXPECT_LE(soon, 180);
+    for (int i = 1; i < 10; ++i) stepper.step(Space(), slab.natural(), spins, 20. * i, 20);
+    EXPECT_LE(stepper.evaluations_done(), 4 * soon);
+    EXPECT_LT(norm_defect(Space(), spins), 64 * std::numeric_limits<double>::epsilon());
+  }
+}
+
+/// A field along z from t = 5 on.
+struct Late {
+  static constexpr bool depends_on_time = true;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    return Zeeman{{t < 5 ? 0.0 : 1.0, 0, 0.5}};
+  }
+};
+
+TEST(AdaptiveStiff, AFieldSwitchedOnAtRestIsFollowed) {
+  auto const lattice = Lattice::chain(10, 0.1);
+  auto const start = make_spins(lattice, [](auto...) { return Vector{0, 0, 1}; });
+  double const tolerance = 1e-2;
+  LandauLifshitz const late(EffectiveField(Exchange(lattice, 1), Late{}), 0.5);
+  LandauLifshitz const on(EffectiveField(Exchange(lattice, 1), Zeeman{{1, 0, 0.5}}), 0.5);
+  auto spins = copy_of(start);
+  Stepper stepper(spins, {.tolerance = tolerance});
+  stepper.step(Space(), late, spins, 0, 7);
+  auto const exact = run<Rkmk4<Spins>>(on, start, 2. / 4000, 4000);
+  expect_below("after the jump", largest_distance(spins, exact), 30 * tolerance);
+}
+
+/// Not a number from t = 0.5 on.
+struct Failing {
+  static constexpr bool depends_on_time = true;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    return Zeeman{{t < 0.5 ? 1 : std::nan(""), 0, 1}};
+  }
+};
+
+TEST(AdaptiveStiff, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
+  auto const lattice = Lattice::chain(10, 0.1);
+  auto spins = smooth_start(lattice);
+  auto const start = copy_to_host(spins);
+  LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1), Failing{}), 0.1);
+  Stepper stepper(spins, {.tolerance = 1e-3});
+  EXPECT_THROW(stepper.step(Space(), generator, spins, 0, 1), StepTooSmall);
+  EXPECT_EQ(copy_to_host(spins), start);
+}
+
+TEST(AdaptiveStiff, InSinglePrecisionIsTheSameMethod) {
+  using Single = SpinField<float, Space::memory_space>;
+  Slab const slab = slab_of(40, 0.5);
+  auto single = smooth_start<Single>(slab.lattice);
+  auto full = smooth_start(slab.lattice);
+  AdaptiveStiffGauss2<Single> one(single, {.tolerance = 1e-2});
+  Stepper other(full, {.tolerance = 1e-2});
+  one.step(Space(), slab.natural(), single, 0, end_time);
+  other.step(Space(), slab.natural(), full, 0, end_time);
+  EXPECT_LT(largest_distance(single, full), 1e-3);
+}
+
+TEST(AdaptiveStiff, WhatCannotBeIsRefused) {
+  auto const spins = smooth_start(Lattice::chain(4));
+  for (StepOptions const& options :
+       {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 2}, StepOptions{.min_dt = -1}})
+    EXPECT_THROW(Stepper(spins, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cayspin::test
