@@ -4,7 +4,8 @@ function(cayspin_install_scripts prefix)
   set(folder ${prefix}/share/cayspin/python)
   set(python ${PROJECT_SOURCE_DIR}/python)
   install(FILES ${python}/plot_texture.py ${python}/view_texture.py DESTINATION ${folder} ${ARGN})
-  install(DIRECTORY ${python}/cayspin_plots DESTINATION ${folder} ${ARGN} PATTERN __pycache__ EXCLUDE)
-  install(DIRECTORY ${python}/cayspin/texture ${python}/cayspin/view DESTINATION ${folder}/cayspin ${ARGN}
-          PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY ${python}/cayspin_plots DESTINATION ${folder} ${ARGN} PATTERN __pycache__
+                                                                                  EXCLUDE)
+  install(DIRECTORY ${python}/cayspin/texture ${python}/cayspin/view DESTINATION ${folder}/cayspin
+          ${ARGN} PATTERN __pycache__ EXCLUDE)
 endfunction()

@@ -9,7 +9,8 @@ endif()
 set(pages ${PROJECT_BINARY_DIR}/man)
 add_custom_command(
   OUTPUT ${pages}/cayspin.1
-  COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/man_pages.sh ${HELP2MAN} $<TARGET_FILE:cayspin_program> ${pages}
+  COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/man_pages.sh ${HELP2MAN} $<TARGET_FILE:cayspin_program>
+          ${pages}
   DEPENDS cayspin_program ${CMAKE_CURRENT_LIST_DIR}/man_pages.sh
   COMMENT "Manual pages"
   VERBATIM)

@@ -22,7 +22,8 @@ std::string replaced(std::string text, std::string_view what, std::string const&
 
 std::string names_of_new_scenes() {
   std::string names;
-  for (auto const& scene : new_scenes) names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.kind);
+  for (auto const& scene : new_scenes)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.kind);
   return names;
 }
 

@@ -83,10 +83,10 @@ class Plane {
     at[axes_[0]] = cell(right, 0);
     at[axes_[1]] = cell(up, 1);
     at[axes_[2]] = cells_[axes_[2]] / 2;
-    auto const site = static_cast<std::size_t>(
-        (at[2] * sites_ * cells_[1] + at[1]) * cells_[0] + at[0]);
-    return color_of({spins_[3 * site + axes_[0]], spins_[3 * site + axes_[1]],
-                     spins_[3 * site + axes_[2]]});
+    auto const site =
+        static_cast<std::size_t>((at[2] * sites_ * cells_[1] + at[1]) * cells_[0] + at[0]);
+    return color_of(
+        {spins_[3 * site + axes_[0]], spins_[3 * site + axes_[1]], spins_[3 * site + axes_[2]]});
   }
 
  private:
@@ -128,9 +128,10 @@ std::string terminal_picture(io::Lattice const& lattice, std::vector<double> con
   Plane const plane(lattice, spins);
   auto const columns = std::clamp(plane.cells(0), least, most);
   auto const wanted = static_cast<double>(columns) * plane.height_over_width();
-  auto const rows =
-      plane.is_chain() ? 1 : std::clamp(static_cast<std::int64_t>(std::lround(wanted / 2)),
-                                        std::int64_t{1}, most / 2);
+  auto const rows = plane.is_chain()
+                        ? 1
+                        : std::clamp(static_cast<std::int64_t>(std::lround(wanted / 2)),
+                                     std::int64_t{1}, most / 2);
   std::string text;
   for (auto row = rows - 1; row >= 0; --row) {
     text += fmt::format("{:<11} ", row == rows - 1 ? "picture" : "");
@@ -139,8 +140,8 @@ std::string terminal_picture(io::Lattice const& lattice, std::vector<double> con
       auto const up = [&](double half) {
         return (static_cast<double>(row) + half) / static_cast<double>(rows);
       };
-      text += escape(38, plane.color(right, up(0.75))) + escape(48, plane.color(right, up(0.25))) +
-              "▀";
+      text +=
+          escape(38, plane.color(right, up(0.75))) + escape(48, plane.color(right, up(0.25))) + "▀";
     }
     text += "\x1b[0m\n";
   }

@@ -18,8 +18,8 @@ namespace cayspin::inline v0_1 {
 /// StiffGauss2 with steps of its own: long ones where spins come to rest. The error of a step is
 /// the largest angle of any spin that the second derivative of A stands for: a divided difference
 /// over the stages of three steps, multiplied by (1 + b K)^-1 as corrections are, so that what is
-/// left of short spin waves does not count. Where the field depends on t, the end of the step stands
-/// for the earliest of the three. Corrections have K + c, where c is the mean of A.m.
+/// left of short spin waves does not count. Where the field depends on t, the end of the step
+/// stands for the earliest of the three. Corrections have K + c, where c is the mean of A.m.
 /// `step(.., t, dt)` returns the spins at t + dt, within an own step by a linear A. The method's
 /// own steps do not depend on dt. It remembers its state: `spins` and t must be those at the end of
 /// the step before. Otherwise call `reset`.
@@ -76,8 +76,8 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
   }
 
   /// Brings `spins` from t to t + dt under `generator`. Waits.
-  /// Throws StepTooSmall when no step is small enough, and std::invalid_argument as StiffGauss does,
-  /// when dt is negative, or when options.end is before t + dt.
+  /// Throws StepTooSmall when no step is small enough, and std::invalid_argument as StiffGauss
+  /// does, when dt is negative, or when options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
@@ -94,7 +94,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
  private:
   static constexpr auto name = "AdaptiveStiffGauss2";
   static constexpr double share_of_corrections = 0.05;  // of the error of a step
-  static constexpr double most_growth = 2;  // beyond it, earlier steps tell nothing of the next
+  static constexpr double most_growth = 2;    // beyond it, earlier steps tell nothing of the next
   static constexpr double fast_enough = 0.4;  // convergence of corrections
   static constexpr double hardly_changes = 0.1;  // error / tolerance, where A is not extrapolated
 
@@ -128,10 +128,9 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
       this->contraction_ *= std::max(1.0, dt / dt_);
       dt_ = dt;
       if (dt > 1.5 * local_dt_) measure_local(exec, generator, t);
-      bool const solved =
-          this->template solve<true>(exec, generator, now_, t, dt, &this->history_);
-      double const error = solved ? error_of(exec, generator, t, dt)
-                                  : std::numeric_limits<double>::infinity();
+      bool const solved = this->template solve<true>(exec, generator, now_, t, dt, &this->history_);
+      double const error =
+          solved ? error_of(exec, generator, t, dt) : std::numeric_limits<double>::infinity();
       if (solved && controller_.accepts(error)) return accept(error);
       ++rejected_;
       next_dt_ = solved ? controller_.next_dt(dt, error) : 0.5 * dt;
@@ -176,10 +175,9 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
   void with_end(Exec const& exec, Generator const& generator, double t,
                 detail::SecondDifference<Real> const& kernel) {
     auto prepared = detail::prepare_term(generator, exec, this->end_, t);
-    detail::for_each_site<Real>(
-        exec, difference_label_, this->residual_.layout(),
-        detail::SecondDifferenceWithEnd<decltype(prepared), Real>{std::move(prepared), kernel,
-                                                                  this->end_.array()});
+    detail::for_each_site<Real>(exec, difference_label_, this->residual_.layout(),
+                                detail::SecondDifferenceWithEnd<decltype(prepared), Real>{
+                                    std::move(prepared), kernel, this->end_.array()});
     ++this->evaluations_done_;
   }
 
