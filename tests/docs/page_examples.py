@@ -33,9 +33,10 @@ def pages():
 
 
 def commands_of(block):
-    """The commands of a block, or none where one needs more than a built program."""
+    """The commands of a block, or none where one needs more than a built program, as a browser."""
     commands = block.replace("\\\n", " ").splitlines()
-    runs_here = all(command.startswith(("cayspin ", "python3 ")) for command in commands)
+    runs_here = all(command.startswith(("cayspin ", "python3 ")) and
+                    not command.startswith("cayspin view ") for command in commands)
     return commands if runs_here else []
 
 
