@@ -80,7 +80,7 @@ class Restarting : public testing::Test {
 };
 
 TEST_F(Restarting, GivesTheBitsOfARunWithoutABreakByEveryMethod) {
-  constexpr int scenes_each = 4, most_draws = 60;
+  constexpr int scenes_each = 4, most_draws = 200;
   std::int64_t scenes = 0, draws = 0;
   for (auto const& variant : variants()) {
     int done = 0;
