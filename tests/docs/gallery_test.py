@@ -52,7 +52,7 @@ class Gallery(unittest.TestCase):
                                              self.scenes.items()):
             scene = re.search(r"\]\(\.\./(scenes/\w+\.toml)\)", section).group(1)
             self.assertIn(scene, commands[-2], name)
-            self.assertRegex(commands[-1], r"^python3 python/plot_(texture|trajectory)\.py ")
+            self.assertRegex(commands[-1], r"^(cayspin plot|python3 python/plot_trajectory\.py) ")
 
     def test_pictures_are_small(self):
         for name in self.scenes:
