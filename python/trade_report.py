@@ -28,7 +28,7 @@ SCENES = (
     ("Film, 256 x 256", "film_256",
      ("--set", "lattice.shape=[256,256]", "--set", "integrator.end=5", "--seconds", "4")),
     ("Heisenberg, 64^3", "heisenberg_64",
-     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "4")),
+     ("--set", "lattice.shape=[64,64,64]", "--set", "integrator.end=0.5", "--seconds", "1")),
     ("One spin in a field", "macrospin", ()),
     ("Rotating field", "macrospin_rotating_field", ()),
     ("Rigid bodies", "rigid_body_ensemble", ()),
