@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/scalars.hpp>
 #include <cayspin/stepper/step_control.hpp>
 #include <cayspin/stepper/stiff_gauss.hpp>
 
@@ -104,13 +105,9 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
     this->make_ready(exec, generator, spins, t);
     this->history_.forget();
     Kokkos::deep_copy(exec, now_.allocation(), spins.allocation());
-    auto prepared = detail::prepare_term(generator, exec, now_, t);
-    double const square = detail::reduce_sites<detail::Maximum, 1>(
-        exec, rate_label_, now_.layout(),
-        detail::LargestRateOfStage<decltype(prepared), Real>{std::move(prepared), now_.array()})[0];
     ++this->evaluations_done_;
     controller_.reset();
-    next_dt_ = controller_.first_dt(std::sqrt(square), asked);
+    next_dt_ = controller_.first_dt(largest_rate(exec, generator, now_, t), asked);
     end_time_ = t;
     dt_ = next_dt_;
     local_dt_ = 0;
@@ -210,7 +207,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
     detail::throw_step_too_small(this->label(""), t, dt);
   }
 
-  std::string rate_label_ = this->label("::begin"), local_label_ = this->label("::local_field"),
+  std::string local_label_ = this->label("::local_field"),
               difference_label_ = this->label("::difference"),
               error_label_ = this->label("::error"), dense_label_ = this->label("::dense_output");
   StepOptions options_;

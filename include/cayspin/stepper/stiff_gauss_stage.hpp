@@ -130,20 +130,6 @@ struct SumAlongSpins {
   }
 };
 
-/// The largest |A x m|^2.
-template <class Generator, class Real>
-struct LargestRateOfStage {
-  Generator generator;
-  SiteArray<Real, 3> spins;
-
-  template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
-    Stencil<Site, Real> const stencil(site, spins);
-    auto const rate = cross(evaluate(generator, stencil), stencil.center());
-    values[0] = dot(rate, rate);
-  }
-};
-
 /// A sum of A at stages, across the spins at one.
 template <class Real>
 struct SecondDifference {
