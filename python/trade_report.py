@@ -109,19 +109,19 @@ def cost_row(method, unit):
 def with_tables(page, trades, rows):
     """The page with new rows in its table of ratios, and in those of scenes the methods that their
     pictures have."""
-    trade, lines, replaced = None, [], False
+    trade, lines, replaced, in_ratios = None, [], False, False
     by_heading = {HEADINGS.get(title, title): title for title in trades}
     for line in page.splitlines():
         heading, first = re.match("### (.*)", line), re.match(r"\| ?([^|]*?) ?\|", line)
         if lines and lines[-1] == row_of(COLUMNS):
             line = "|---" * len(COLUMNS) + "|"
-        replaced = replaced and bool(first)
+        replaced, in_ratios = replaced and bool(first), in_ratios and bool(first)
         if line.startswith("#"):
             trade = trades.get(by_heading.get(heading and heading[1]))
-        if first and first[1] in rows:
+        if line.startswith(row_of(COLUMNS[:2])):
+            line, in_ratios = row_of(COLUMNS), True
+        elif in_ratios and first[1] in rows:
             line = rows[first[1]]
-        elif first and first[1] == COLUMNS[0]:
-            line = row_of(COLUMNS)
         if replaced:
             continue
         lines.append(line)

@@ -96,6 +96,7 @@ class PlotTrade(ScriptTest):
 
     def test_the_tables_of_the_page(self):
         page = ("| scene | 1e-2 |\n|---|---|\n| Film, 16 x 16 | 9 (9) |\n| Slab | 7 (7) |\n"
+                "\n| scene | best here |\n|---|---|\n| Film, 16 x 16 | 5 |\n"
                 "### Film, 16 x 16\n| us (evaluations) | 1e-2 |\n|---|---|\n| rkmk4 | 1 (1) |\n"
                 "### Slab\n| us (evaluations) | 1e-2 |\n|---|---|\n| rkmk4 | 1 (1) |\n")
         title = "Film, 16 x 16"
@@ -107,7 +108,8 @@ class PlotTrade(ScriptTest):
             "| scene | 1e-2 | 1e-4 | 1e-6 | 1e-8 | single: 1e-2 | 1e-4 | 1e-6 | spread |\n"
             f"{'|---' * 9}|\n{row}\n| Slab | 7 (7) |\n"), found)
         self.assertIn("| rkmk4 | 1870 (75) | 5920 (237) | 18700 (749) | - |\n", found)
-        self.assertEqual(len(found.splitlines()), 4 + 3 + 5 + 4, found)  # five methods are drawn
+        self.assertIn("| scene | best here |\n|---|---|\n| Film, 16 x 16 | 5 |\n", found)
+        self.assertEqual(len(found.splitlines()), 4 + 4 + 3 + 5 + 4, found)  # five methods are drawn
         self.assertTrue(found.endswith("| rkmk4 | 1 (1) |\n"))
 
     def test_what_is_no_trade(self):
