@@ -74,11 +74,11 @@ std::string lattice_text(io::Scene const& scene) {
 template <class Term>
 std::string term_text(Term const& term) {
   fmt::dynamic_format_arg_store<fmt::format_context> numbers;
-  for (auto const& [name, member] : Term::parameters) {
-    if (auto const* const number = std::get_if<double Term::*>(&member))
+  for (auto const& key : Term::keys()) {
+    if (auto const* const number = std::get_if<double Term::*>(&key.member))
       numbers.push_back(fmt::format("{:.6g}", term.**number));
     else
-      numbers.push_back(vector_text(term.*std::get<io::Triple Term::*>(member)));
+      numbers.push_back(vector_text(term.*std::get<io::Triple Term::*>(key.member)));
   }
   return fmt::vformat(Term::formula, numbers);
 }

@@ -6,10 +6,7 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-[[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
-                         std::string_view accepted) {
-  throw scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
-}
+using detail::refuse;
 
 std::string accepted_isotropies(Integrator const& integrator, SystemKind kind) {
   std::string list;

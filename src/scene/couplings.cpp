@@ -28,8 +28,8 @@ std::vector<double> numbers(Item const& item, std::size_t count, std::string_vie
   return read;
 }
 
-int small_integer(Item const& item, std::int64_t least, std::string_view accepted) {
-  auto const value = integer(item, least, accepted);
+int small_integer(Item const& item, double least, std::string_view accepted) {
+  auto const value = integer(item, {accepted, least});
   if (value < -1'000'000 || value > 1'000'000)
     item.fail(fmt::format("{} is too large", value), accepted);
   return static_cast<int>(value);
@@ -78,7 +78,7 @@ Coupling read_coupling(Item const& item, Scene& scene) {
     constexpr std::string_view accepted = "three whole numbers of cells";
     auto const all = entries(*three, 3, 3, accepted);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      offset[axis] = small_integer(all[axis], std::numeric_limits<std::int64_t>::min(), accepted);
+      offset[axis] = small_integer(all[axis], Limits().least, accepted);
   }
   if (between[0] == between[1] && offset == std::array<int, 3>{})
     item.fail("couples a site to itself", "another site, or an offset");
@@ -172,12 +172,10 @@ namespace cayspin::inline v0_1::io {
 std::vector<Coupling> couplings(Scene const& scene) {
   auto const& field = scene.field;
   if (field.couplings_file.empty()) return field.couplings;
-  try {
+  return detail::for_key(scene, "field.couplings.file", [&] {
     return detail::read_unit_cell_couplings(field.couplings_file, crystal(scene.lattice),
                                             field.couplings_scale);
-  } catch (std::runtime_error const& error) {
-    throw scene_error(scene, "field.couplings.file", error.what());
-  }
+  });
 }
 
 }  // namespace cayspin::inline v0_1::io

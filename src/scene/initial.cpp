@@ -30,7 +30,7 @@ RandomStart read_random(Item const& item, Scene& scene) {
   constexpr std::string_view accepted = "a whole number >= 0";
   Table const table(item, scene);
   table.accept_only({"seed"});
-  return {integer(table.required("seed", accepted), 0, accepted)};
+  return {integer(table.required("seed", accepted), {accepted, 0})};
 }
 
 GivenStart read_given(Item const& item, Scene const& scene) {

@@ -45,7 +45,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
   Lattice lattice;
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / std::int64_t{3 * sizeof(double)};
   for (std::size_t axis = 0; axis < extents.size(); ++axis) {
-    auto const extent = integer(extents[axis], 1, "a whole number >= 1");
+    auto const extent = integer(extents[axis], {"a whole number >= 1", 1});
     if (extent > most_extent)
       extents[axis].fail(fmt::format("{} is too large", extent),
                          fmt::format("a whole number from 1 to {}", most_extent));

@@ -5,6 +5,19 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
+/// Throws scene_error with what is accepted.
+[[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
+                         std::string_view accepted);
+/// What std::runtime_error says of `work` becomes the scene_error of a key.
+template <class Work>
+auto for_key(Scene const& scene, std::string_view key, Work const& work) {
+  try {
+    return work();
+  } catch (std::runtime_error const& error) {
+    throw scene_error(scene, key, error.what());
+  }
+}
+
 /// Is it units = "SI"? The sections then hold what is typed until convert_to_reduced.
 bool read_is_si(Table const& root);
 /// After the lattice; the sections after it are read with the material known.
@@ -26,8 +39,6 @@ Lattice read_lattice(Table const& root, SystemKind kind);
 /// After the lattice, which the scene has by then.
 Field read_field(Table const& root, SystemKind kind);
 void read_couplings(Item const& item, Scene& scene, Field& field);
-/// A number, or an expression in t.
-AppliedComponent read_component_in_time(Item const& item);
 Torque read_torque(Table const& root, SystemKind kind);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);

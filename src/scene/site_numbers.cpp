@@ -3,6 +3,7 @@
 
 #include "hdf5/real_dataset.hpp"
 #include "hdf5/survives.hpp"
+#include "sections.hpp"
 #include "site_expression.hpp"
 
 #include <cayspin/io/scene.hpp>
@@ -72,11 +73,8 @@ std::vector<double> values_at_sites(Scene const& scene, std::string const& text,
       for (std::int64_t i = 0; i < nx; ++i) {
         auto const variables = detail::site_values(
             scene.lattice, {box.begin[0] + i, box.begin[1] + j, box.begin[2] + k});
-        try {
-          values.push_back(expression(variables.data()));
-        } catch (std::runtime_error const& error) {
-          throw scene_error(scene, key, error.what());
-        }
+        values.push_back(
+            detail::for_key(scene, key, [&] { return expression(variables.data()); }));
       }
   return values;
 }
@@ -86,23 +84,20 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
                                   std::string_view key, SiteBox const& box) {
   if (numbers.given) {
     if (std::ssize(*numbers.given) != sites(scene))
-      throw scene_error(scene, key,
-                        fmt::format("{} numbers were given; accepted: {}, one for each site",
-                                    numbers.given->size(), sites(scene)));
+      detail::refuse(scene, key, fmt::format("{} numbers were given", numbers.given->size()),
+                     fmt::format("{}, one for each site", sites(scene)));
     if (!are_finite(*numbers.given))
       throw scene_error(scene, key, "a number that was given is not finite");
     return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
   }
   if (numbers.file.empty()) return values_at_sites(scene, numbers.expression, key, box);
-  try {
+  return detail::for_key(scene, key, [&] {
     auto values = read_guarded(numbers.file,
                                [&] { return ValuesOfSites(numbers.file, scene.lattice).in(box); });
     if (!are_finite(values))
       throw std::runtime_error(numbers.file.string() + ": a value is not finite");
     return values;
-  } catch (std::runtime_error const& error) {
-    throw scene_error(scene, key, error.what());
-  }
+  });
 }
 
 }  // namespace
@@ -142,18 +137,16 @@ bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
 
 double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (read_site_numbers(item, scene, numbers)) return 1;
-  return number(item, "a finite number, " + accepted_site_numbers(scene.lattice));
+  auto const accepted = "a finite number, " + accepted_site_numbers(scene.lattice);
+  return number(item, {accepted});
 }
 
 void check_site_numbers(Scene const& scene) {
   auto const check = [&](SiteNumbers const& numbers, std::string_view key) {
     if (numbers.file.empty()) return;
-    key = numbers.key_or(key);
-    try {
+    for_key(scene, numbers.key_or(key), [&] {
       try_in_child(numbers.file, [&] { ValuesOfSites(numbers.file, scene.lattice); });
-    } catch (std::runtime_error const& error) {
-      throw scene_error(scene, key, error.what());
-    }
+    });
   };
   auto const& field = scene.field;
   check(scene.lattice.occupied, "lattice.occupied");

@@ -37,11 +37,12 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   auto keys = candidate.keys();
   if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
   keys += fmt::format(",dt={},steps={}", dt, steps);
-  for (auto const& [key, member] : io::Integrator::flags()) {
+  for (auto const& key : io::Integrator::keys()) {
     bool const belongs_to_method =
-        key == "compensated" || (key == "energy_control" && candidate.method->adaptive);
-    if (!belongs_to_method && of_scene.*member != io::Integrator{}.*member)
-      keys += fmt::format(",{}={}", key, of_scene.*member);
+        key.name == "compensated" || (key.name == "energy_control" && candidate.method->adaptive);
+    auto const* const flag = std::get_if<bool io::Integrator::*>(&key.member);
+    if (flag && !belongs_to_method && of_scene.**flag != io::Integrator{}.**flag)
+      keys += fmt::format(",{}={}", key.name, of_scene.**flag);
   }
   if (of_scene.until_torque)
     keys += fmt::format(",until_torque={}", *of_scene.until_torque * scene.units.field);
