@@ -33,6 +33,21 @@ class Laws : public ::testing::Test {
           << norm(widen(f));
     });
   }
+
+  template <class Rotation>
+  static void tangents_are_inverse() {
+    sweep(1e6, [](auto const& f, auto const&, auto const& y) {
+      long double const bound = 8 * eps * (1 + norm(widen(f)));
+      EXPECT_LE(largest(widen(Rotation::differential(f, Rotation::inverse_differential(f, y))) -
+                        widen(y)),
+                bound)
+          << norm(widen(f));
+      EXPECT_LE(largest(widen(Rotation::inverse_differential(f, Rotation::differential(f, y))) -
+                        widen(y)),
+                bound)
+          << norm(widen(f));
+    });
+  }
 };
 TYPED_TEST_SUITE(Laws, Precisions, PrecisionName);
 
@@ -41,6 +56,11 @@ TYPED_TEST(Laws, OppositeCoordinatesTurnBack) {
   this->template inverses_and_lengths<Cayley>(is_double ? 1e150 : 1e18);
   this->template inverses_and_lengths<OverflowSafeCayley>(is_double ? 1e300 : 1e37);
   this->template inverses_and_lengths<Exponential>(is_double ? 1e300 : 1e37);
+}
+
+TYPED_TEST(Laws, TheTangentUndoesItsInverse) {
+  this->template tangents_are_inverse<Cayley>();
+  this->template tangents_are_inverse<OverflowSafeCayley>();
 }
 
 /// d/ds map(f + s g) x at s = 0, by differences of fourth order.
