@@ -41,30 +41,28 @@ class EffectiveField<> : public Forwarding<EffectiveField<>> {
     return true;
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
-    return zero<typename Stencil::value_type>();
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const&) const {
+    return zero<ValueOf<Stencil>>();
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const&) const {
-    return zero<typename Stencil::value_type>();
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const&) const {
+    return zero<ValueOf<Stencil>>();
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const&) const {
-    return zero<typename Stencil::value_type>();
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const&) const {
+    return zero<ValueOf<Stencil>>();
   }
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&, Stencil const&) const {
     return zero<Value>();
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
-    return typename Stencil::value_type(0);
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
+    return ValueOf<Stencil>(0);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Stencil const&) const {
-    return typename Stencil::value_type(0);
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const&) const {
+    return ValueOf<Stencil>(0);
   }
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const&, Value*) const {}
@@ -99,8 +97,7 @@ class EffectiveField<First, Rest...>
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     detail::check_field<First, Stencil>();
     detail::check_energy_density<First, Stencil>();
     if constexpr (sizeof...(Rest) == 0)
@@ -109,8 +106,7 @@ class EffectiveField<First, Rest...>
       return detail::add_field(first_, stencil, rest_.field(stencil));
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Stencil const& stencil) const {
     detail::check_field<First, Stencil>();
     detail::check_energy_density<First, Stencil>();
     if constexpr (sizeof...(Rest) == 0)
@@ -121,8 +117,7 @@ class EffectiveField<First, Rest...>
 
   /// The part of H that is not local.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     if constexpr (detail::is_local<First>)
       return rest_.neighbor_field(stencil);
     else if constexpr (EffectiveField<Rest...>::is_local)
@@ -133,7 +128,7 @@ class EffectiveField<First, Rest...>
 
   /// H of what prepare_local returned.
   template <class Spin>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
     if constexpr (sizeof...(Rest) == 0)
       return detail::local_field(first_, spin);
     else
@@ -149,8 +144,7 @@ class EffectiveField<First, Rest...>
 
   /// The linear part of H, applied to the stencil's array; every term has to be affine.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
     return detail::linear_field(first_, stencil) + rest_.linear_field(stencil);
   }
 
@@ -162,16 +156,14 @@ class EffectiveField<First, Rest...>
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     detail::check_energy_density<First, Stencil>();
     return first_.energy_density(stencil) + rest_.energy_density(stencil);
   }
 
   /// Sum of |energy density| over the terms: what round-off in the energy is proportional to.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
     return Kokkos::abs(first_.energy_density(stencil)) + rest_.energy_magnitude(stencil);
   }
 

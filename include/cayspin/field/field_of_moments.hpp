@@ -27,7 +27,7 @@ struct NumbersOfCell {
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto at(Site const& site) const {
-    return as_value<typename Site::value_type>(numbers[site.z() % cell_sites]);
+    return as_value<ValueOf<Site>>(numbers[site.z() % cell_sites]);
   }
 };
 
@@ -76,13 +76,11 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return factors_.at(stencil.site()) * field_.field(stencil);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
     requires has_linear_field<Field, Stencil>
   {
     return factors_.at(stencil.site()) * detail::linear_field(field_, stencil);
@@ -106,13 +104,11 @@ struct AppliedToMoments {
   NumbersOfCell moments;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return moments.at(stencil.site()) * as_value<typename Stencil::value_type>(applied);
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    return moments.at(stencil.site()) * as_value<ValueOf<Stencil>>(applied);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return Value(-1) * dot(stencil.center(), field(stencil));
   }

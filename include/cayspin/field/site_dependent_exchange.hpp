@@ -20,8 +20,7 @@ struct ExchangeOfSites {
   double inverse_square[3];
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
     auto h = zero<Value>();
@@ -33,8 +32,7 @@ struct ExchangeOfSites {
 
   /// Sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
     auto h = zero<Value>();
@@ -47,8 +45,7 @@ struct ExchangeOfSites {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
     Value e(0);

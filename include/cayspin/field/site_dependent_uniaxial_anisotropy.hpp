@@ -36,16 +36,14 @@ struct UniaxialAnisotropyOfSites {
   Axis axis;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto const e = coefficient<Value>(axis, stencil.site());
     return Value(coefficient<Value>(constant, stencil.site()) * dot(stencil.center(), e)) * e;
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const along = dot(stencil.center(), coefficient<Value>(axis, stencil.site()));
     return Value(-0.5) * coefficient<Value>(constant, stencil.site()) * along * along;
