@@ -171,6 +171,14 @@ inline constexpr bool is_local = [] {
   return false;
 }();
 
+/// A base of terms that are prepared once for all t and spins.
+struct PreparedOnce {
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+};
+
 template <class Term, class Exec, class Spins>
 bool is_stationary(Term const& term, Exec const& exec, Spins const& spins) {
   if constexpr (requires { term.is_stationary(exec, spins); })

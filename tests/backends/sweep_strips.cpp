@@ -16,11 +16,8 @@ using namespace cayspin::test;
 namespace {
 
 template <class Real>
-struct SweepStrips : ::testing::Test {
-  using Field = SpinField<Real, Kokkos::HostSpace>;
-};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(SweepStrips, Precisions);
+using SweepStrips = InHostMemory<Real>;
+TYPED_TEST_SUITE(SweepStrips, Precisions, PrecisionName);
 
 /// No field. Counts how often it is asked for it, once for each pack of a row.
 struct CountedCalls {

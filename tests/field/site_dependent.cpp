@@ -221,16 +221,6 @@ TYPED_TEST(SiteDependent, WhatIsRefused) {
     EXPECT_THROW(SiteDependentUniaxialAnisotropy(1, spins_of<Spins>(lattice, numbers)),
                  std::invalid_argument);
   }
-  for (Lattice const& another : {Lattice::chain(20), Lattice::chain(21, 0.5)}) {
-    Spins const spins("spins", another);
-    EXPECT_THROW(energy(this->exec, SiteDependentExchange(ones_but(1)), spins),
-                 std::invalid_argument);
-    EXPECT_THROW(energy(this->exec, SiteDependentUniaxialAnisotropy(1, axes), spins),
-                 std::invalid_argument);
-    EXPECT_THROW(energy(this->exec, LandauLifshitz(EffectiveField<>(), ones_but(1)), spins),
-                 std::invalid_argument);
-    EXPECT_THROW(magnetization(this->exec, spins, ones_but(1)), std::invalid_argument);
-  }
 }
 
 }  // namespace

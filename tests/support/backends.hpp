@@ -117,4 +117,10 @@ inline Vec3<double> at(std::vector<double> const& numbers, std::int64_t site) {
   return {numbers[3 * site], numbers[3 * site + 1], numbers[3 * site + 2]};
 }
 
+inline void expect_near(Vec3<double> const& found, Vec3<double> const& expected, double bound) {
+  EXPECT_NEAR(found.x, expected.x, bound);
+  EXPECT_NEAR(found.y, expected.y, bound);
+  EXPECT_NEAR(found.z, expected.z, bound);
+}
+
 }  // namespace cayspin::test

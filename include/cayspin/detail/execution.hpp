@@ -14,6 +14,14 @@
 #define CAYSPIN_DETAIL_NOINLINE
 #endif
 
+// A member without an address of its own. The device code of nvcc 13.0 takes what holds one for
+// larger than its host code does, and finds nothing in its place: there it has an address.
+#if defined(KOKKOS_ENABLE_CUDA)
+#define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS
+#else
+#define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS [[no_unique_address]]
+#endif
+
 namespace cayspin::inline v0_1::detail {
 
 /// Host spaces run over rows with packs; the threads of device spaces take single sites.

@@ -5,6 +5,7 @@
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -171,7 +172,7 @@ FieldOfMoments(Lattice, Field, std::vector<double>, std::vector<double> = {})
 
 /// A uniform applied field on the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
-class ZeemanOfMoments {
+class ZeemanOfMoments : public detail::PreparedOnce {
  public:
   static constexpr bool is_local = true;
 
@@ -183,10 +184,6 @@ class ZeemanOfMoments {
   template <class Exec, class Spins>
   detail::AppliedToMoments prepare(Exec const&, Spins const&, double) const {
     return {applied_, moments_.numbers()};
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  private:

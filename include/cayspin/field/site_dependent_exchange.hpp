@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/field/coefficient.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
@@ -105,7 +106,7 @@ struct ExchangeOfSites {
 /// H_n = sum over neighbours of A_nq (m_q - m_n) / spacing^2,
 /// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2.
 template <class Real, class MemorySpace>
-class SiteDependentExchange {
+class SiteDependentExchange : public detail::PreparedOnce {
   using Prepared = detail::ExchangeOfSites<Real>;
 
  public:
@@ -134,11 +135,6 @@ class SiteDependentExchange {
       if (lattice.shape[axis] > 1)
         prepared.inverse_square[axis] = 1 / (lattice.spacing[axis] * lattice.spacing[axis]);
     return prepared;
-  }
-
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  private:

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cayspin/field/coefficient.hpp>
-#include <cayspin/field/uniaxial_anisotropy.hpp>
+#include <cayspin/optional_members.hpp>
+#include <cayspin/stencil.hpp>
 
 #include <limits>
 #include <stdexcept>
@@ -57,7 +58,7 @@ struct UniaxialAnisotropyOfSites {
 /// Constant is double or a ScalarField, Axis a Vec3<double> or a SiteField of three components;
 /// only what differs takes memory.
 template <class Constant, class Axis>
-class SiteDependentUniaxialAnisotropy {
+class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
   static constexpr char const* name = "cayspin::SiteDependentUniaxialAnisotropy";
 
  public:
@@ -92,11 +93,6 @@ class SiteDependentUniaxialAnisotropy {
     auto const axis = detail::array_of(axis_);
     return detail::UniaxialAnisotropyOfSites<std::remove_const_t<decltype(constant)>,
                                              std::remove_const_t<decltype(axis)>>{constant, axis};
-  }
-
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  private:
