@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Sums, uniform states, precision of the energy, and what terms refuse.
+// Sums, precision of the energy, and what terms refuse.
 #include "../support/wrong_call.hpp"
 #include "terms.hpp"
 
@@ -10,10 +10,7 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Fields : public ::testing::Test {
- protected:
-  typename Backend::Exec exec;
-};
+using Fields = OnBackend<Backend>;
 TYPED_TEST_SUITE(Fields, Backends, BackendName);
 
 TYPED_TEST(Fields, ASumHasTheTermsFields) {
@@ -38,21 +35,6 @@ TYPED_TEST(Fields, NoTermsNoField) {
       spins_of<typename TypeParam::Spins>(Lattice::chain(5), random_directions(5, 2));
   for (double const h : evaluated(this->exec, EffectiveField<>(), spins)) EXPECT_EQ(h, 0);
   EXPECT_EQ(energy(this->exec, EffectiveField<>(), spins).value, 0);
-}
-
-// Exactly: a uniform state must stay at rest, for any numbers and spacings.
-TYPED_TEST(Fields, UniformStatesHaveNoExchange) {
-  for (Boundary const boundary : {Boundary::open, Boundary::periodic})
-    for (unsigned seed = 0; seed < 5; ++seed) {
-      auto lattice = Lattice::cubic(9, 2, 3, 0.3, boundary);
-      auto const m = random_directions(1, seed);
-      std::vector<double> numbers;
-      for (std::int64_t site = 0; site < lattice.sites(); ++site)
-        numbers.insert(numbers.end(), m.begin(), m.end());
-      auto const spins = spins_of<typename TypeParam::Spins>(lattice, numbers);
-      for (double const h : evaluated(this->exec, Exchange(lattice, 1.7), spins)) EXPECT_EQ(h, 0);
-      EXPECT_EQ(energy(this->exec, Exchange(lattice, 1.7), spins).value, 0);
-    }
 }
 
 /// What steppers that need A x m alone ask a field for.

@@ -11,10 +11,7 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Scalars : public ::testing::Test {
- protected:
-  typename Backend::Exec exec;
-};
+using Scalars = OnBackend<Backend>;
 TYPED_TEST_SUITE(Scalars, Backends, BackendName);
 
 // Lengths from 0.5 to 1.5, signs of all kinds.

@@ -75,7 +75,7 @@ TEST(WrongCallsOfSums, SpinsOfOthers) {
               SiteDependentUniaxialAnisotropy(1, Vectors(Spins("axes", own))));
       refuses("FieldWithVacancies", FieldWithVacancies(EffectiveField(Zeeman()), numbers));
       generator_refuses("Exchange", generator_on(own));
-      LandauLifshitz const damped(EffectiveField(Zeeman()), numbers);
+      LandauLifshitz const damped(EffectiveField{Zeeman()}, numbers);
       generator_refuses("LandauLifshitz", damped);
       generator_refuses("LandauLifshitz", orthogonal(damped));
       generator_refuses("RigidBodyEnsemble", RigidBodyEnsemble(Tensors("tensors", own)));

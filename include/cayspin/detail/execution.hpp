@@ -3,10 +3,12 @@
 
 #include <Kokkos_Core.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #if defined(__GNUC__)
 #define CAYSPIN_DETAIL_NOINLINE [[gnu::noinline]]
@@ -101,6 +103,17 @@ void for_each_task(Exec const& exec, std::string const& label, std::int64_t coun
     run_tasks(exec, label, count, sites, HostTask::of(body));
   else
     Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), body);
+}
+
+/// The elements in a memory space; waits.
+template <class MemorySpace, class Element>
+Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
+                                             std::vector<Element> const& elements) {
+  Kokkos::View<Element*, MemorySpace> table(Kokkos::view_alloc(Kokkos::WithoutInitializing, label),
+                                            elements.size());
+  Kokkos::deep_copy(table, Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                               elements.data(), elements.size()));
+  return table;
 }
 
 template <class Exec, class MemorySpace>

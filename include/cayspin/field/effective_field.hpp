@@ -23,15 +23,14 @@ namespace cayspin::inline v0_1 {
 template <class... Terms>
 class EffectiveField;
 
+/// No terms. What it does not say is that of a field without the spins.
 template <>
 class EffectiveField<> : public Forwarding<EffectiveField<>> {
  public:
-  static constexpr int energy_terms = 0;
+  static constexpr int degree = 1, energy_terms = 0, row_fields = 0;
 
-  static constexpr int row_fields = 0;
   template <class Real>
   void begin_row(detail::Row const&, std::int32_t, std::int32_t, detail::RowFields<Real> const&) {}
-
   template <class Make>
   EffectiveField with_parts(Make const&) const {
     return {};
@@ -45,23 +44,7 @@ class EffectiveField<> : public Forwarding<EffectiveField<>> {
     return zero<ValueOf<Stencil>>();
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const&) const {
-    return zero<ValueOf<Stencil>>();
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const&) const {
-    return zero<ValueOf<Stencil>>();
-  }
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&, Stencil const&) const {
-    return zero<Value>();
-  }
-  template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
-    return ValueOf<Stencil>(0);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const&) const {
     return ValueOf<Stencil>(0);
   }
   template <class Stencil, class Value>
@@ -119,11 +102,11 @@ class EffectiveField<First, Rest...>
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     if constexpr (detail::is_local<First>)
-      return rest_.neighbor_field(stencil);
+      return detail::neighbor_field(rest_, stencil);
     else if constexpr (EffectiveField<Rest...>::is_local)
       return detail::neighbor_field(first_, stencil);
     else
-      return detail::neighbor_field(first_, stencil) + rest_.neighbor_field(stencil);
+      return detail::neighbor_field(first_, stencil) + detail::neighbor_field(rest_, stencil);
   }
 
   /// H of what prepare_local returned.
@@ -145,14 +128,14 @@ class EffectiveField<First, Rest...>
   /// The linear part of H, applied to the stencil's array; every term has to be affine.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
-    return detail::linear_field(first_, stencil) + rest_.linear_field(stencil);
+    return detail::linear_field(first_, stencil) + detail::linear_field(rest_, stencil);
   }
 
   /// The derivative of H at a spin m, along the rates of the stencil's array.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
                                                      Stencil const& rates) const {
-    return detail::field_rate(first_, m, rates) + rest_.field_rate(m, rates);
+    return detail::field_rate(first_, m, rates) + detail::field_rate(rest_, m, rates);
   }
 
   template <class Stencil>
@@ -164,7 +147,7 @@ class EffectiveField<First, Rest...>
   /// Sum of |energy density| over the terms: what round-off in the energy is proportional to.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
-    return Kokkos::abs(first_.energy_density(stencil)) + rest_.energy_magnitude(stencil);
+    return Kokkos::abs(first_.energy_density(stencil)) + detail::energy_magnitude(rest_, stencil);
   }
 
   /// The energy density of each term, in their order.

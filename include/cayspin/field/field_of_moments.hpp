@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/forwarding.hpp>
@@ -38,7 +39,7 @@ class CellNumbers {
  public:
   /// Throws std::invalid_argument unless there is a positive number for each site of a cell.
   CellNumbers(char const* who, Lattice const& lattice, std::vector<double> const& numbers)
-      : view_(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(who)), numbers.size()) {
+      : view_(table_of<MemorySpace>(who, numbers)) {
     require_whole(who, lattice);
     if (static_cast<std::int64_t>(numbers.size()) != lattice.cell_sites)
       throw std::invalid_argument(std::string(who) +
@@ -46,9 +47,6 @@ class CellNumbers {
     for (double const number : numbers)
       if (!(number > 0) || !std::isfinite(number))
         throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
-    Kokkos::deep_copy(view_,
-                      Kokkos::View<double const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                          numbers.data(), numbers.size()));
   }
 
   NumbersOfCell numbers() const { return {view_.data(), static_cast<std::int32_t>(view_.size())}; }
