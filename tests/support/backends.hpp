@@ -73,6 +73,14 @@ struct BackendName {
   }
 };
 
+/// Typed tests on a backend.
+template <class Backend>
+struct OnBackend : ::testing::Test {
+  using Real = typename Backend::Real;
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec exec;
+};
+
 using Precisions = ::testing::Types<float, double>;
 
 struct PrecisionName {
