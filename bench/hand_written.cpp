@@ -43,27 +43,26 @@ template <class Real, class Body>
 void for_each(Cube<Real> const& cube, Numbers<Real> const v, Body body) {
   std::size_t const row = static_cast<std::size_t>(cube.n), plane = row * row;
   int const n = cube.n;
-#pragma omp parallel for collapse(2) schedule(static)
+#pragma omp parallel for collapse(2) schedule(static) firstprivate(body)
   for (int z = 0; z < n; ++z)
     for (int y = 0; y < n; ++y) {
       std::size_t const o = static_cast<std::size_t>(z) * plane + static_cast<std::size_t>(y) * row;
       std::size_t const down = y > 0 ? o - row : o, up = y + 1 < n ? o + row : o;
       std::size_t const front = z > 0 ? o - plane : o, back = z + 1 < n ? o + plane : o;
-      auto const at = [&](std::size_t x, std::size_t left, std::size_t right) {
-        auto const exchange = [&](Real const* c) {
-          Real const sum = c[o + left] + c[o + right] + c[down + x] + c[up + x] + c[front + x] +
-                           c[back + x] - 6 * c[o + x];
-          return cube.exchange * sum;
+      auto const at = [=, c = cube](std::size_t x, std::size_t left, std::size_t right) {
+        auto const beside = [=](Real const* m) {
+          return m[left] + m[right] + m[down + x] + m[up + x] + m[front + x] + m[back + x] -
+                 6 * m[o + x];
         };
         Vector<Real> const m{v.x[o + x], v.y[o + x], v.z[o + x]};
-        body(o + x, rate(cube.damping, m,
-                         {exchange(v.x), exchange(v.y),
-                          exchange(v.z) + cube.anisotropy * m.z + cube.applied}));
+        body(o + x, rate(c.damping, m,
+                         {c.exchange * beside(v.x), c.exchange * beside(v.y),
+                          c.exchange * beside(v.z) + c.anisotropy * m.z + c.applied}));
       };
-      at(0, 0, 1);
+      at(0, o, o + 1);
 #pragma GCC ivdep
-      for (std::size_t x = 1; x < row - 1; ++x) at(x, x - 1, x + 1);
-      at(row - 1, row - 2, row - 1);
+      for (std::size_t x = 1; x < row - 1; ++x) at(x, o + x - 1, o + x + 1);
+      at(row - 1, o + row - 2, o + row - 1);
     }
 }
 

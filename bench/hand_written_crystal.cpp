@@ -19,7 +19,7 @@ template <bool SecondSite, class Real, bool SecondShell, class Body>
 HAND_WRITTEN_INLINE void for_row(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const& v,
                                  RowsBeside const& rows, Body const& body) {
   auto const n = static_cast<std::size_t>(bcc.n);
-  auto const at = [&](std::size_t x, std::size_t left, std::size_t right) {
+  auto const at = [=, bcc = bcc](std::size_t x, std::size_t left, std::size_t right) {
     Vector<Real> first{}, second{};
     for (std::size_t const row : rows.other) {
       add(v, row + x, first);
@@ -47,7 +47,7 @@ void for_each(Bcc<Real, SecondShell> const& bcc, Numbers<Real> const v, Body bod
   auto const row_at = [n](std::size_t site, std::size_t y, std::size_t z) {
     return ((2 * (z % n) + site) * n + y % n) * n;
   };
-#pragma omp parallel for collapse(2) schedule(static)
+#pragma omp parallel for collapse(2) schedule(static) firstprivate(body)
   for (std::size_t plane = 0; plane < 2 * n; ++plane)
     for (std::size_t y = 0; y < n; ++y) {
       std::size_t const z = plane / 2, site = plane % 2;
