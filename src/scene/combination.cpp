@@ -2,6 +2,7 @@
 #include "sections.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -35,11 +36,10 @@ void check_energy_control(Scene const& scene) {
 }
 
 std::string compensated_methods() {
-  std::string list;
+  std::vector<std::string_view> list;
   for (auto const* const method : methods())
-    if (method->compensated)
-      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", method->word);
-  return list;
+    if (method->compensated) list.push_back(method->word);
+  return fmt::format("\"{}\"", fmt::join(list, "\", \""));
 }
 
 void check_compensation(Scene const& scene) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
 
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
@@ -13,12 +12,10 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-constexpr Word<Crystal (*)()> crystals[] = {{"bcc", Crystal::bcc},
-                                            {"fcc", Crystal::fcc},
-                                            {"hcp", Crystal::hcp},
-                                            {"honeycomb", Crystal::honeycomb},
-                                            {"kagome", Crystal::kagome},
-                                            {"pyrochlore", Crystal::pyrochlore}};
+constexpr Word<Crystal (*)()> crystals[] = {
+    {"bcc", Crystal::bcc},       {"fcc", Crystal::fcc},
+    {"hcp", Crystal::hcp},       {"honeycomb", Crystal::honeycomb},
+    {"kagome", Crystal::kagome}, {"pyrochlore", Crystal::pyrochlore}};
 
 // A unit-cell file says what the cell is, where the scene does not.
 std::optional<Crystal> crystal_of_couplings(Table const& root) {
@@ -39,8 +36,7 @@ std::optional<Crystal> crystal_of_couplings(Table const& root) {
 
 void read_cell(Item const& item, Lattice& lattice) {
   constexpr std::string_view accepted = "three vectors of three numbers that span a volume";
-  auto const vectors = entries(item, 3, 3, accepted);
-  for (std::size_t i = 0; i < 3; ++i) lattice.cell[i] = triple(vectors[i]);
+  lattice.cell = three(item, accepted, triple);
   if (!(crystal(lattice).fullness() > 1e-12)) item.fail("the vectors span no volume", accepted);
 }
 
@@ -100,14 +96,14 @@ void check_crystal(Scene const& scene) {
   };
   bool const si = scene.units.si;
   refuse_if(field.exchange.has_value(), si ? "material.J" : "field.exchange",
-         "field.couplings with J");
+            "field.couplings with J");
   refuse_if(field.dmi || field.bulk_dmi,
-         !si         ? "field.dmi"
-         : field.dmi ? "material.D"
-                     : "material.D_bulk",
-         "field.couplings with D");
+            !si         ? "field.dmi"
+            : field.dmi ? "material.D"
+                        : "material.D_bulk",
+            "field.couplings with D");
   refuse_if(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
-         "no such key");
+            "no such key");
   refuse_if(field.demag.has_value(), "field.demag", "no such key");
   refuse_if(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
 }

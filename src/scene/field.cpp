@@ -141,9 +141,7 @@ void read_applied(Item const& item, Field& field) {
       field.applied_in_turn.push_back(triple(entry));
     return;
   }
-  auto const three = entries(item, 3, 3, "three numbers or expressions in t");
-  field.applied.emplace();
-  std::ranges::transform(three, field.applied->begin(), component_in_time);
+  field.applied = three(item, "three numbers or expressions in t", component_in_time);
 }
 
 // Whether the scene's one word stands there.
@@ -162,9 +160,8 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   slab.average_layer = option(table, "average", "layer");
   slab.on_host = option(table, "where", "host");
   if (slab.dear && !slab.average_layer && !slab.on_host)
-    table.find("dear")->fail(
-        "site by site the field is of each spin alone, and cheap",
-        "average = \"layer\" or where = \"host\" beside it, or no such key");
+    table.find("dear")->fail("site by site the field is of each spin alone, and cheap",
+                             "average = \"layer\" or where = \"host\" beside it, or no such key");
   if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2)
     table.find("normal")->fail("average = \"layer\" needs a normal along an axis",
                                "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");
@@ -181,13 +178,12 @@ std::optional<Demagnetization> read_demag(Item const& item, Scene& scene) {
   if (!item.node->is_table()) item.wrong_type(accepted);
   auto demag = read_term<Demagnetization>(item, scene);
   if (auto const images = Table(item, scene).find("periodic_images")) {
-    constexpr std::string_view three = "three numbers of images, 0 to 1000";
-    auto const of_axes = entries(*images, 3, 3, three);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      auto const count = integer(of_axes[axis], {three, 0});
-      if (count > 1000) of_axes[axis].fail(fmt::format("{} images are too many", count), three);
-      demag.periodic_images[axis] = static_cast<int>(count);
-    }
+    constexpr std::string_view of_images = "three numbers of images, 0 to 1000";
+    demag.periodic_images = three(*images, of_images, [&](Item const& each) {
+      auto const count = integer(each, {of_images, 0});
+      if (count > 1000) each.fail(fmt::format("{} images are too many", count), of_images);
+      return static_cast<int>(count);
+    });
   }
   return demag;
 }
@@ -206,25 +202,19 @@ void refuse_reduced_keys(Table const& table) {
 
 Field read_field(Table const& root, SystemKind kind) {
   Field field;
-  auto const found = root.find("field");
+  auto const found = table_of_spins(root, "field", kind);
   if (!found) return field;
-  if (kind == SystemKind::rigid_body) {
-    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
-  }
-  Table const table(*found, root.scene());
+  auto const& table = *found;
+  auto& scene = root.scene();
   table.accept_only(field_keys());
-  if (root.scene().units.si) refuse_reduced_keys(table);
+  if (scene.units.si) refuse_reduced_keys(table);
   read_lattice_terms(table, field);
-  if (auto const item = table.find("couplings")) read_couplings(*item, root.scene(), field);
-  if (auto const item = table.find("anisotropy")) {
-    read_anisotropies(*item, root.scene(), field);
-  }
+  if (auto const item = table.find("couplings")) read_couplings(*item, scene, field);
+  if (auto const item = table.find("anisotropy")) read_anisotropies(*item, scene, field);
   if (auto const item = table.find("applied")) read_applied(*item, field);
-  if (auto const item = table.find("slab_demag")) {
-    field.slab_demag = read_slab_demag(*item, root.scene());
-  }
+  if (auto const item = table.find("slab_demag")) field.slab_demag = read_slab_demag(*item, scene);
   if (auto const item = table.find("demag")) {
-    field.demag = read_demag(*item, root.scene());
+    field.demag = read_demag(*item, scene);
     if (field.demag && field.slab_demag)
       item->fail("is the whole demagnetising field, and slab_demag a part of it", "one of the two");
   }

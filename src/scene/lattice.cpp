@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
 #include "sections.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +62,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     constexpr std::string_view cell = "the size of a cell in m: one number, or three";
     auto const item = table.required("spacing", cell);
     if (item.node->is_array())
-      std::ranges::transform(entries(item, 3, 3, cell), lattice.spacing.begin(), positive_number);
+      lattice.spacing = three(item, cell, positive_number);
     else
       lattice.spacing.fill(positive_number(item));
   } else if (auto const item = table.find("spacing")) {

@@ -140,12 +140,14 @@ void check_si(Scene const& scene) {
     if (scene.places.contains(key)) refuse(scene, key, wrong, accepted);
   };
   bool const atomistic = scene.material->atomistic;
-  refuse_if_typed("lattice.moments", "belongs to reduced units",
-         atomistic ? "material.mu_s, one number or one for each site of the cell" : "material.Ms");
+  refuse_if_typed(
+      "lattice.moments", "belongs to reduced units",
+      atomistic ? "material.mu_s, one number or one for each site of the cell" : "material.Ms");
   if (!atomistic)
     for (auto const* const key :
          {"lattice.crystal", "lattice.cell", "lattice.basis", "field.couplings"})
-      refuse_if_typed(key, "is of atoms, and material.Ms of a continuum", "material.mu_s, or no such key");
+      refuse_if_typed(key, "is of atoms, and material.Ms of a continuum",
+                      "material.mu_s, or no such key");
   auto const& moments = scene.material->moments;
   if (std::ranges::adjacent_find(moments, std::not_equal_to<>()) != moments.end())
     for (auto const* const key : {"field.slab_demag", "field.demag"})

@@ -197,8 +197,7 @@ std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
 }
 
 Triple triple(Item const& item) {
-  auto const three = entries(item, 3, 3, "three numbers");
-  return {number(three[0]), number(three[1]), number(three[2])};
+  return three(item, "three numbers", [](Item const& each) { return number(each); });
 }
 
 Triple direction(Item const& item) {

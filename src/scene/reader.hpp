@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -75,6 +75,12 @@ AppliedComponent component_in_time(Item const& item);
 /// The entries of an array of `least` to `most` entries.
 std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
                           std::string_view accepted);
+/// Three entries, each of them read by `read`.
+template <class Read>
+auto three(Item const& item, std::string_view accepted, Read const& read) {
+  auto const each = entries(item, 3, 3, accepted);
+  return std::array{read(each[0]), read(each[1]), read(each[2])};
+}
 Triple triple(Item const& item);
 /// Three numbers, normalised; a zero vector is refused.
 Triple direction(Item const& item);

@@ -26,9 +26,9 @@ void read_material(Table const& root, Scene& scene);
 void check_si(Scene const& scene);
 /// Turns the scene, of which all sections have been read, into reduced units.
 void convert_to_reduced(Scene& scene);
-/// A formula in t, with t in units of `time` and the result in units of `field`.
-std::string scaled_expression(std::string_view text, double time, double field);
 
+/// A table that rigid bodies do not have, where it is typed.
+std::optional<Table> table_of_spins(Table const& root, std::string_view name, SystemKind kind);
 System read_system(Table const& root);
 /// Where spins are, and where they do not move: after the lattice.
 void read_occupied(Table const& root, Scene& scene);
@@ -36,6 +36,9 @@ void read_occupied(Table const& root, Scene& scene);
 void read_dampings(Table const& root, Scene& scene);
 /// A rigid body takes neither spacing nor boundary, and one extent.
 Lattice read_lattice(Table const& root, SystemKind kind);
+/// The keys of [lattice] that say what is in a cell. Where the cell is that of a unit-cell file,
+/// this is read.
+void read_crystal(Table const& root, Table const& lattice_table, Lattice& lattice);
 /// After the lattice, which the scene has by then.
 Field read_field(Table const& root, SystemKind kind);
 void read_couplings(Item const& item, Scene& scene, Field& field);

@@ -44,6 +44,14 @@ void refuse_key(Table const& table, std::string_view name, std::string_view kind
 
 }  // namespace
 
+std::optional<Table> table_of_spins(Table const& root, std::string_view name, SystemKind kind) {
+  auto const found = root.find(name);
+  if (!found) return std::nullopt;
+  if (kind == SystemKind::rigid_body)
+    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
+  return Table(*found, root.scene());
+}
+
 System read_system(Table const& root) {
   auto const table = root.table("system", "a table [system]");
   table.accept_only({"kind", "damping", "precession", "inertia"});

@@ -6,14 +6,11 @@
 namespace cayspin::inline v0_1::io::detail {
 
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind) {
-  auto const item = root.find("thermal");
-  if (!item) return std::nullopt;
-  if (kind == SystemKind::rigid_body)
-    item->fail("has no meaning for kind = \"rigid_body\"", "no such table");
-  Table const table(*item, root.scene());
-  table.accept_only(names_of_keys<Thermal>());
+  auto const table = table_of_spins(root, "thermal", kind);
+  if (!table) return std::nullopt;
+  table->accept_only(names_of_keys<Thermal>());
   Thermal thermal;
-  read_keys(table, thermal);
+  read_keys(*table, thermal);
   return thermal;
 }
 
@@ -22,7 +19,8 @@ void check_thermal(Scene const& scene) {
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   auto const& method = *integrator.method;
   if (!(system.damping > 0))
-    refuse(scene, "thermal.temperature", "a temperature needs damping: it is what spins take heat by",
+    refuse(scene, "thermal.temperature",
+           "a temperature needs damping: it is what spins take heat by",
            "a damping > 0, or temperature = 0");
   if (!method.has_equal_steps() || !method.keeps_length)
     refuse(scene, "integrator.method",
@@ -30,10 +28,11 @@ void check_thermal(Scene const& scene) {
                        method.keeps_length ? "chooses its steps" : "does not keep |m| = 1"),
            "a method with steps of dt, such as \"heun\", \"rkmk4\", \"red_black2\"");
   if (integrator.compensated)
-    refuse(scene, "integrator.compensated", "does not go with a temperature, whose noise is rounded, too",
-           "no such key");
+    refuse(scene, "integrator.compensated",
+           "does not go with a temperature, whose noise is rounded, too", "no such key");
   if (integrator.until_torque)
-    refuse(scene, "integrator.until_torque", "spins at a temperature do not come to rest", "no such key");
+    refuse(scene, "integrator.until_torque", "spins at a temperature do not come to rest",
+           "no such key");
   double const half =
       largest_noise(scene) * system.damping * scene.thermal->temperature * integrator.dt;
   if (!(half <= 1))

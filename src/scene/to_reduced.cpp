@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // From SI to reduced units.
-#include "crystal.hpp"
 #include "sections.hpp"
 
 #include <cayspin/units.hpp>
@@ -9,9 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 namespace cayspin::inline v0_1::io::detail {
 namespace {
+
+// A formula in t, with t in units of `time` and the result in units of `field`.
+std::string scaled_expression(std::string const& text, double time, double field) {
+  static std::regex const variable(R"(\bt\b)");
+  return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
+                     field);
+}
 
 // Of numbers that differ from site to site, the sites take their own part.
 units::Damping damping_of(Material const& material) {

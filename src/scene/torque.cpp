@@ -13,13 +13,6 @@ namespace {
 
 constexpr std::string_view three_components = "three numbers or expressions in t";
 
-std::array<AppliedComponent, 3> read_components(Item const& item) {
-  std::array<AppliedComponent, 3> read;
-  std::ranges::transform(entries(item, 3, 3, three_components), read.begin(),
-                         component_in_time);
-  return read;
-}
-
 AppliedComponent times(AppliedComponent const& component, double factor) {
   if (auto const* const number = std::get_if<double>(&component))
     return factor * *number + 0.0;  // no -0
@@ -55,11 +48,12 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   if (auto const current = find_current(table, "velocity", {"polarization"})) {
     auto const& [Ms, gamma] = std::tie(scene.material->moment, scene.material->gamma);
     auto const polarization = number(table.required("polarization", "a number"));
-    read.velocity = read_components(*current);
+    read.velocity = three(*current, three_components, component_in_time);
     for (auto& component : read.velocity)
       component = times(component, units::drift_velocity(1, polarization, Ms, gamma));
   } else {
-    read.velocity = read_components(table.required("velocity", three_components));
+    auto const velocity = table.required("velocity", three_components);
+    read.velocity = three(velocity, three_components, component_in_time);
   }
   return read;
 }
@@ -86,14 +80,11 @@ Slonczewski read_slonczewski(Item const& item, Scene& scene) {
 
 Torque read_torque(Table const& root, SystemKind kind) {
   Torque torque;
-  auto const found = root.find("torque");
-  if (!found) return torque;
-  if (kind == SystemKind::rigid_body)
-    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
-  Table const table(*found, root.scene());
-  table.accept_only({"zhang_li", "slonczewski"});
-  auto const zhang_li = table.find("zhang_li"), slonczewski = table.find("slonczewski");
-  if (!zhang_li && !slonczewski) found->fail("is empty", "zhang_li, slonczewski");
+  auto const table = table_of_spins(root, "torque", kind);
+  if (!table) return torque;
+  table->accept_only({"zhang_li", "slonczewski"});
+  auto const zhang_li = table->find("zhang_li"), slonczewski = table->find("slonczewski");
+  if (!zhang_li && !slonczewski) table->item().fail("is empty", "zhang_li, slonczewski");
   if (zhang_li) torque.zhang_li = read_zhang_li(*zhang_li, root.scene());
   if (slonczewski) torque.slonczewski = read_slonczewski(*slonczewski, root.scene());
   return torque;

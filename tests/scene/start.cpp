@@ -64,11 +64,13 @@ TEST(Start, ExpressionThatFailsNamesTheSiteAndTheLine) {
   };
   std::string const place = "scene.toml:19: initial.expression: ";
   EXPECT_EQ(refused("['i-2', 'j-1', 'k']"),
-            place + "the spin of site (2, 1, 0) is (0, 0, 0); accepted: a finite vector that is "
-                    "not zero");
+            place +
+                "the spin of site (2, 1, 0) is (0, 0, 0); accepted: a finite vector that is "
+                "not zero");
   EXPECT_EQ(refused("['1/(i-1)', '1', '1']"),
-            place + "expression \"1/(i-1)\" is not finite at x = 0.375, y = 0.16666666666666666, "
-                    "z = 0.25, i = 1, j = 0, k = 0");
+            place +
+                "expression \"1/(i-1)\" is not finite at x = 0.375, y = 0.16666666666666666, "
+                "z = 0.25, i = 1, j = 0, k = 0");
 }
 
 TEST(Start, RandomIsReproducibleAndFollowsTheSeed) {

@@ -80,7 +80,7 @@ field.anisotropy = [] | : has 0 entries
 field.applied = [0.05, 0] | : has 2 entries | three
 field.applied = [0.05, '0.1*cos(x)', 0] | [1] | accepted: a formula in t
 field.applied = [0.05, '0.1*cos(', 0] | [1] | expression "0.1*cos("
-field.applied = [0.05, '1/t', 0] | [1] | not finite at t = 0
+field.applied = [0.05, '1/t', 0] | [1] | not finite at t = 0 | nothing is accepted
 field.applied = [0.05, true, 0] | [1]: true | a string with an expression in t
 field.slab_demag = { normal = [0, 0, 0], strength = 2 } | .normal: is a zero vector
 field.slab_demag = { strength = 2 } | .normal: is missing
@@ -144,7 +144,8 @@ integrator.end = 1e-12 | : 1e-12 is less than a step of dt = 0.01
 integrator.end = 1e300 | : | more than 2^53 steps
 integrator.end =; integrator.steps = -1 | : -1 | >= 0
 integrator.end =; integrator.steps = 3.0 | : 3.0 | a whole number
-integrator.end =; integrator.steps = 9223372036854775807 | : | more than 2^53 steps
+integrator.end =; integrator.steps = 9223372036854775807
+  | : | more than 2^53 steps | nothing is accepted
 integrator.end =; integrator.steps = 1000000000; integrator.dt = 1e300
   | : the last time is not finite | fewer steps
 integrator.energy_guard = 'no' | : | true, false

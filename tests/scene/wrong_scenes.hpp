@@ -100,7 +100,8 @@ inline std::vector<std::string> rows_of(std::string_view table) {
 
 /// Each row is "key = VALUE; .. | what the message begins with after its place | what it holds",
 /// and makes the scene wrong. The message's key goes on from the last typed one where it begins
-/// with one of ".[:". It is one line, and names the line of the key.
+/// with one of ".[:". It is one line, names the line of the key, and says what is accepted, unless
+/// a fourth column says that it does not.
 inline void expect_refused(std::string_view scene, std::string_view table) {
   for (auto const& row : rows_of(table)) {
     SCOPED_TRACE(row);
@@ -118,6 +119,7 @@ inline void expect_refused(std::string_view scene, std::string_view table) {
     auto const message = refusal_of(text.text());
     auto const begin = "scene.toml:" + std::to_string(line) + ": " + says;
     EXPECT_TRUE(message.starts_with(begin)) << message << "\nexpected: " << begin;
+    EXPECT_EQ(message.find("; accepted: ") != message.npos, columns.size() < 4) << message;
     if (columns.size() > 2) expect_holds(message, trimmed(columns[2]));
   }
 }

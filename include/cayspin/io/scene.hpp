@@ -138,9 +138,8 @@ struct Thermal {
   std::int64_t seed = 0;
 
   static constexpr auto keys() {
-    return std::to_array<Key<Thermal>>(
-        {{"temperature", &Thermal::temperature, not_negative, true},
-         {"seed", &Thermal::seed, {"a whole number >= 0", 0}}});
+    return std::to_array<Key<Thermal>>({{"temperature", &Thermal::temperature, not_negative, true},
+                                        {"seed", &Thermal::seed, {"a whole number >= 0", 0}}});
   }
 };
 
