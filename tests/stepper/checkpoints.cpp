@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A stepper that gets back what another one remembered goes on with its bits and counts, and a run
 // that continues has the bits of one run.
-#include "../support/figures.hpp"
-#include "../support/landau_lifshitz.hpp"
-
-#include <cayspin/stepper/adaptive_stiff_gauss.hpp>
+#include "../order/chain.hpp"
 
 #include <tuple>
 
@@ -15,12 +12,7 @@ namespace {
 
 using isotropy::FiniteDifferenceBackward;
 
-Slab const slab{.lattice = Lattice::chain(8),
-                .exchange = 1,
-                .anisotropy = 0.8,
-                .axis = {1, 2, 3},
-                .applied = {0.5, -0.7, 0.9},
-                .damping = 0.2};
+Slab const slab = coupled_chain(0.2);
 
 template <class Of>
 Of made_like(typename Of::spins_type const& spins) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps that end on the energy they began with: the order of the stepper inside, the energy to
 // round-off, for coupled spins and for rigid bodies.
-#include "../support/figures.hpp"
-#include "../support/landau_lifshitz.hpp"
+#include "../order/chain.hpp"
 
 #include <array>
 
@@ -11,12 +10,7 @@ using namespace cayspin::test;
 
 namespace {
 
-Slab const slab{.lattice = Lattice::chain(8),
-                .exchange = 1,
-                .anisotropy = 0.8,
-                .axis = {1, 2, 3},
-                .demag = 0.7,
-                .applied = {0.5, -0.7, 0.9}};
+Slab const slab = coupled_chain(0);
 RigidBody const body({1.1, 1.9, 2.0, 0.1, -0.6, 0.4});
 constexpr double end_time = 1;
 constexpr std::array ladder{40, 80, 160, 320};
