@@ -2,7 +2,6 @@
 #include "../support/wrong_call.hpp"
 
 #include <cayspin/lattice.hpp>
-#include <cayspin/spin_field.hpp>
 
 #include <limits>
 
@@ -33,11 +32,6 @@ TEST(LatticeValidate, NamesWhatIsWrong) {
                 head + "spacing along " + "xyz"[axis] + " must be positive and finite")
           << spacing;
     }
-}
-
-TEST(LatticeValidate, FieldsRefuseSuchALattice) {
-  EXPECT_THROW(SpinField<double>("spins", Lattice::chain(0)), std::invalid_argument);
-  EXPECT_THROW(SpinField<float>("spins", Lattice::chain(2, -1)), std::invalid_argument);
 }
 
 TEST(LatticeValidate, EqualWhenEveryAxisIs) {

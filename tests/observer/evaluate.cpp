@@ -101,31 +101,5 @@ TYPED_TEST(Evaluations, EnergiesOfTermsInWrappers) {
   EXPECT_TRUE(term_energies(this->exec, EffectiveField<>(), this->spins).empty());
 }
 
-// Every host space computes the same bits, on more sites than the calling thread takes.
-TYPED_TEST(Evaluations, HostSpacesAgreeToTheBit) {
-#if defined(KOKKOS_ENABLE_SERIAL)
-  if constexpr (detail::is_host_execution<typename TypeParam::Exec>) {
-    auto const large = Lattice::cubic(67, 33, 3, 0.8, Boundary::periodic);
-    auto const start =
-        spins_of<typename TypeParam::Spins>(large, random_directions(large.sites(), 9));
-    typename TypeParam::Spins const result("result", large);
-    EffectiveField const field(Exchange(large, 1.3), UniaxialAnisotropy(0.7, {1, 2, 2}));
-    LandauLifshitz const generator(field, 0.3);
-    auto const all = [&](auto const& exec) {
-      evaluate_field(exec, field, start, 0, result);
-      exec.fence();
-      auto numbers = numbers_of(result);
-      evaluate_generator(exec, generator, start, 0, result);
-      exec.fence();
-      for (double const number : numbers_of(result)) numbers.push_back(number);
-      for (Energy const& e : term_energies(exec, field, start))
-        numbers.insert(numbers.end(), {e.value, e.magnitude});
-      return numbers;
-    };
-    EXPECT_EQ(all(this->exec), all(Kokkos::Serial()));
-  }
-#endif
-}
-
 }  // namespace
 }  // namespace cayspin::test

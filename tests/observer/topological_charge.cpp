@@ -224,15 +224,5 @@ TYPED_TEST(TopologicalCharge, WrongCalls) {
   EXPECT_THROW(topological_charge(this->exec, Spins(), 0), std::invalid_argument);
 }
 
-#if defined(KOKKOS_ENABLE_SERIAL) && !defined(CAYSPIN_HOST_DEVICE)
-TEST(TopologicalChargeBits, AreThoseOfOneThread) {
-  auto const lattice = film(131, 97, Boundary::periodic, 3);
-  auto const spins = spins_of<SpinField<double, Kokkos::HostSpace>>(
-      lattice, random_directions(lattice.sites(), 5));
-  EXPECT_EQ(topological_charge(Kokkos::DefaultHostExecutionSpace(), spins),
-            topological_charge(Kokkos::Serial(), spins));
-}
-#endif
-
 }  // namespace
 }  // namespace cayspin::test

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/distant_sites.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_fields.hpp>
-#include <cayspin/detail/shifted_load.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/bonds_of_sites.hpp>
 #include <cayspin/stencil.hpp>
