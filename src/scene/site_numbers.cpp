@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "site_numbers.hpp"
 
+#include "hdf5/read_in_child.hpp"
 #include "hdf5/real_dataset.hpp"
-#include "hdf5/survives.hpp"
 #include "site_expression.hpp"
 
 #include <cayspin/io/scene.hpp>
