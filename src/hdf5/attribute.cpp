@@ -86,4 +86,13 @@ double RootAttributes::read_real(char const* name) const {
   return value;
 }
 
+void RootAttributes::require_version(char const* name, std::int64_t accepted,
+                                     char const* action) const {
+  auto const version = read_integer(name);
+  if (version != accepted)
+    throw_failure(
+        path_, action,
+        "its format is " + std::to_string(version) + "; accepted is " + std::to_string(accepted));
+}
+
 }  // namespace cayspin::inline v0_1::io

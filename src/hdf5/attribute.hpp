@@ -29,6 +29,8 @@ class RootAttributes {
   std::string read_text(char const* name) const;
   std::int64_t read_integer(char const* name) const;
   double read_real(char const* name) const;
+  /// Of the layout of the file. Any other than `accepted` throws PATH: ACTION: REASON.
+  void require_version(char const* name, std::int64_t accepted, char const* action) const;
 
  private:
   AttributeHandle open(char const* name) const;

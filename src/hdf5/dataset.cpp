@@ -55,6 +55,24 @@ DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
             path, action));
 }
 
+DatasetHandle create_dataset(hid_t group, char const* name, hid_t type, Extents const& extents,
+                             std::filesystem::path const& path, hid_t properties) {
+  auto const action = std::string("cannot write dataset ") + name;
+  auto const rank = static_cast<int>(extents.size());
+  DataspaceHandle const space(check(H5Screate_simple(rank, extents.data(), nullptr), path, action));
+  return DatasetHandle(
+      check(H5Dcreate2(group, name, type, space.get(), H5P_DEFAULT, properties, H5P_DEFAULT), path,
+            action));
+}
+
+void write_dataset(hid_t group, char const* name, hid_t type, hid_t memory_type,
+                   Extents const& extents, void const* values, std::filesystem::path const& path,
+                   hid_t properties) {
+  auto const dataset = create_dataset(group, name, type, extents, path, properties);
+  check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path,
+        std::string("cannot write dataset ") + name);
+}
+
 DatasetHandle open_dataset(hid_t group, char const* name, std::size_t rank,
                            std::filesystem::path const& path) {
   auto dataset = open_dataset(group, name, path);

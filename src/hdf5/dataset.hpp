@@ -19,6 +19,15 @@ DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
                                      std::filesystem::path const& path,
                                      std::span<hsize_t const> inner = {});
 
+/// A dataset of these extents. `properties`: H5P_DATASET_CREATE, or the default.
+DatasetHandle create_dataset(hid_t group, char const* name, hid_t type, Extents const& extents,
+                             std::filesystem::path const& path, hid_t properties = H5P_DEFAULT);
+
+/// The same, with all its values, which are of `memory_type`.
+void write_dataset(hid_t group, char const* name, hid_t type, hid_t memory_type,
+                   Extents const& extents, void const* values, std::filesystem::path const& path,
+                   hid_t properties = H5P_DEFAULT);
+
 DatasetHandle open_dataset(hid_t group, char const* name, std::filesystem::path const& path);
 
 /// The same, and an error unless the dataset has `rank` extents.

@@ -26,4 +26,14 @@ FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   throw_failure(path, action, reason);
 }
 
+GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path) {
+  return GroupHandle(check(H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path,
+                           std::string("cannot create group ") + name));
+}
+
+GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path const& path) {
+  return GroupHandle(
+      check(H5Gopen2(parent, name, H5P_DEFAULT), path, std::string("cannot open group ") + name));
+}
+
 }  // namespace cayspin::inline v0_1::io

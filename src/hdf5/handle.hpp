@@ -50,4 +50,8 @@ enum class Locking { on, off };
 /// Opens an existing file for reading, completed from its journal.
 FileHandle open_file(std::filesystem::path const& path, Locking locking = Locking::on);
 
+// A group of the file `path`.
+GroupHandle create_group(hid_t parent, char const* name, std::filesystem::path const& path);
+GroupHandle open_group(hid_t parent, char const* name, std::filesystem::path const& path);
+
 }  // namespace cayspin::inline v0_1::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "hdf5/read_in_child.hpp"
 #include "hdf5/real_dataset.hpp"
-#include "hdf5/survives.hpp"
 #include "sections.hpp"
 #include "site_numbers.hpp"
 #include "start_file.hpp"

@@ -2,7 +2,7 @@
 #include "site_numbers.hpp"
 
 #include "dataset_of_sites.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
 

@@ -2,7 +2,7 @@
 #include "start_file.hpp"
 
 #include "dataset_of_sites.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "trajectory/stored_spins.hpp"
 
 #include <cayspin/io/ovf.hpp>

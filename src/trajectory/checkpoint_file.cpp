@@ -5,7 +5,7 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "require.hpp"
@@ -64,9 +64,7 @@ class CheckpointWriter::Implementation {
     attributes.create("step", header.step);
     attributes.create("time", header.time);
     attributes.create("units", std::string(header.si ? si_units : reduced_units));
-    numbers_ =
-        GroupHandle(check(H5Gcreate2(file_.get(), "numbers", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                          path_, "cannot create group numbers"));
+    numbers_ = create_group(file_.get(), "numbers", path_);
   }
 
   void number(std::string const& name, double value) {
@@ -144,12 +142,7 @@ class CheckpointWriter::Implementation {
                                    sizeof(double), std::multiplies<>{}) +
                        checkpoint_overhead_bytes,
                    path_);
-    auto const action = "cannot write dataset " + name;
-    DataspaceHandle const space(
-        check(H5Screate_simple(4, extents_of_field_.data(), nullptr), path_, action));
-    field_ = DatasetHandle(check(H5Dcreate2(file_.get(), name.c_str(), stored_, space.get(),
-                                            H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                                 path_, action));
+    field_ = create_dataset(file_.get(), name.c_str(), stored_, extents_of_field_, path_);
   }
 
   std::filesystem::path path_;
@@ -205,11 +198,7 @@ class CheckpointReader::Implementation {
     RootAttributes const attributes(file_.get(), path_);
     if (!attributes.has(format_mark))
       throw_failure(path_, "cannot read the checkpoint", "it is not one");
-    auto const version = attributes.read_integer(format_mark);
-    if (version != checkpoint_version)
-      throw_failure(path_, "cannot read the checkpoint",
-                    "its format is " + std::to_string(version) + "; accepted is " +
-                        std::to_string(checkpoint_version));
+    attributes.require_version(format_mark, checkpoint_version, "cannot read the checkpoint");
     header_.cayspin_version = attributes.read_text("cayspin_version");
     header_.scene_text = attributes.read_text("scene");
     header_.resolved_scene = attributes.read_text("resolved_scene");
@@ -221,8 +210,7 @@ class CheckpointReader::Implementation {
     auto const extents = dataset_extents(open_dataset(file_.get(), "spins", 4, path_).get(), path_);
     for (int axis = 0; axis < 3; ++axis)
       header_.shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);
-    numbers_ = GroupHandle(
-        check(H5Gopen2(file_.get(), "numbers", H5P_DEFAULT), path_, "cannot open group numbers"));
+    numbers_ = open_group(file_.get(), "numbers", path_);
   }
 
   double number(std::string const& name) const {

@@ -2,7 +2,7 @@
 #include "format.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "scalar_series.hpp"
 #include "trajectory_reader.hpp"
 
@@ -65,8 +65,7 @@ void FollowedTrajectory::read_file() {
   // `complete` is written last: once it is there, so is all else.
   auto const info = read_header(file.get(), path_);
   read_series(file.get(), info.header.cell_sites, frames_, info.complete);
-  GroupHandle const scalars(
-      check(H5Gopen2(file.get(), "scalars", H5P_DEFAULT), path_, "cannot open group scalars"));
+  auto const scalars = open_group(file.get(), "scalars", path_);
   read_series(scalars.get(), 1, samples_, info.complete);
   header_ = info.header;
   cost_ = info.cost;

@@ -2,14 +2,15 @@
 #include "scalar_series.hpp"
 
 #include "checksum.hpp"
-#include "hdf5/dataset.hpp"
+#include "column.hpp"
 #include "hdf5/error.hpp"
 
 #include <algorithm>
-#include <array>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -17,32 +18,15 @@ namespace {
 constexpr hsize_t samples_per_chunk = 512;
 constexpr char const* sublattices_name = "sublattice_magnetization";
 
-DatasetHandle create_column(hid_t group, char const* name, hid_t type,
-                            std::filesystem::path const& path) {
-  std::array<hsize_t, 1> const chunk{samples_per_chunk};
-  return create_growing_dataset(group, name, type, chunk, PropertyHandle(), path);
-}
-
-template <class Member>
-auto column(std::vector<Sample> const& samples, Member const& member) {
-  std::vector<std::decay_t<decltype(member(samples.front()))>> values;
-  values.reserve(samples.size());
-  for (auto const& sample : samples) values.push_back(member(sample));
-  return values;
-}
-
-// The rows from `begin` to `end`; `inner` are the extents of a row.
-template <class Value>
-std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, std::int64_t end,
-                               Extents const& inner, std::filesystem::path const& path) {
-  std::vector<Value> values(static_cast<std::size_t>(end - begin));
-  if (values.empty()) return values;
-  Extents extents{values.size()};
-  extents.insert(extents.end(), inner.begin(), inner.end());
-  Extents from(extents.size(), 0);
-  from[0] = static_cast<hsize_t>(begin);
-  read_block(dataset, type, from, extents, values.data(), path);
-  return values;
+// Calls use(name, member) for each dataset with one number, or three, of each sample, in the order
+// of the file.
+template <class Use>
+void for_each_column(Use const& use) {
+  use("time", [](auto& sample) -> auto& { return sample.time; });
+  use("step", [](auto& sample) -> auto& { return sample.step; });
+  use("energy", [](auto& sample) -> auto& { return sample.scalars.energy; });
+  use("norm_defect", [](auto& sample) -> auto& { return sample.scalars.norm_defect; });
+  use("magnetization", [](auto& sample) -> auto& { return sample.scalars.magnetization; });
 }
 
 }  // namespace
@@ -50,33 +34,32 @@ std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, st
 ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path,
                                   std::int64_t cell_sites) {
   ScalarSeries series;
-  series.time_ = create_column(group, "time", H5T_IEEE_F64LE, path);
-  series.step_ = create_column(group, "step", H5T_STD_I64LE, path);
-  series.energy_ = create_column(group, "energy", H5T_IEEE_F64LE, path);
-  series.norm_defect_ = create_column(group, "norm_defect", H5T_IEEE_F64LE, path);
-  std::array<hsize_t, 2> const chunk{samples_per_chunk, 3};
-  series.magnetization_ =
-      create_growing_dataset(group, "magnetization", H5T_IEEE_F64LE, chunk, PropertyHandle(), path);
-  series.checksum_ = create_column(group, "checksum", H5T_STD_U64LE, path);
+  auto const create = [&](char const* name, hid_t type, Extents const& chunk) {
+    return create_growing_dataset(group, name, type, chunk, PropertyHandle(), path);
+  };
+  for_each_column([&](char const* name, auto const& member) {
+    using Stored = Column<MemberValue<Sample, decltype(member)>>;
+    series.columns_.push_back(create(name, Stored::type(), Stored::extents(samples_per_chunk)));
+  });
+  series.checksum_ = create("checksum", H5T_STD_U64LE, {samples_per_chunk});
   series.cell_sites_ = cell_sites;
   if (cell_sites == 1) return series;
   auto const sites = static_cast<hsize_t>(cell_sites);
-  std::array<hsize_t, 3> const of_sites{std::max<hsize_t>(1, samples_per_chunk / sites), sites, 3};
-  series.sublattices_ = create_growing_dataset(group, sublattices_name, H5T_IEEE_F64LE, of_sites,
-                                               PropertyHandle(), path);
+  series.sublattices_ = create(sublattices_name, H5T_IEEE_F64LE,
+                               {std::max<hsize_t>(1, samples_per_chunk / sites), sites, 3});
   return series;
 }
 
 ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
                                 std::int64_t cell_sites) {
   ScalarSeries series;
-  series.time_ = open_dataset(group, "time", 1, path);
-  series.step_ = open_dataset(group, "step", 1, path);
-  series.energy_ = open_dataset(group, "energy", 1, path);
-  series.norm_defect_ = open_dataset(group, "norm_defect", 1, path);
-  series.magnetization_ = open_dataset(group, "magnetization", 2, path);
-  if (dataset_extents(series.magnetization_.get(), path)[1] != 3)
-    throw_failure(path, "cannot read dataset magnetization", "its second extent is not 3");
+  for_each_column([&](char const* name, auto const& member) {
+    using Stored = Column<MemberValue<Sample, decltype(member)>>;
+    auto dataset = open_dataset(group, name, Stored::is_triple ? 2 : 1, path);
+    if (Stored::is_triple && dataset_extents(dataset.get(), path)[1] != 3)
+      throw_failure(path, std::string("cannot read dataset ") + name, "its second extent is not 3");
+    series.columns_.push_back(std::move(dataset));
+  });
   auto const has_checksums =
       check(H5Lexists(group, "checksum", H5P_DEFAULT), path, "cannot read dataset checksum");
   if (has_checksums > 0) series.checksum_ = open_dataset(group, "checksum", 1, path);
@@ -95,20 +78,16 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
 void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
                           std::uint32_t spins, std::vector<Vector> const& sublattices) {
   if (samples.empty()) return;
-  auto const times = column(samples, [](auto const& s) { return s.time; });
-  auto const steps = column(samples, [](auto const& s) { return s.step; });
-  auto const energies = column(samples, [](auto const& s) { return s.scalars.energy; });
-  auto const defects = column(samples, [](auto const& s) { return s.scalars.norm_defect; });
-  auto const means = column(samples, [](auto const& s) { return s.scalars.magnetization; });
-  auto const checksums = column(samples, [&](auto const& s) {
-    return std::uint64_t{row_checksum(s, sublattices)} << 32U | spins;
+  auto const checksums = values_of(samples, [&](Sample const& sample) {
+    return std::uint64_t{row_checksum(sample, sublattices)} << 32U | spins;
   });
   hsize_t const count = samples.size();
-  append_block(time_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, times.data(), path);
-  append_block(step_.get(), H5T_NATIVE_INT64, {size_}, {count}, steps.data(), path);
-  append_block(energy_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, energies.data(), path);
-  append_block(norm_defect_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, defects.data(), path);
-  append_block(magnetization_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {count, 3}, means.data(), path);
+  auto dataset = columns_.begin();
+  for_each_column([&](char const*, auto const& member) {
+    using Stored = Column<MemberValue<Sample, decltype(member)>>;
+    append_block((dataset++)->get(), Stored::memory_type(), Stored::begin(size_),
+                 Stored::extents(count), values_of(samples, member).data(), path);
+  });
   if (sublattices_.get() >= 0)
     append_block(sublattices_.get(), H5T_NATIVE_DOUBLE, {size_, 0, 0},
                  {count, static_cast<hsize_t>(cell_sites_), 3}, sublattices.data(), path);
@@ -117,11 +96,13 @@ void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::p
 }
 
 std::int64_t ScalarSeries::size(std::filesystem::path const& path) const {
-  auto shortest = dataset_extents(time_.get(), path)[0];
-  for (auto const* dataset :
-       {&step_, &energy_, &norm_defect_, &magnetization_, &checksum_, &sublattices_})
-    if (dataset->get() >= 0)
-      shortest = std::min(shortest, dataset_extents(dataset->get(), path)[0]);
+  hsize_t shortest = std::numeric_limits<std::int64_t>::max();
+  auto const count = [&](DatasetHandle const& dataset) {
+    if (dataset.get() >= 0) shortest = std::min(shortest, dataset_extents(dataset.get(), path)[0]);
+  };
+  std::ranges::for_each(columns_, count);
+  count(checksum_);
+  count(sublattices_);
   return static_cast<std::int64_t>(shortest);
 }
 
@@ -147,18 +128,18 @@ std::int64_t ScalarSeries::readable(std::int64_t most_torn,
 
 std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
                                        std::filesystem::path const& path) const {
-  auto const read = [&]<class Value>(DatasetHandle const& dataset, hid_t type, Extents const& inner,
-                                     Value) {
-    return read_column<Value>(dataset.get(), type, begin, end, inner, path);
-  };
-  auto const times = read(time_, H5T_NATIVE_DOUBLE, {}, double());
-  auto const steps = read(step_, H5T_NATIVE_INT64, {}, std::int64_t());
-  auto const energies = read(energy_, H5T_NATIVE_DOUBLE, {}, double());
-  auto const defects = read(norm_defect_, H5T_NATIVE_DOUBLE, {}, double());
-  auto const means = read(magnetization_, H5T_NATIVE_DOUBLE, {3}, std::array<double, 3>());
-  std::vector<Sample> samples;
-  for (std::size_t i = 0; i < times.size(); ++i)
-    samples.push_back({steps[i], times[i], {energies[i], defects[i], means[i]}});
+  std::vector<Sample> samples(static_cast<std::size_t>(end - begin));
+  if (samples.empty()) return samples;
+  auto dataset = columns_.begin();
+  for_each_column([&](char const*, auto const& member) {
+    using Value = MemberValue<Sample, decltype(member)>;
+    using Stored = Column<Value>;
+    std::vector<Value> values(samples.size());
+    read_block((dataset++)->get(), Stored::memory_type(),
+               Stored::begin(static_cast<hsize_t>(begin)), Stored::extents(samples.size()),
+               values.data(), path);
+    for (std::size_t i = 0; i < samples.size(); ++i) member(samples[i]) = values[i];
+  });
   if (!has_checksums()) return samples;
   auto const checksums = read_checksums(begin, end, path);
   auto const sublattices = read_sublattices(begin, end, path);
@@ -189,7 +170,10 @@ std::uint32_t ScalarSeries::spins_checksum(std::int64_t frame,
 
 std::vector<std::uint64_t> ScalarSeries::read_checksums(std::int64_t begin, std::int64_t end,
                                                         std::filesystem::path const& path) const {
-  return read_column<std::uint64_t>(checksum_.get(), H5T_NATIVE_UINT64, begin, end, {}, path);
+  std::vector<std::uint64_t> checksums(static_cast<std::size_t>(end - begin));
+  read_block(checksum_.get(), H5T_NATIVE_UINT64, {static_cast<hsize_t>(begin)}, {checksums.size()},
+             checksums.data(), path);
+  return checksums;
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -63,7 +63,8 @@ class ScalarSeries {
   std::vector<std::uint64_t> read_checksums(std::int64_t begin, std::int64_t end,
                                             std::filesystem::path const& path) const;
 
-  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_, checksum_, sublattices_;
+  std::vector<DatasetHandle> columns_;  // with one number, or three, of each sample
+  DatasetHandle checksum_, sublattices_;
   std::int64_t cell_sites_ = 1;
   hsize_t size_ = 0;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "column.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "stored_spins.hpp"
@@ -27,45 +28,25 @@ class Writer {
     std::vector<char const*> pointers;
     for (auto const& value : values) pointers.push_back(value.c_str());
     auto const type = text_type();
-    write(file_, name, type.get(), type.get(), extents, pointers.data());
+    write_dataset(file_, name, type.get(), type.get(), extents, pointers.data(), path_);
   }
 
   void numbers(hid_t group, char const* name, std::vector<double> const& values) {
-    write(group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()}, values.data());
+    write_dataset(group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()}, values.data(),
+                  path_);
   }
 
   /// One number, or three, of each run.
   template <class Member>
   void column(char const* name, std::vector<SweptRun> const& runs, Member const& member) {
-    using Value = std::decay_t<decltype(member(runs.front()))>;
-    std::vector<Value> values;
-    for (auto const& run : runs) values.push_back(member(run));
-    if constexpr (std::is_same_v<Value, std::int64_t>)
-      write(file_, name, H5T_STD_I64LE, H5T_NATIVE_INT64, {values.size()}, values.data());
-    else if constexpr (std::is_same_v<Value, double>)
-      numbers(file_, name, values);
-    else
-      write(file_, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size(), 3}, values.data());
+    using Stored = Column<MemberValue<SweptRun, Member>>;
+    write_dataset(file_, name, Stored::type(), Stored::memory_type(), Stored::extents(runs.size()),
+                  values_of(runs, member).data(), path_);
   }
 
-  GroupHandle group(char const* name) {
-    return GroupHandle(check(H5Gcreate2(file_, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path_,
-                             std::string("cannot create group ") + name));
-  }
+  GroupHandle group(char const* name) { return create_group(file_, name, path_); }
 
  private:
-  void write(hid_t group, char const* name, hid_t stored, hid_t given, Extents const& extents,
-             void const* values) {
-    auto const action = std::string("cannot write dataset ") + name;
-    DataspaceHandle const space(
-        check(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), path_,
-              action));
-    DatasetHandle const dataset(
-        check(H5Dcreate2(group, name, stored, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-              path_, action));
-    check(H5Dwrite(dataset.get(), given, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path_, action);
-  }
-
   hid_t file_;
   fs::path const& path_;
 };
@@ -106,15 +87,7 @@ void write_results(Writer& writer, std::vector<SweptRun> const& runs) {
   std::vector<std::string> messages;
   for (auto const& run : runs) messages.push_back(run.message);
   writer.texts("message", {messages.size()}, messages);
-  writer.column("status", runs, [](auto const& run) { return run.status; });
-  writer.column("step", runs, [](auto const& run) { return run.step; });
-  writer.column("time", runs, [](auto const& run) { return run.time; });
-  writer.column("energy", runs, [](auto const& run) { return run.scalars.energy; });
-  writer.column("norm_defect", runs, [](auto const& run) { return run.scalars.norm_defect; });
-  writer.column("magnetization", runs, [](auto const& run) { return run.scalars.magnetization; });
-  writer.column("evaluations", runs, [](auto const& run) { return run.cost.evaluations; });
-  writer.column("wall_seconds", runs, [](auto const& run) { return run.cost.wall_seconds; });
-  writer.column("step_seconds", runs, [](auto const& run) { return run.cost.step_seconds; });
+  for_each_result([&](char const* name, auto const& member) { writer.column(name, runs, member); });
 }
 
 void require_whole(SweepInfo const& sweep) {

@@ -9,4 +9,19 @@ namespace cayspin::inline v0_1::io {
 inline constexpr char const* sweep_format = "sweep_format";
 inline constexpr int sweep_format_version = 1;
 
+/// Calls use(name, member) for each dataset with one number, or three, of each run, in the order of
+/// the file. `member` gives that of a SweptRun.
+template <class Use>
+void for_each_result(Use const& use) {
+  use("status", [](auto& run) -> auto& { return run.status; });
+  use("step", [](auto& run) -> auto& { return run.step; });
+  use("time", [](auto& run) -> auto& { return run.time; });
+  use("energy", [](auto& run) -> auto& { return run.scalars.energy; });
+  use("norm_defect", [](auto& run) -> auto& { return run.scalars.norm_defect; });
+  use("magnetization", [](auto& run) -> auto& { return run.scalars.magnetization; });
+  use("evaluations", [](auto& run) -> auto& { return run.cost.evaluations; });
+  use("wall_seconds", [](auto& run) -> auto& { return run.cost.wall_seconds; });
+  use("step_seconds", [](auto& run) -> auto& { return run.cost.step_seconds; });
+}
+
 }  // namespace cayspin::inline v0_1::io

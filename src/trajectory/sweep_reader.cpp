@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "column.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "sweep_format.hpp"
 
 #include <cayspin/io/sweep.hpp>
@@ -34,6 +35,7 @@ class Reader {
     return values;
   }
 
+  /// One number, or three, of each run.
   template <class Value>
   std::vector<Value> column(char const* name, std::size_t runs) const {
     return column<Value>(file_, name, runs);
@@ -41,11 +43,9 @@ class Reader {
 
   template <class Value>
   std::vector<Value> column(hid_t group, char const* name, std::size_t runs) const {
-    constexpr bool is_triple = sizeof(Value) == 3 * sizeof(double);
-    auto const dataset = open(group, name, is_triple ? Extents{runs, 3} : Extents{runs});
+    auto const dataset = open(group, name, Column<Value>::extents(runs));
     std::vector<Value> values(runs);
-    read(dataset.get(), std::is_same_v<Value, std::int64_t> ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE,
-         values.data(), name);
+    read(dataset.get(), Column<Value>::memory_type(), values.data(), name);
     return values;
   }
 
@@ -53,10 +53,7 @@ class Reader {
     return dataset_extents(open_dataset(file_, name, path_).get(), path_);
   }
 
-  GroupHandle group(char const* name) const {
-    return GroupHandle(
-        check(H5Gopen2(file_, name, H5P_DEFAULT), path_, std::string("cannot open group ") + name));
-  }
+  GroupHandle group(char const* name) const { return open_group(file_, name, path_); }
 
  private:
   static std::size_t count(Extents const& extents) {
@@ -107,27 +104,17 @@ std::vector<SweptKey> read_keys(Reader const& reader, fs::path const& path) {
 }
 
 std::vector<SweptRun> read_results(Reader const& reader, std::size_t count) {
-  auto const status = reader.column<std::int64_t>("status", count);
-  auto const message = reader.texts("message", {count});
-  auto const step = reader.column<std::int64_t>("step", count);
-  auto const time = reader.column<double>("time", count);
-  auto const energy = reader.column<double>("energy", count);
-  auto const norm_defect = reader.column<double>("norm_defect", count);
-  auto const magnetization = reader.column<std::array<double, 3>>("magnetization", count);
-  auto const evaluations = reader.column<std::int64_t>("evaluations", count);
-  auto const wall = reader.column<double>("wall_seconds", count);
-  auto const stepping = reader.column<double>("step_seconds", count);
-  auto const files = reader.group("runs");
   std::vector<SweptRun> runs(count);
+  auto const messages = reader.texts("message", {count});
+  for_each_result([&](char const* name, auto const& member) {
+    auto const values = reader.column<MemberValue<SweptRun, decltype(member)>>(name, count);
+    for (std::size_t i = 0; i < count; ++i) member(runs[i]) = values[i];
+  });
+  auto const files = reader.group("runs");
   for (std::size_t i = 0; i < count; ++i) {
     auto const name = swept_run_name(static_cast<std::int64_t>(i));
-    runs[i] = {status[i],
-               message[i],
-               step[i],
-               time[i],
-               {energy[i], norm_defect[i], magnetization[i]},
-               {evaluations[i], wall[i], stepping[i]},
-               H5Lexists(files.get(), name.c_str(), H5P_DEFAULT) > 0};
+    runs[i].message = messages[i];
+    runs[i].has_file = H5Lexists(files.get(), name.c_str(), H5P_DEFAULT) > 0;
   }
   return runs;
 }
@@ -152,10 +139,7 @@ SweepInfo read_whole_sweep(fs::path const& path) {
   auto const file = open_file(path);
   RootAttributes const attributes(file.get(), path);
   if (!attributes.has(sweep_format)) throw_failure(path, "cannot read the sweep", "it holds none");
-  if (auto const format = attributes.read_integer(sweep_format); format != sweep_format_version)
-    throw_failure(path, "cannot read the sweep",
-                  "its format is " + std::to_string(format) + "; accepted is " +
-                      std::to_string(sweep_format_version));
+  attributes.require_version(sweep_format, sweep_format_version, "cannot read the sweep");
   Reader const reader(file.get(), path);
   SweepInfo sweep;
   sweep.header.scene_text = attributes.read_text("scene");

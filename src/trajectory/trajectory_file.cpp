@@ -3,6 +3,7 @@
 #include "format.hpp"
 #include "frame_writer.hpp"
 #include "hdf5/attribute.hpp"
+#include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/synced_file.hpp"
 #include "new_file.hpp"
@@ -78,7 +79,6 @@ void require_valid(TrajectoryHeader const& header, TrajectoryStorage const& stor
 // Checked by HDF5, as nothing else is that lies beside the frames.
 void write_positions(hid_t file, TrajectoryHeader const& header,
                      std::vector<double> const& positions, std::filesystem::path const& path) {
-  std::string const action = "cannot write dataset positions";
   auto block = header.shape;
   block[2] /= header.cell_sites;
   auto const of_chunk = frame_chunk(block, sizeof(double));
@@ -88,16 +88,12 @@ void write_positions(hid_t file, TrajectoryHeader const& header,
     chunk.insert(chunk.begin(), 1);
     extents.insert(extents.begin(), static_cast<hsize_t>(header.cell_sites));
   }
-  auto const rank = static_cast<int>(extents.size());
+  std::string const action = "cannot write dataset positions";
   PropertyHandle const properties(H5Pcreate(H5P_DATASET_CREATE));
-  check(H5Pset_chunk(properties.get(), rank, chunk.data()), path, action);
+  check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), path, action);
   check(H5Pset_fletcher32(properties.get()), path, action);
-  DataspaceHandle const space(check(H5Screate_simple(rank, extents.data(), nullptr), path, action));
-  DatasetHandle const dataset(check(H5Dcreate2(file, "positions", H5T_IEEE_F64LE, space.get(),
-                                               H5P_DEFAULT, properties.get(), H5P_DEFAULT),
-                                    path, action));
-  check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, positions.data()),
-        path, action);
+  write_dataset(file, "positions", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, extents, positions.data(),
+                path, properties.get());
 }
 
 }  // namespace
@@ -195,8 +191,7 @@ class TrajectoryFile::Implementation {
     spins_ = FrameWriter(file, header, storage, path_);
     planes_ = header.shape[2];
     frame_series_ = ScalarSeries::create(file, path_, header.cell_sites);
-    scalars_ = GroupHandle(check(H5Gcreate2(file, "scalars", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                                 path_, "cannot create group scalars"));
+    scalars_ = create_group(file, "scalars", path_);
     sample_series_ = ScalarSeries::create(scalars_.get(), path_);
   }
 

@@ -8,7 +8,7 @@
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/handle.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "scalar_series.hpp"
 
 #include <cayspin/io/trajectory.hpp>
@@ -67,11 +67,8 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;
   info.path = path;
-  info.format = static_cast<int>(attributes.read_integer("format"));
-  if (info.format != format_version)
-    throw_failure(path, "cannot read the trajectory",
-                  "its format is " + std::to_string(info.format) + "; accepted is " +
-                      std::to_string(format_version));
+  attributes.require_version("format", format_version, "cannot read the trajectory");
+  info.format = format_version;
   info.header.scene_text = attributes.read_text("scene");
   if (attributes.has("resolved_scene"))
     info.header.resolved_scene = attributes.read_text("resolved_scene");
@@ -106,8 +103,7 @@ TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
     info.frame_scalars.push_back(sample.scalars);
   }
   info.frame_sublattices = series.read_sublattices(0, info.frames, path);
-  GroupHandle const scalars(
-      check(H5Gopen2(file.get(), "scalars", H5P_DEFAULT), path, "cannot open group scalars"));
+  auto const scalars = open_group(file.get(), "scalars", path);
   info.samples =
       ScalarSeries::open(scalars.get(), path).readable(info.complete ? 0 : most_pending, path);
   return info;

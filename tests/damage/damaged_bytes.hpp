@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/file_bytes.hpp"
+
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <iostream>
+#include <map>
 #include <random>
 #include <string>
 
@@ -27,13 +28,15 @@ class Chance {
   std::mt19937_64 engine_;
 };
 
-inline std::string read_bytes(std::filesystem::path const& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+/// How often each outcome came, of all that was tried.
+using OutcomeCounts = std::map<std::string, std::map<std::string, long>>;
 
-inline void write_bytes(std::filesystem::path const& path, std::string const& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
+inline void print(OutcomeCounts const& tried) {
+  for (auto const& [name, counts] : tried) {
+    std::cout << name << ':';
+    for (auto const& [outcome, count] : counts) std::cout << "  " << count << ' ' << outcome;
+    std::cout << '\n';
+  }
 }
 
 /// Bytes after one of: bits flipped, bytes replaced, the end cut off, a block zeroed, two blocks

@@ -10,16 +10,12 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 namespace cayspin::inline v0_1::io {
 namespace {
 
 using cayspin::test::Chance;
 using cayspin::test::damaged;
 using cayspin::test::number_from;
-using cayspin::test::read_bytes;
-using cayspin::test::write_bytes;
 
 std::string const scene_head = R"([lattice]
 shape = [4, 3, 2]
@@ -166,17 +162,9 @@ class Damage : public TrajectoryTest {
     return path;
   }
 
-  void print_counts() const {
-    for (auto const& [reading, counts] : counts_) {
-      std::cout << reading << ':';
-      for (auto const& [outcome, count] : counts) std::cout << "  " << count << ' ' << outcome;
-      std::cout << '\n';
-    }
-  }
-
   Chance chance_{static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1))};
   long files_ = number_from("CAYSPIN_DAMAGED_FILES", 100);
-  std::map<std::string, std::map<std::string, long>> counts_;
+  cayspin::test::OutcomeCounts counts_;
 };
 
 TEST_F(Damage, TrajectoriesAreRefusedOrReadAsTheyWere) {
@@ -187,7 +175,7 @@ TEST_F(Damage, TrajectoriesAreRefusedOrReadAsTheyWere) {
          files_ / 5);
   damage(trajectory("planes.h5", "double", {.chunk = 1}, 5), of_trajectories, true, files_ / 5);
   damage(trajectory("crystal.h5", "double", {}, 5, 2), of_trajectories, true, files_ / 5);
-  print_counts();
+  cayspin::test::print(counts_);
 }
 
 // Without checksums what it reads may be wrong, but nothing crashes.
@@ -195,7 +183,7 @@ TEST_F(Damage, InertiaOfAnotherMakerNeverCrashes) {
   auto const path = folder_ / "inertia.h5";
   ASSERT_NO_FATAL_FAILURE(cayspin::test::write_inertia(path, 24));
   damage(path, of_inertia, false, files_);
-  print_counts();
+  cayspin::test::print(counts_);
 }
 
 }  // namespace

@@ -5,9 +5,6 @@
 #include "inertia_file.hpp"
 #include "program/program_test.hpp"
 
-#include <iostream>
-#include <map>
-
 namespace cayspin::program::test {
 namespace {
 
@@ -97,17 +94,9 @@ class DamagedRuns : public ProgramTest {
     }
   }
 
-  void print_counts() const {
-    for (auto const& [name, counts] : counts_) {
-      std::cout << name << ':';
-      for (auto const& [what, count] : counts) std::cout << "  " << count << ' ' << what;
-      std::cout << '\n';
-    }
-  }
-
   long files_ = number_from("CAYSPIN_DAMAGED_RUNS", 60);
   Chance chance_{static_cast<std::uint64_t>(number_from("CAYSPIN_SEED", 1))};
-  std::map<std::string, std::map<std::string, long>> counts_;
+  cayspin::test::OutcomeCounts counts_;
 };
 
 TEST_F(DamagedRuns, TrajectoriesAndCheckpointsAreRightOrRefused) {
@@ -128,7 +117,7 @@ TEST_F(DamagedRuns, TrajectoriesAndCheckpointsAreRightOrRefused) {
   expect_right_or_refused(
       {"--restart, its checkpoint", with(again, {"--set", "integrator.method='ab2'"}), "again.h5"},
       in_folder("memory.checkpoint.h5"), files_ / 4);
-  print_counts();
+  cayspin::test::print(counts_);
 }
 
 TEST_F(DamagedRuns, InertiaOfAnotherMakerEndsWithoutASignal) {
@@ -141,7 +130,7 @@ TEST_F(DamagedRuns, InertiaOfAnotherMakerEndsWithoutASignal) {
       "again.h5",
       false};
   expect_right_or_refused(use, path, files_ / 4);
-  print_counts();
+  cayspin::test::print(counts_);
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ namespace {
 using cayspin::test::Chance;
 using cayspin::test::damaged;
 using cayspin::test::number_from;
-using cayspin::test::read_bytes;
-using cayspin::test::write_bytes;
 namespace fs = std::filesystem;
 
 class DamagedSweeps : public TrajectoryTest {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A process that is killed before any one of its writes to a trajectory file, or at any page in the
 // middle of it, leaves every frame that was reported as written.
-#include "trajectory/trajectory_test.hpp"
+#include "known_run.hpp"
 
 #include <sys/mman.h>
 #include <sys/syscall.h>
@@ -33,31 +33,28 @@ extern "C" ssize_t pwrite(int file, void const* data, size_t bytes, off_t offset
 namespace cayspin::inline v0_1::io {
 namespace {
 
-// What a process has been told, which outlives it.
-struct Reported {
-  bool created = false, finished = false;
-  int frames = 0;
+struct Course : KnownRun {
+  std::int64_t first_frames = 0;  // before the kill becomes possible
 };
 
-// Samples before the first frame, and frames and samples before the kill becomes possible.
-struct Course {
-  int first_frames = 0, frames = 0;
-  std::int64_t cell_sites = 1;
-  std::int64_t samples(int frames_written) const { return 2 * frames_written + 3; }
-};
+Course course(std::int64_t first_frames, std::int64_t frames, std::int64_t cell_sites = 1) {
+  Course course{{.frames = frames, .samples = 2, .last_samples = 3}, first_frames};
+  course.header.cell_sites = cell_sites;
+  return course;
+}
 
 class Killed : public TrajectoryTest {
  protected:
   Killed() {
-    auto* const shared = ::mmap(nullptr, sizeof(Reported), PROT_READ | PROT_WRITE,
-                                MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    reported_ = new (shared) Reported;
+    auto* const shared =
+        ::mmap(nullptr, sizeof(Told), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    told_ = new (shared) Told;
   }
-  ~Killed() override { ::munmap(reported_, sizeof(Reported)); }
+  ~Killed() override { ::munmap(told_, sizeof(Told)); }
 
   // False when the run ended before that moment.
   bool run_to(Course const& course, long moment) {
-    *reported_ = {};
+    *told_ = {};
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
     pid_t const child = ::fork();
@@ -68,61 +65,22 @@ class Killed : public TrajectoryTest {
   }
 
   [[noreturn]] void perform(Course const& course, long moment) {
-    auto header = small_header();
-    header.cell_sites = course.cell_sites;
     if (course.first_frames == 0) moments_left = moment;
-    TrajectoryFile file(path(), header, false);
-    reported_->created = true;
-    for (int frame = 0; frame < course.frames; ++frame) {
-      if (frame > 0 && frame == course.first_frames) moments_left = moment;
-      for (int sample = 0; sample < 2; ++sample) add_sample(file, 2 * frame + sample);
-      file.write_frame(10 * frame, 0.1 * frame, numbered_scalars(frame),
-                       numbered_spins<double>(header, frame).data());
-      reported_->frames = frame + 1;
-    }
-    for (int sample = 0; sample < 3; ++sample) add_sample(file, 2 * course.frames + sample);
-    file.finish({7, 2, 1});
-    reported_->finished = true;
+    write_known_run(path(), course, [&](Told const& told) {
+      *told_ = told;
+      if (told.frames > 0 && told.frames == course.first_frames) moments_left = moment;
+    });
     ::_exit(0);
-  }
-
-  static void add_sample(TrajectoryFile& file, int sample) {
-    file.write_scalars(sample, 0.01 * sample, numbered_scalars(sample));
   }
 
   // The file of a process that was killed, or that ended.
   void expect_whole(Course const& course) {
-    if (!std::filesystem::exists(path())) {
-      EXPECT_FALSE(reported_->created);
-      return;
-    }
-    auto const info = read_info(path());
-    EXPECT_GE(info.frames, reported_->frames);
-    EXPECT_LE(info.frames, course.frames);
-    EXPECT_EQ(info.header.cell_sites, course.cell_sites);
-    for (std::int64_t frame = 0; frame < info.frames; ++frame) expect_frame(info, frame);
-    if (info.frames > 0) {
-      EXPECT_EQ(read_spins(path(), info.header.shape), spins(static_cast<int>(info.frames) - 1));
-      EXPECT_EQ(read_spins(path(), info.header.shape, 0), spins(0));
-    }
-    EXPECT_TRUE(info.complete || !reported_->finished);
-    if (!info.complete) return;
-    EXPECT_EQ(info.frames, course.frames);
-    EXPECT_EQ(info.samples, course.samples(course.frames));
-    EXPECT_EQ(info.cost.evaluations, 7);
+    if (std::filesystem::exists(path()))
+      require_known(path(), course, *told_);
+    else
+      EXPECT_FALSE(told_->created);
   }
 
-  static void expect_frame(TrajectoryInfo const& info, std::int64_t frame) {
-    auto const expected = numbered_scalars(static_cast<int>(frame));
-    auto const& found = info.frame_scalars[static_cast<std::size_t>(frame)];
-    EXPECT_EQ(info.frame_steps[static_cast<std::size_t>(frame)], 10 * frame);
-    EXPECT_EQ(found.energy, expected.energy);
-    EXPECT_EQ(found.magnetization, expected.magnetization);
-  }
-
-  static std::vector<double> spins(int frame) {
-    return numbered_spins<double>(small_header(), frame);
-  }
   std::filesystem::path path() const { return folder_ / "a.h5"; }
 
   void kill_at_every_write(Course const& course, int stride) {
@@ -134,28 +92,28 @@ class Killed : public TrajectoryTest {
         ADD_FAILURE() << error.what();
       }
       if (!HasFailure()) continue;
-      FAIL() << "killed at moment " << moment << ", after " << reported_->frames << " frames";
+      FAIL() << "killed at moment " << moment << ", after " << told_->frames << " frames";
     }
-    EXPECT_TRUE(reported_->finished);
+    EXPECT_TRUE(told_->finished);
     expect_whole(course);
     std::cout << "killed " << kills << " times\n";
   }
 
-  Reported* reported_ = nullptr;
+  Told* told_ = nullptr;  // outlives the process that was told
 };
 
 int stride(int ordinary) { return std::getenv("CAYSPIN_ALL_KILLS") ? 1 : ordinary; }
 
-TEST_F(Killed, FromTheCreationToTheEnd) { kill_at_every_write({0, 4}, stride(3)); }
+TEST_F(Killed, FromTheCreationToTheEnd) { kill_at_every_write(course(0, 4), stride(3)); }
 
-TEST_F(Killed, InACrystal) { kill_at_every_write({0, 4, 2}, stride(5)); }
+TEST_F(Killed, InACrystal) { kill_at_every_write(course(0, 4, 2), stride(5)); }
 
 // Index blocks are added here, and by other layouts nodes are split.
-TEST_F(Killed, AfterSomeFrames) { kill_at_every_write({60, 70}, stride(15)); }
+TEST_F(Killed, AfterSomeFrames) { kill_at_every_write(course(60, 70), stride(15)); }
 
 // The scalars' chunks of 512 are full: samples at frame 256, frames at 512.
-TEST_F(Killed, AtTheEndOfAChunkOfSamples) { kill_at_every_write({254, 258}, stride(9)); }
-TEST_F(Killed, AtTheEndOfAChunkOfFrames) { kill_at_every_write({510, 514}, stride(19)); }
+TEST_F(Killed, AtTheEndOfAChunkOfSamples) { kill_at_every_write(course(254, 258), stride(9)); }
+TEST_F(Killed, AtTheEndOfAChunkOfFrames) { kill_at_every_write(course(510, 514), stride(19)); }
 
 }  // namespace
 }  // namespace cayspin::inline v0_1::io

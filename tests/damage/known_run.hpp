@@ -14,7 +14,8 @@ struct KnownRun {
   TrajectoryStorage storage = {};
   std::int64_t first_step = 0;
   std::int64_t frames = 0;
-  int samples = 0;  // for each frame
+  int samples = 0;       // for each frame
+  int last_samples = 0;  // after the last frame, where there are some for each
   bool replaces = false;
 };
 
@@ -49,6 +50,10 @@ void write_known_run(std::filesystem::path const& path, KnownRun const& run, Tel
     told.frames = frame + 1;
     told.samples += run.samples;
     tell(told);
+  }
+  for (int sample = 0; sample < run.last_samples; ++sample) {
+    auto const step = run.first_step + run.frames + sample / run.samples;
+    file.write_scalars(step, time_at(step), scalars_at(step));
   }
   file.finish({7, 2, 1});
   told.finished = true;
@@ -105,6 +110,10 @@ inline void require_known(std::filesystem::path const& path, KnownRun const& run
   require(info.samples >= told.samples, "lost", "samples");
   require(info.complete || !told.finished, "lost", "the end");
   require(info.frames <= run.frames, "wrong", "frames that were not written");
+  auto const all_samples = run.frames * run.samples + run.last_samples;
+  require(!info.complete || (info.frames == run.frames && info.samples == all_samples &&
+                             info.cost.evaluations == 7),
+          "wrong", "what is in a complete file");
   require_known_samples(path, run, info.samples);
   if (info.frames == 0) return;
   StoredSpins const stored(path, info.header.shape, info.header.cell_sites);

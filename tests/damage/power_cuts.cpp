@@ -3,7 +3,7 @@
 // synchronisation is there in part, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: how many,
 // and which.
 #include "damaged_bytes.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "known_run.hpp"
 #include "memory_folder.hpp"
 #include "recorded_disk.hpp"

@@ -2,7 +2,7 @@
 // Writers of files in memory, killed at random times. CAYSPIN_RANDOM_KILLS and CAYSPIN_SEED: how
 // many, and which.
 #include "damaged_bytes.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "known_run.hpp"
 #include "memory_folder.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/file_bytes.hpp"
+
 #include <cayspin/io/ovf.hpp>
 
 #include <gtest/gtest.h>
@@ -8,13 +10,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace cayspin::inline v0_1::io::test {
+
+using cayspin::test::read_bytes;
+using cayspin::test::write_bytes;
 
 /// A folder of its own for each test, removed afterwards.
 class OvfTest : public testing::Test {
@@ -27,17 +30,12 @@ class OvfTest : public testing::Test {
   ~OvfTest() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path write(std::string const& content, std::string const& name = "m.ovf") const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
+    write_bytes(folder_ / name, content);
     return folder_ / name;
   }
 
   std::filesystem::path folder_;
 };
-
-inline std::string content_of(std::filesystem::path const& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// The bytes of numbers as they lie in memory.
 template <class Real>

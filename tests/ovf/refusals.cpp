@@ -10,7 +10,10 @@ namespace {
 class OvfRefusal : public OvfTest {
  protected:
   void expect_refused(std::string const& content, std::string const& part) const {
-    auto const path = write(content);
+    expect_file_refused(write(content), part);
+  }
+
+  static void expect_file_refused(std::filesystem::path const& path, std::string const& part) {
     try {
       read_ovf(path);
       ADD_FAILURE() << "accepted: " << part;
@@ -96,18 +99,11 @@ TEST_F(OvfRefusal, WrongCheckValue) {
 }
 
 TEST_F(OvfRefusal, NoFile) {
-  for (auto const& [path, part] :
-       {std::pair{folder_ / "none.ovf", "No such file"}, {folder_, "not a regular file"}}) {
-    try {
-      read_ovf(path);
-      ADD_FAILURE() << "accepted: " << path;
-    } catch (std::runtime_error const& error) {
-      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    }
-  }
   auto const pipe = folder_ / "pipe.ovf";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THROW(read_ovf(pipe), std::runtime_error);
+  expect_file_refused(folder_ / "none.ovf", "No such file");
+  expect_file_refused(folder_, "not a regular file");
+  expect_file_refused(pipe, "not a regular file");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST_F(OvfTest, HeaderIsThatOfTheUserGuide) {
   field.mesh = {{2, 1, 1}, {4, 5, 3}, {2, 2.5, 1.5}, "nm"};
   field.values = small_values();
   write_ovf(path, field, OvfFormat::text, false);
-  EXPECT_EQ(content_of(path), R"(# OOMMF OVF 2.0
+  EXPECT_EQ(read_bytes(path), R"(# OOMMF OVF 2.0
 # Segment count: 1
 # Begin: Segment
 # Begin: Header
@@ -106,7 +106,7 @@ TEST_F(OvfTest, FilesAreReplacedOnlyWhenAsked) {
   auto const path = write("kept");
   auto const field = asymmetric_field();
   EXPECT_THROW(write_ovf(path, field, OvfFormat::text, false), std::runtime_error);
-  EXPECT_EQ(content_of(path), "kept");
+  EXPECT_EQ(read_bytes(path), "kept");
   write_ovf(path, field, OvfFormat::text, true);
   EXPECT_EQ(read_ovf(path).values, field.values);
   EXPECT_THROW(write_ovf(folder_ / "none" / "m.ovf", field, OvfFormat::text, false),
@@ -178,7 +178,7 @@ TEST_F(OvfTest, FullDiskKeepsTheOldFile) {
   auto const path = write("kept");
   EXPECT_EXIT(write_on_full_disk(path), testing::ExitedWithCode(3),
               "m.ovf: cannot write the file: File too large$");
-  EXPECT_EQ(content_of(path), "kept");
+  EXPECT_EQ(read_bytes(path), "kept");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 

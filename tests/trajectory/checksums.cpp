@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What tells a damaged file from a whole one.
 #include "hdf5/handle.hpp"
-#include "hdf5/survives.hpp"
+#include "hdf5/read_in_child.hpp"
 #include "trajectory/checksum.hpp"
 #include "trajectory_test.hpp"
 
@@ -10,7 +10,6 @@
 #include <bit>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -33,27 +32,13 @@ TEST(Checksum, DependsOnEveryNumberAndIsNeverZero) {
   EXPECT_NE(spins_checksum(sample, 8), spins_checksum(sample, 7));
 }
 
-void change(std::filesystem::path const& path, std::size_t place, std::string const& to) {
-  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(static_cast<std::streamoff>(place));
-  file << to;
-}
-
-std::size_t place_of(std::filesystem::path const& path, double number, bool last = false) {
-  std::ifstream file(path, std::ios::binary);
-  std::string const bytes{std::istreambuf_iterator<char>(file), {}};
-  std::string pattern(sizeof number, '\0');
-  std::memcpy(pattern.data(), &number, sizeof number);
-  return last ? bytes.rfind(pattern) : bytes.find(pattern);
-}
-
 TEST_F(TrajectoryTest, ZeroedFrameIsNoticed) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 3).finish({});
   auto const shape = small_header().shape;
-  auto const place = place_of(path, numbered_spins<double>(small_header(), 1)[0]);
+  auto const place = read_bytes(path).find(bytes_of(numbered_spins<double>(small_header(), 1)[0]));
   ASSERT_NE(place, std::string::npos);
-  change(path, place, std::string(72 * sizeof(double), '\0'));
+  overwrite(path, place, std::string(72 * sizeof(double), '\0'));
   EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, shape, 1); }),
                        "frame 1 is damaged: its checksum differs"));
   EXPECT_EQ(read_spins(path, shape), numbered_spins<double>(small_header(), 2));
@@ -63,18 +48,16 @@ TEST_F(TrajectoryTest, ZeroedFrameIsNoticed) {
 TEST_F(TrajectoryTest, ChangedScalarOfAFrameIsNoticed) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 3).finish({});
-  auto const place = place_of(path, numbered_scalars(1).energy, true);
+  auto const place = read_bytes(path).rfind(bytes_of(numbered_scalars(1).energy));
   ASSERT_NE(place, std::string::npos);
-  change(path, place, std::string(1, '\1'));
+  overwrite(path, place, "\1");
   EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "its checksum differs"));
 }
 
 TEST_F(TrajectoryTest, ChangedSceneIsNoticed) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 1).finish({});
-  std::ifstream file(path, std::ios::binary);
-  std::string const bytes{std::istreambuf_iterator<char>(file), {}};
-  change(path, bytes.find("kind = \"llg\""), "kinD");
+  overwrite(path, read_bytes(path).find("kind = \"llg\""), "kinD");
   EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "its attributes are damaged"));
 }
 
@@ -95,10 +78,7 @@ TEST_F(TrajectoryTest, FilesWithoutChecksumsAreRead) {
 TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
   auto const path = folder_ / "a.h5";
   auto const file = write_frames(path, 1);
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(9, '\0');
-  stream.read(head.data(), 9);
-  EXPECT_EQ(head[8], 2);
+  EXPECT_EQ(read_bytes(path).at(8), 2);
 }
 
 std::string reason(void (*reading)()) {

@@ -6,9 +6,6 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
-#include <fstream>
-#include <iterator>
-
 namespace cayspin::inline v0_1::io {
 namespace {
 
@@ -16,13 +13,6 @@ namespace fs = std::filesystem;
 
 TrajectoryFile create(fs::path const& path, bool overwrite = false) {
   return TrajectoryFile(path, small_header(), overwrite);
-}
-
-void write_text(fs::path const& path, std::string const& text) { std::ofstream(path) << text; }
-
-std::string read_text(fs::path const& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 std::vector<std::string> names_in(fs::path const& folder) {
@@ -34,10 +24,10 @@ std::vector<std::string> names_in(fs::path const& folder) {
 
 TEST_F(TrajectoryTest, ExistingFileIsKept) {
   auto const path = folder_ / "a.h5";
-  write_text(path, "precious");
+  write_bytes(path, "precious");
   auto const message = error_line(path, [&] { create(path); });
   EXPECT_TRUE(contains(message, "--overwrite"));
-  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(read_bytes(path), "precious");
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
 
@@ -60,7 +50,7 @@ TEST_F(TrajectoryTest, OverwrittenFileHoldsTheNewRun) {
 TEST_F(TrajectoryTest, OverwriteFollowsALink) {
   auto const path = folder_ / "a.h5";
   auto const link = folder_ / "link.h5";
-  write_text(path, "old");
+  write_bytes(path, "old");
   fs::create_symlink("a.h5", link);
   create(link, true).finish({});
   EXPECT_TRUE(fs::is_symlink(link));
@@ -75,13 +65,13 @@ TEST_F(TrajectoryTest, OverwriteOfNothingIsFine) {
 
 TEST_F(TrajectoryTest, FileOfAnotherWriterIsKept) {
   auto const path = folder_ / "a.h5";
-  write_text(path, "precious");
+  write_bytes(path, "precious");
   int const writer = ::open(path.c_str(), O_RDWR);
   ASSERT_EQ(::flock(writer, LOCK_EX), 0);
   auto const message = error_line(path, [&] { create(path, true); });
   ::close(writer);
   EXPECT_TRUE(contains(message, "another program"));
-  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(read_bytes(path), "precious");
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
 
@@ -93,7 +83,7 @@ TEST_F(TrajectoryTest, MissingFolder) {
 }
 
 TEST_F(TrajectoryTest, FolderThatIsAFile) {
-  write_text(folder_ / "file", "");
+  write_bytes(folder_ / "file", "");
   auto const path = folder_ / "file" / "a.h5";
   EXPECT_TRUE(contains(error_line(path, [&] { create(path); }), "is a file"));
 }
@@ -128,11 +118,11 @@ TEST_F(TrajectoryTest, NoPermission) {
 
 TEST_F(TrajectoryTest, ProtectedFileIsKept) {
   auto const path = folder_ / "a.h5";
-  write_text(path, "precious");
+  write_bytes(path, "precious");
   ASSERT_EQ(::chmod(path.c_str(), 0444), 0);
   ASSERT_EQ(::chmod(folder_.c_str(), 0777), 0);
   EXPECT_EXIT(std::_Exit(create_without_permission(path, 0, true)), testing::ExitedWithCode(0), "");
-  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(read_bytes(path), "precious");
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
 }
 
@@ -157,20 +147,11 @@ TEST_F(TrajectoryTest, FileThatCameMeanwhileIsKept) {
   auto const path = folder_ / "a.h5";
   {
     NewFile file(path, false);
-    write_text(path, "precious");
+    write_bytes(path, "precious");
     EXPECT_TRUE(contains(error_line(path, [&] { file.commit(); }), "File exists"));
   }
-  EXPECT_EQ(read_text(path), "precious");
+  EXPECT_EQ(read_bytes(path), "precious");
   EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a.h5"});
-}
-
-TEST_F(TrajectoryTest, ImpossibleHeader) {
-  auto header = small_header("half");
-  EXPECT_THROW(TrajectoryFile(folder_ / "a.h5", header, false), std::invalid_argument);
-  header = small_header();
-  header.shape = {4, 0, 1};
-  EXPECT_THROW(TrajectoryFile(folder_ / "a.h5", header, false), std::invalid_argument);
-  EXPECT_TRUE(names_in(folder_).empty());
 }
 
 }  // namespace

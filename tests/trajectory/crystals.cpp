@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Files of crystals with several sites in a cell, which lie site by site.
-#include "hdf5/dataset.hpp"
-#include "hdf5/handle.hpp"
+#include "hdf5/real_dataset.hpp"
 #include "trajectory_test.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
@@ -9,9 +8,6 @@
 #include <cayspin/io/run_output.hpp>
 
 #include <algorithm>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -61,29 +57,7 @@ std::vector<double> numbers_of(std::vector<Real> const& spins, TrajectoryHeader 
 }
 
 Extents extents_of(std::filesystem::path const& path, char const* name) {
-  FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  DatasetHandle const dataset(H5Dopen2(file.get(), name, H5P_DEFAULT));
-  return dataset_extents(dataset.get(), path);
-}
-
-Extents chunk_of(std::filesystem::path const& path, char const* name) {
-  FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  DatasetHandle const dataset(H5Dopen2(file.get(), name, H5P_DEFAULT));
-  PropertyHandle const properties(H5Dget_create_plist(dataset.get()));
-  Extents chunk(6);
-  chunk.resize(static_cast<std::size_t>(H5Pget_chunk(properties.get(), 6, chunk.data())));
-  return chunk;
-}
-
-std::vector<double> all_of(std::filesystem::path const& path, char const* name) {
-  auto const extents = extents_of(path, name);
-  std::size_t count = 1;
-  for (auto const extent : extents) count *= extent;
-  std::vector<double> numbers(count);
-  FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  DatasetHandle const dataset(H5Dopen2(file.get(), name, H5P_DEFAULT));
-  H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data());
-  return numbers;
+  return RealDataset(path, name).extents();
 }
 
 template <class Real>
@@ -110,7 +84,7 @@ void expect_stored(std::filesystem::path const& path, TrajectoryHeader const& he
                   numbers_in(box, header.shape, 3, expected));
       }
   }
-  EXPECT_EQ(all_of(path, "/spins"), stored);
+  EXPECT_EQ(RealDataset(path, "/spins").read(), stored);
 }
 
 TEST_F(TrajectoryTest, CrystalsLieSiteBySiteAndComeBackAsTheyWere) {
@@ -136,7 +110,7 @@ TEST_F(TrajectoryTest, ChunksOfCrystalsAreOfOneSite) {
   auto const path = folder_ / "a.h5";
   write_crystal<double>(path, crystal_header({32, 16, 9}), 2, {.storage = {.chunk = 2}});
   EXPECT_EQ(extents_of(path, "/spins"), (Extents{2, 3, 3, 16, 32, 3}));
-  EXPECT_EQ(chunk_of(path, "/spins"), (Extents{1, 1, 2, 16, 32, 3}));
+  EXPECT_EQ(RealDataset(path, "/spins").chunk(), (Extents{1, 1, 2, 16, 32, 3}));
   EXPECT_EQ(extents_of(path, "/sublattice_magnetization"), (Extents{2, 3, 3}));
 }
 
@@ -180,28 +154,13 @@ TEST_F(TrajectoryTest, SublatticesHaveTheMeanOfTheirSpins) {
   }
 }
 
-// The place of a double in the file, the last one of these.
-std::size_t place_of(std::filesystem::path const& path, double number) {
-  std::ifstream file(path, std::ios::binary);
-  std::string const bytes{std::istreambuf_iterator<char>(file), {}};
-  std::string pattern(sizeof number, '\0');
-  std::memcpy(pattern.data(), &number, sizeof number);
-  return bytes.rfind(pattern);
-}
-
-void change(std::filesystem::path const& path, std::size_t place) {
-  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(static_cast<std::streamoff>(place));
-  file << '\1';
-}
-
 TEST_F(TrajectoryTest, DamagedFramesOfCrystalsAreNoticed) {
   auto const path = folder_ / "a.h5";
   auto const header = crystal_header();
   write_crystal<double>(path, header, 3);
-  auto const place = place_of(path, spins_of<double>(header, 1)[5 * 36]);
+  auto const place = read_bytes(path).rfind(bytes_of(spins_of<double>(header, 1)[5 * 36]));
   ASSERT_NE(place, std::string::npos);
-  change(path, place);
+  overwrite(path, place, "\1");
   EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, header.shape, 1); }),
                        "frame 1 is damaged: its checksum differs"));
   EXPECT_EQ(read_spins(path, header.shape), spins_of<double>(header, 2));
@@ -210,9 +169,9 @@ TEST_F(TrajectoryTest, DamagedFramesOfCrystalsAreNoticed) {
 TEST_F(TrajectoryTest, DamagedSublatticesAreNoticed) {
   auto const path = folder_ / "a.h5";
   write_crystal<double>(path, crystal_header(), 3);
-  auto const place = place_of(path, read_info(path).frame_sublattices.at(5)[2]);
+  auto const place = read_bytes(path).rfind(bytes_of(read_info(path).frame_sublattices.at(5)[2]));
   ASSERT_NE(place, std::string::npos);
-  change(path, place);
+  overwrite(path, place, "\1");
   EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }), "sample 1 is damaged"));
 }
 
@@ -323,18 +282,13 @@ std::vector<double> numbered_positions(std::int64_t count) {
   return positions;
 }
 
-std::string text_of(std::filesystem::path const& path) {
-  std::ifstream stream(path);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 TEST_F(TrajectoryTest, PositionsAreStoredAndNamedInTheXdmfFile) {
   auto const path = folder_ / "a.h5";
   auto const positions = numbered_positions(72);
   write_crystal<double>(path, crystal_header(), 1, {.xdmf = true, .positions = positions});
   EXPECT_EQ(extents_of(path, "/positions"), (Extents{3, 2, 3, 4, 3}));
-  EXPECT_EQ(all_of(path, "/positions"), positions);
-  auto const text = text_of(folder_ / "a.xdmf");
+  EXPECT_EQ(RealDataset(path, "/positions").read(), positions);
+  auto const text = read_bytes(folder_ / "a.xdmf");
   EXPECT_TRUE(contains(text, R"(TopologyType="Polyvertex" NumberOfElements="72")"));
   EXPECT_TRUE(contains(text, R"(<DataItem Dimensions="3 2 3 4 3" NumberType="Float" Precision="8")"
                              R"( Format="HDF">a.h5:/positions<)"));
@@ -348,7 +302,7 @@ TEST_F(TrajectoryTest, PositionsAreStoredAndNamedInTheXdmfFile) {
   write_crystal<double>(path, header, 1, {.overwrite = true, .xdmf = true, .positions = positions});
   EXPECT_EQ(extents_of(path, "/positions"), (Extents{6, 3, 4, 3}));
   EXPECT_TRUE(
-      contains(text_of(folder_ / "a.xdmf"), R"(<DataItem Dimensions="6 3 4 3" NumberType)"));
+      contains(read_bytes(folder_ / "a.xdmf"), R"(<DataItem Dimensions="6 3 4 3" NumberType)"));
 }
 
 TEST_F(TrajectoryTest, PositionsAreThoseOfAllSites) {

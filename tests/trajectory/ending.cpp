@@ -34,18 +34,6 @@ TEST_F(TrajectoryTest, RunThatNeverEndsIsNotComplete) {
   EXPECT_EQ(info.frames, 2);
 }
 
-TEST_F(TrajectoryTest, NothingIsWrittenAfterTheEnd) {
-  auto const path = folder_ / "a.h5";
-  auto const spins = numbered_spins<double>(small_header(), 0);
-  auto file = write_frames(path, 1);
-  file.finish({});
-  EXPECT_THROW(file.write_frame(1, 1, {}, spins.data()), std::logic_error);
-  EXPECT_THROW(file.write_scalars(1, 1, {}), std::logic_error);
-  EXPECT_THROW(file.finish({}), std::logic_error);
-  EXPECT_THROW(file.close({}), std::logic_error);
-  EXPECT_TRUE(read_info(path).complete);
-}
-
 TEST_F(TrajectoryTest, ReservedRoomIsGivenBack) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 2).finish({});

@@ -6,8 +6,6 @@
 
 #include <sys/wait.h>
 
-#include <fstream>
-
 namespace cayspin::inline v0_1::io {
 namespace {
 
@@ -100,28 +98,15 @@ TEST_F(TrajectoryTest, AFollowerBeginsAgainWithAnotherFile) {
   EXPECT_EQ(run.steps().size(), 2u);
 }
 
-std::string content(std::filesystem::path const& path) {
-  std::string text(std::filesystem::file_size(path), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(text.data(), static_cast<std::streamsize>(text.size()));
-  return text;
-}
-
-// Into the same file, as a writer does.
-void put(std::filesystem::path const& path, std::string const& text) {
-  std::fstream(path, std::ios::binary | std::ios::in | std::ios::out)
-      .write(text.data(), static_cast<std::streamsize>(text.size()));
-}
-
 TEST_F(TrajectoryTest, AFollowerRefusesAPartOfAFile) {
   auto const whole = folder_ / "whole.h5", part = folder_ / "part.h5";
   {
     Writer writer(whole);
     for (char const what : {'f', 'f', 'e'}) writer.order(what);
   }
-  auto const text = content(whole);
+  auto const text = read_bytes(whole);
   for (std::size_t length = 0; length < text.size(); length += 1009) {
-    std::ofstream(part, std::ios::binary).write(text.data(), static_cast<std::streamsize>(length));
+    write_bytes(part, text.substr(0, length));
     EXPECT_THROW(FollowedTrajectory(part).look(), std::runtime_error) << length;
   }
 }
@@ -132,13 +117,13 @@ TEST_F(TrajectoryTest, AFollowerBelievesNothingHalfWritten) {
   {
     Writer writer(path);
     for (char const what : {'f', 'f'}) writer.order(what);
-    before = content(path);
+    before = read_bytes(path);
     writer.order('f');
-    after = content(path);
+    after = read_bytes(path);
   }
   ASSERT_NE(before, after);
   before.resize(after.size());
-  std::ofstream(copy) << before;
+  write_bytes(copy, before);
   auto const expect_samples = [&](FollowedTrajectory const& run, std::size_t count,
                                   std::size_t half) {
     ASSERT_EQ(run.steps().size(), count) << half;
@@ -149,19 +134,19 @@ TEST_F(TrajectoryTest, AFollowerBelievesNothingHalfWritten) {
   };
   int torn = 0;
   for (std::size_t half = 0; half <= after.size(); half += 5120) {
-    put(copy, before);
+    overwrite(copy, 0, before);
     FollowedTrajectory run(copy);
     run.look();
     run.look();
     expect_samples(run, 2, half);
-    put(copy, after.substr(0, half) + before.substr(half));
+    overwrite(copy, 0, after.substr(0, half) + before.substr(half));
     try {
       run.look();
     } catch (std::runtime_error const&) {
       ++torn;
     }
     expect_samples(run, 2, half);
-    put(copy, after);
+    overwrite(copy, 0, after);
     run.look();
     run.look();
     expect_samples(run, 3, half);

@@ -11,7 +11,6 @@
 #include <sys/resource.h>
 
 #include <cstdlib>
-#include <iostream>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -24,20 +23,19 @@ void limit_file_size(rlim_t bytes) {
   if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) std::exit(9);
 }
 
-[[noreturn]] void exit_with_message(std::runtime_error const& error) {
-  std::cerr << error.what() << std::flush;
-  std::exit(3);
-}
-
 [[noreturn]] void write_until_it_fails(fs::path const& path, rlim_t room, bool sync = false) {
   limit_file_size(room);
-  try {
-    auto const file = write_frames(path, 1000000, {.sync = sync});
-    std::exit(0);
-  } catch (std::runtime_error const& error) {
-    exit_with_message(error);
-  }
+  exit_after([&] { write_frames(path, 1000000, {.sync = sync}); });
 }
+
+/// Tests in which less fits on the disk than a program writes that counts its executed lines.
+class SmallDisk : public TrajectoryTest {
+ protected:
+  void SetUp() override {
+    if (std::getenv("CAYSPIN_COVERAGE"))
+      GTEST_SKIP() << "the counts of executed lines do not fit on this disk, either";
+  }
+};
 
 TEST_F(TrajectoryTest, FullDiskLeavesTheFramesThatFitted) {
   for (bool const sync : {false, true}) {
@@ -52,9 +50,7 @@ TEST_F(TrajectoryTest, FullDiskLeavesTheFramesThatFitted) {
   }
 }
 
-TEST_F(TrajectoryTest, FullDiskAtCreationLeavesNothing) {
-  if (std::getenv("CAYSPIN_COVERAGE"))
-    GTEST_SKIP() << "the counts of executed lines do not fit on this disk, either";
+TEST_F(SmallDisk, FullDiskAtCreationLeavesNothing) {
   auto const path = folder_ / "a.h5";
   for (rlim_t const room : {10000, 100000, 500000})
     EXPECT_EXIT(write_until_it_fails(path, room), testing::ExitedWithCode(3),
@@ -64,17 +60,10 @@ TEST_F(TrajectoryTest, FullDiskAtCreationLeavesNothing) {
 
 [[noreturn]] void overwrite_on_full_disk(fs::path const& path) {
   limit_file_size(10000);
-  try {
-    TrajectoryFile const file(path, small_header(), true);
-    std::exit(0);
-  } catch (std::runtime_error const& error) {
-    exit_with_message(error);
-  }
+  exit_after([&] { TrajectoryFile(path, small_header(), true); });
 }
 
-TEST_F(TrajectoryTest, FullDiskAtOverwritingKeepsTheOldFile) {
-  if (std::getenv("CAYSPIN_COVERAGE"))
-    GTEST_SKIP() << "the counts of executed lines do not fit on this disk, either";
+TEST_F(SmallDisk, FullDiskAtOverwritingKeepsTheOldFile) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 2).finish({});
   EXPECT_EXIT(overwrite_on_full_disk(path), testing::ExitedWithCode(3),
@@ -84,22 +73,17 @@ TEST_F(TrajectoryTest, FullDiskAtOverwritingKeepsTheOldFile) {
 }
 
 [[noreturn]] void end_on_full_disk(fs::path const& path) {
-  try {
+  exit_after([&] {
     auto file = write_frames(path, 5);
     for (int sample = 0; sample < most_pending + 9; ++sample)
       file.write_scalars(50 + sample, 5, numbered_scalars(5));
     limit_file_size(fs::file_size(path));
     file.finish({});
-    std::exit(0);
-  } catch (std::runtime_error const& error) {
-    exit_with_message(error);
-  }
+  });
 }
 
 // Room is taken before the last samples are written, too.
-TEST_F(TrajectoryTest, FullDiskAtTheEndKeepsTheFrames) {
-  if (std::getenv("CAYSPIN_COVERAGE"))
-    GTEST_SKIP() << "the counts of executed lines do not fit on this disk, either";
+TEST_F(SmallDisk, FullDiskAtTheEndKeepsTheFrames) {
   auto const path = folder_ / "a.h5";
   EXPECT_EXIT(end_on_full_disk(path), testing::ExitedWithCode(3),
               "a.h5: cannot write the file: File too large$");
@@ -125,14 +109,11 @@ void make_read_only(fs::path const& path) {
     fs::path const& path, bool sync = false, void (*first_use_of_hdf5)() = [] {}) {
   first_use_of_hdf5();
   auto const spins = numbered_spins<double>(small_header(), 0);
-  try {
+  exit_after([&] {
     auto file = write_frames(path, 5, {.sync = sync});
     make_read_only(fs::canonical(path));
     file.write_frame(5, 5, {}, spins.data());
-    std::exit(0);
-  } catch (std::runtime_error const& error) {
-    exit_with_message(error);
-  }
+  });
 }
 
 TEST_F(TrajectoryTest, FailedWriteIsReportedAndLeavesTheFileAsItWas) {

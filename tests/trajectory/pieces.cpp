@@ -7,7 +7,6 @@
 #include <cayspin/io/run_output.hpp>
 
 #include <algorithm>
-#include <fstream>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -145,15 +144,9 @@ TEST_F(TrajectoryTest, ABoxIsRefusedWhenItsFrameIsDamagedElsewhere) {
   auto const path = folder_ / "a.h5";
   write_in_pieces<double>(path, {.storage = {.chunk = 1}});
   auto const spins = numbered_spins<double>(odd_header(), 2);
-  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  auto const* const last = reinterpret_cast<char const*>(spins.data() + spins.size() - 36);
-  auto const at = bytes.rfind(std::string(last, 36 * sizeof(double)));
+  auto const at = read_bytes(path).rfind(bytes_of(spins[spins.size() - 36]));
   ASSERT_NE(at, std::string::npos);
-  file.clear();
-  file.seekp(static_cast<std::streamoff>(at));
-  file.put(static_cast<char>(~bytes[at]));
-  file.close();
+  overwrite(path, at, "\1");
   EXPECT_THROW(read_spins(path, odd_shape, SiteBox{{0, 0, 0}, {4, 3, 1}}), std::runtime_error);
 }
 

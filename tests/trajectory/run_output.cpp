@@ -13,7 +13,6 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -22,11 +21,6 @@ namespace cayspin::inline v0_1::io {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(fs::path const& path) {
-  std::ifstream stream(path);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 template <class Real>
 void hand_over(RunOutput& output, int frame) {
@@ -104,7 +98,7 @@ TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {
   }
   EXPECT_FALSE(read_info(path).complete);
   EXPECT_EQ(read_info(path).frames, 20);
-  EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 22);
+  EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 22);
 }
 
 // A reader sees samples before the next frame.
@@ -113,7 +107,7 @@ TEST_F(TrajectoryTest, OutputHandsOverManySamplesWithoutAFrame) {
   for (int sample = 0; sample < 1024; ++sample)
     output.write_scalars(sample, sample, numbered_scalars(sample));
   EXPECT_EQ(output.frames(), 0);  // all that was handed over has been written
-  EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 1 + 1024);
+  EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 1 + 1024);
 }
 
 TEST_F(TrajectoryTest, OutputHasRoomForTwoFrames) {
@@ -141,14 +135,10 @@ TEST_F(TrajectoryTest, OutputThatHasEndedTakesNothing) {
   std::signal(SIGXFSZ, SIG_IGN);
   rlimit const limit{1000000, 1000000};
   ::setrlimit(RLIMIT_FSIZE, &limit);
-  try {
+  exit_after([&] {
     RunOutput output(path, small_header(), {});
     for (int frame = 0; frame < 1000000; ++frame) hand_over<double>(output, frame);
-    std::exit(0);
-  } catch (std::runtime_error const& error) {
-    std::cerr << error.what() << std::flush;
-    std::exit(3);
-  }
+  });
 }
 
 TEST_F(TrajectoryTest, OutputOnAFullDiskThrowsAndKeepsTheFramesThatFitted) {
@@ -171,26 +161,26 @@ TEST_F(TrajectoryTest, OutputOfAKilledRunHasWholeFrames) {
   };
   EXPECT_EXIT(die(), testing::KilledBySignal(SIGKILL), "");
   expect_frames<double>(path, 100);
-  EXPECT_TRUE(contains(text_of(folder_ / "a.xdmf"), "frame 99"));
-  EXPECT_EQ(std::ranges::count(text_of(folder_ / "a.txt"), '\n'), 101);
+  EXPECT_TRUE(contains(read_bytes(folder_ / "a.xdmf"), "frame 99"));
+  EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 101);
 }
 
 TEST_F(TrajectoryTest, FilesBesideTheTrajectoryAreKeptUnlessOverwritten) {
   auto const path = folder_ / "a.h5";
   auto const all = RunOutputOptions{.xdmf = true, .table = true};
   for (auto const* const name : {"a.txt", "a.xdmf"}) {
-    std::ofstream(folder_ / name) << "kept";
+    write_bytes(folder_ / name, "kept");
     EXPECT_TRUE(contains(error_line(folder_ / name, [&] { RunOutput(path, small_header(), all); }),
                          "it exists"));
-    EXPECT_EQ(text_of(folder_ / name), "kept");
+    EXPECT_EQ(read_bytes(folder_ / name), "kept");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
     fs::remove(folder_ / name);
   }
-  std::ofstream(folder_ / "a.txt") << "old";
+  write_bytes(folder_ / "a.txt", "old");
   auto replacing = all;
   replacing.overwrite = true;
   { RunOutput const output(path, small_header(), replacing); }
-  EXPECT_EQ(text_of(folder_ / "a.txt"),
+  EXPECT_EQ(read_bytes(folder_ / "a.txt"),
             "# t ()\tmx ()\tmy ()\tmz ()\tE_total ()\tnorm_defect ()\n");
   auto const named = folder_ / "b.txt";
   EXPECT_TRUE(contains(error_line(named, [&] { RunOutput(named, small_header(), all); }),
@@ -228,7 +218,7 @@ TEST_F(TrajectoryTest, TableOnAFullDiskKeepsWholeLines) {
   ScalarTable table(path, false, false);
   Sample const sample{1, 0.5, numbered_scalars(1)};
   table.append({sample});
-  auto const before = text_of(path);
+  auto const before = read_bytes(path);
   EXPECT_EQ(std::ranges::count(before, '\n'), 2);
 
   auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -240,9 +230,9 @@ TEST_F(TrajectoryTest, TableOnAFullDiskKeepsWholeLines) {
   ::setrlimit(RLIMIT_FSIZE, &unlimited);
   std::signal(SIGXFSZ, handler);
   EXPECT_TRUE(contains(message, "cannot write the file: File too large"));
-  EXPECT_EQ(text_of(path), before);
+  EXPECT_EQ(read_bytes(path), before);
   table.append({sample});
-  EXPECT_EQ(text_of(path), before + before.substr(before.find('\n') + 1));
+  EXPECT_EQ(read_bytes(path), before + before.substr(before.find('\n') + 1));
 }
 
 int table_without_permission(fs::path const& path) {
@@ -266,7 +256,7 @@ TEST_F(TrajectoryTest, XdmfDescribesTheLastOfManyFrames) {
   RunOutput output(folder_ / "a.h5", small_header(), {.xdmf = true});
   for (int frame = 0; frame < 1003; ++frame) hand_over<double>(output, frame);
   output.finish({});
-  auto const text = text_of(folder_ / "a.xdmf");
+  auto const text = read_bytes(folder_ / "a.xdmf");
   EXPECT_TRUE(contains(text, "<Grid Name=\"frame 1002\""));
   EXPECT_FALSE(contains(text, "<Grid Name=\"frame 1003\""));
   EXPECT_TRUE(text.ends_with("</Xdmf>\n"));
@@ -276,16 +266,16 @@ TEST_F(TrajectoryTest, XdmfDescribesEveryFrameThatIsInTheFile) {
   RunOutput output(folder_ / "a&b.h5", small_header("single"),
                    {.xdmf = true, .spacing = {0.5, 1, 2}});
   auto const path = folder_ / "a&b.xdmf";
-  EXPECT_TRUE(text_of(path).ends_with("</Xdmf>\n"));
+  EXPECT_TRUE(read_bytes(path).ends_with("</Xdmf>\n"));
   for (int frame = 0; frame < 3; ++frame) {
     hand_over<float>(output, frame);
     ASSERT_EQ(output.frames(), frame + 1);
-    auto const text = text_of(path);
+    auto const text = read_bytes(path);
     EXPECT_TRUE(text.ends_with("</Xdmf>\n"));
     EXPECT_TRUE(contains(text, "<Grid Name=\"frame " + std::to_string(frame) + "\""));
     EXPECT_FALSE(contains(text, "<Grid Name=\"frame " + std::to_string(frame + 1) + "\""));
   }
-  auto const text = text_of(path);
+  auto const text = read_bytes(path);
   for (auto const* const part : {"Dimensions=\"2 3 4\"/>", ">1 0.5 0.25</", ">2 1 0.5</",
                                  "Precision=\"4\"", "a&amp;b.h5:/spins", "<Time Value=\"0.2\"/>"})
     EXPECT_TRUE(contains(text, part));

@@ -7,7 +7,7 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <cstring>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -19,12 +19,7 @@ class Synced : public TrajectoryTest {
   static fs::path journal_of(fs::path const& path) { return path.string() + ".journal"; }
 
   static TrajectoryFile begin(fs::path const& path, int frames, bool overwrite = false) {
-    auto const header = small_header();
-    TrajectoryFile file(path, header, overwrite, {.sync = true});
-    for (int frame = 0; frame < frames; ++frame)
-      file.write_frame(10 * frame, 0.1 * frame, numbered_scalars(frame),
-                       numbered_spins<double>(header, frame).data());
-    return file;
+    return write_frames(path, frames, {.sync = true}, overwrite);
   }
 
   // As a cut leaves it: a sector that the last frame wrote over the file is not there.
@@ -34,15 +29,11 @@ class Synced : public TrajectoryTest {
     fs::copy_file(whole, path);
     fs::copy_file(journal_of(whole), journal_of(path));
     file.finish({});
+    auto const journal = read_bytes(journal_of(path));
     std::uint64_t sectors = 0, offset = 0;
-    std::ifstream journal(journal_of(path), std::ios::binary);
-    journal.seekg(24);
-    journal.read(reinterpret_cast<char*>(&sectors), sizeof sectors);
-    journal.seekg(static_cast<std::streamoff>(40 + 520 * (sectors - 1)));
-    journal.read(reinterpret_cast<char*>(&offset), sizeof offset);
-    std::fstream bytes(path, std::ios::binary | std::ios::in | std::ios::out);
-    bytes.seekp(static_cast<std::streamoff>(offset));
-    bytes << std::string(512, '\0');
+    std::memcpy(&sectors, &journal.at(24), sizeof sectors);
+    std::memcpy(&offset, &journal.at(40 + 520 * (sectors - 1)), sizeof offset);
+    overwrite(path, offset, std::string(512, '\0'));
     return path;
   }
 
@@ -113,7 +104,7 @@ TEST_F(Synced, TheJournalOfAnotherFileIsLeftAlone) {
 TEST_F(Synced, AJournalThatIsNotWholeIsNotNeeded) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 2).finish({});
-  std::ofstream(journal_of(path)) << "half of something";
+  write_bytes(journal_of(path), "half of something");
   expect_frames(path, 2);
   EXPECT_FALSE(fs::exists(journal_of(path)));
 }

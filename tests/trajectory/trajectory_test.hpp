@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/file_bytes.hpp"
+
 #include <cayspin/io/trajectory.hpp>
 
 #include <gtest/gtest.h>
@@ -8,11 +10,17 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace cayspin::inline v0_1::io {
+
+using cayspin::test::bytes_of;
+using cayspin::test::overwrite;
+using cayspin::test::read_bytes;
+using cayspin::test::write_bytes;
 
 /// A folder of its own for each test, removed afterwards. Children of the test, also those started
 /// afresh, use the same.
@@ -64,9 +72,9 @@ inline Scalars numbered_scalars(int frame) {
 }
 
 inline TrajectoryFile write_frames(std::filesystem::path const& path, int frames,
-                                   TrajectoryStorage const& storage = {}) {
+                                   TrajectoryStorage const& storage = {}, bool overwrite = false) {
   auto const header = small_header();
-  TrajectoryFile file(path, header, false, storage);
+  TrajectoryFile file(path, header, overwrite, storage);
   for (int frame = 0; frame < frames; ++frame) {
     file.write_scalars(10 * frame, 0.1 * frame, numbered_scalars(frame));
     file.write_frame(10 * frame, 0.1 * frame, numbered_scalars(frame),
@@ -89,6 +97,19 @@ std::string error_line(std::filesystem::path const& path, Call const& call) {
   }
   ADD_FAILURE() << "nothing was thrown";
   return "";
+}
+
+/// Ends a child of a test: with 3 and the message on standard error where `call` throws
+/// std::runtime_error, otherwise with 0.
+template <class Call>
+[[noreturn]] void exit_after(Call const& call) {
+  try {
+    call();
+    std::exit(0);
+  } catch (std::runtime_error const& error) {
+    std::cerr << error.what() << std::flush;
+    std::exit(3);
+  }
 }
 
 inline testing::AssertionResult contains(std::string const& text, std::string const& part) {

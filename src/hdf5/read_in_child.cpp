@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "survives.hpp"
+#include "read_in_child.hpp"
 
 #include "error.hpp"
 #include "files/available_memory.hpp"
