@@ -45,8 +45,8 @@ integrator.method = 'red_black2'; integrator.generator = 'orthogonal' | : | acce
 integrator.tolerance = 1e-6 | : | takes steps of dt
 integrator.method = 'tsit5'; integrator.tolerance = 2.0 | : | a number > 0, at most 1
 integrator = {method='projected_dp5',end=1.0} | .tolerance: | is missing
-integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.min_dt = -0.1 | : -0.1 is negative
-  | a number >= 0
+integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.min_dt = -0.1
+  | : -0.1 is negative | a number >= 0
 integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.max_dt = 0 | : 0 is not positive
   | a number > 0
 integrator.method = 'bs3'; integrator.tolerance = 1e-3; integrator.min_dt = 0.2;
