@@ -10,6 +10,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <tuple>
+#include <type_traits>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -17,10 +19,20 @@ namespace {
 constexpr hsize_t samples_per_chunk = 512;
 constexpr char const* sublattices_name = "sublattice_magnetization";
 
+// Of so many rows: of numbers, or of three each.
+template <class Value>
+Extents extents_of(std::size_t rows) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return {rows};
+  else
+    return {rows, std::tuple_size_v<Value>};
+}
+
+template <class Value>
 DatasetHandle create_column(hid_t group, char const* name, hid_t type,
                             std::filesystem::path const& path) {
-  std::array<hsize_t, 1> const chunk{samples_per_chunk};
-  return create_growing_dataset(group, name, type, chunk, PropertyHandle(), path);
+  return create_growing_dataset(group, name, type, extents_of<Value>(samples_per_chunk),
+                                PropertyHandle(), path);
 }
 
 template <class Member>
@@ -31,17 +43,25 @@ auto column(std::vector<Sample> const& samples, Member const& member) {
   return values;
 }
 
-// The rows from `begin` to `end`; `inner` are the extents of a row.
 template <class Value>
-std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, std::int64_t end,
-                               Extents const& inner, std::filesystem::path const& path) {
+void append_column(DatasetHandle const& dataset, hid_t type, hsize_t at,
+                   std::vector<Value> const& values, std::filesystem::path const& path) {
+  auto const extents = extents_of<Value>(values.size());
+  Extents from(extents.size(), 0);
+  from[0] = at;
+  append_block(dataset.get(), type, from, extents, values.data(), path);
+}
+
+// The rows from `begin` to `end`.
+template <class Value>
+std::vector<Value> read_column(DatasetHandle const& dataset, hid_t type, std::int64_t begin,
+                               std::int64_t end, std::filesystem::path const& path) {
   std::vector<Value> values(static_cast<std::size_t>(end - begin));
   if (values.empty()) return values;
-  Extents extents{values.size()};
-  extents.insert(extents.end(), inner.begin(), inner.end());
+  auto const extents = extents_of<Value>(values.size());
   Extents from(extents.size(), 0);
   from[0] = static_cast<hsize_t>(begin);
-  read_block(dataset, type, from, extents, values.data(), path);
+  read_block(dataset.get(), type, from, extents, values.data(), path);
   return values;
 }
 
@@ -50,14 +70,12 @@ std::vector<Value> read_column(hid_t dataset, hid_t type, std::int64_t begin, st
 ScalarSeries ScalarSeries::create(hid_t group, std::filesystem::path const& path,
                                   std::int64_t cell_sites) {
   ScalarSeries series;
-  series.time_ = create_column(group, "time", H5T_IEEE_F64LE, path);
-  series.step_ = create_column(group, "step", H5T_STD_I64LE, path);
-  series.energy_ = create_column(group, "energy", H5T_IEEE_F64LE, path);
-  series.norm_defect_ = create_column(group, "norm_defect", H5T_IEEE_F64LE, path);
-  std::array<hsize_t, 2> const chunk{samples_per_chunk, 3};
-  series.magnetization_ =
-      create_growing_dataset(group, "magnetization", H5T_IEEE_F64LE, chunk, PropertyHandle(), path);
-  series.checksum_ = create_column(group, "checksum", H5T_STD_U64LE, path);
+  series.time_ = create_column<double>(group, "time", H5T_IEEE_F64LE, path);
+  series.step_ = create_column<std::int64_t>(group, "step", H5T_STD_I64LE, path);
+  for_each_scalar([&]<class Value>(char const* name, Value Scalars::*) {
+    series.scalars_.push_back(create_column<Value>(group, name, H5T_IEEE_F64LE, path));
+  });
+  series.checksum_ = create_column<std::uint64_t>(group, "checksum", H5T_STD_U64LE, path);
   series.cell_sites_ = cell_sites;
   if (cell_sites == 1) return series;
   auto const sites = static_cast<hsize_t>(cell_sites);
@@ -72,11 +90,14 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
   ScalarSeries series;
   series.time_ = open_dataset(group, "time", 1, path);
   series.step_ = open_dataset(group, "step", 1, path);
-  series.energy_ = open_dataset(group, "energy", 1, path);
-  series.norm_defect_ = open_dataset(group, "norm_defect", 1, path);
-  series.magnetization_ = open_dataset(group, "magnetization", 2, path);
-  if (dataset_extents(series.magnetization_.get(), path)[1] != 3)
-    throw_failure(path, "cannot read dataset magnetization", "its second extent is not 3");
+  for_each_scalar([&]<class Value>(char const* name, Value Scalars::*) {
+    auto const expected = extents_of<Value>(0);
+    auto const& dataset =
+        series.scalars_.emplace_back(open_dataset(group, name, expected.size(), path));
+    if (expected.size() > 1 && dataset_extents(dataset.get(), path)[1] != expected[1])
+      throw_failure(path, std::string("cannot read dataset ") + name,
+                    "its second extent is not " + std::to_string(expected[1]));
+  });
   auto const has_checksums =
       check(H5Lexists(group, "checksum", H5P_DEFAULT), path, "cannot read dataset checksum");
   if (has_checksums > 0) series.checksum_ = open_dataset(group, "checksum", 1, path);
@@ -95,33 +116,33 @@ ScalarSeries ScalarSeries::open(hid_t group, std::filesystem::path const& path,
 void ScalarSeries::append(std::vector<Sample> const& samples, std::filesystem::path const& path,
                           std::uint32_t spins, std::vector<Vector> const& sublattices) {
   if (samples.empty()) return;
-  auto const times = column(samples, [](auto const& s) { return s.time; });
-  auto const steps = column(samples, [](auto const& s) { return s.step; });
-  auto const energies = column(samples, [](auto const& s) { return s.scalars.energy; });
-  auto const defects = column(samples, [](auto const& s) { return s.scalars.norm_defect; });
-  auto const means = column(samples, [](auto const& s) { return s.scalars.magnetization; });
   auto const checksums = column(samples, [&](auto const& s) {
     return std::uint64_t{row_checksum(s, sublattices)} << 32U | spins;
   });
   hsize_t const count = samples.size();
-  append_block(time_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, times.data(), path);
-  append_block(step_.get(), H5T_NATIVE_INT64, {size_}, {count}, steps.data(), path);
-  append_block(energy_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, energies.data(), path);
-  append_block(norm_defect_.get(), H5T_NATIVE_DOUBLE, {size_}, {count}, defects.data(), path);
-  append_block(magnetization_.get(), H5T_NATIVE_DOUBLE, {size_, 0}, {count, 3}, means.data(), path);
+  auto const append = [&](DatasetHandle const& dataset, hid_t type, auto const& member) {
+    append_column(dataset, type, size_, column(samples, member), path);
+  };
+  append(time_, H5T_NATIVE_DOUBLE, [](auto const& s) { return s.time; });
+  append(step_, H5T_NATIVE_INT64, [](auto const& s) { return s.step; });
+  auto dataset = scalars_.begin();
+  for_each_scalar([&](char const*, auto member) {
+    append(*dataset++, H5T_NATIVE_DOUBLE, [&](auto const& s) { return s.scalars.*member; });
+  });
   if (sublattices_.get() >= 0)
     append_block(sublattices_.get(), H5T_NATIVE_DOUBLE, {size_, 0, 0},
                  {count, static_cast<hsize_t>(cell_sites_), 3}, sublattices.data(), path);
-  append_block(checksum_.get(), H5T_NATIVE_UINT64, {size_}, {count}, checksums.data(), path);
+  append_column(checksum_, H5T_NATIVE_UINT64, size_, checksums, path);
   size_ += count;
 }
 
 std::int64_t ScalarSeries::size(std::filesystem::path const& path) const {
   auto shortest = dataset_extents(time_.get(), path)[0];
-  for (auto const* dataset :
-       {&step_, &energy_, &norm_defect_, &magnetization_, &checksum_, &sublattices_})
-    if (dataset->get() >= 0)
-      shortest = std::min(shortest, dataset_extents(dataset->get(), path)[0]);
+  auto const shorten = [&](DatasetHandle const& dataset) {
+    if (dataset.get() >= 0) shortest = std::min(shortest, dataset_extents(dataset.get(), path)[0]);
+  };
+  for (auto const* dataset : {&step_, &checksum_, &sublattices_}) shorten(*dataset);
+  for (auto const& dataset : scalars_) shorten(dataset);
   return static_cast<std::int64_t>(shortest);
 }
 
@@ -147,18 +168,15 @@ std::int64_t ScalarSeries::readable(std::int64_t most_torn,
 
 std::vector<Sample> ScalarSeries::read(std::int64_t begin, std::int64_t end,
                                        std::filesystem::path const& path) const {
-  auto const read = [&]<class Value>(DatasetHandle const& dataset, hid_t type, Extents const& inner,
-                                     Value) {
-    return read_column<Value>(dataset.get(), type, begin, end, inner, path);
-  };
-  auto const times = read(time_, H5T_NATIVE_DOUBLE, {}, double());
-  auto const steps = read(step_, H5T_NATIVE_INT64, {}, std::int64_t());
-  auto const energies = read(energy_, H5T_NATIVE_DOUBLE, {}, double());
-  auto const defects = read(norm_defect_, H5T_NATIVE_DOUBLE, {}, double());
-  auto const means = read(magnetization_, H5T_NATIVE_DOUBLE, {3}, std::array<double, 3>());
+  auto const times = read_column<double>(time_, H5T_NATIVE_DOUBLE, begin, end, path);
+  auto const steps = read_column<std::int64_t>(step_, H5T_NATIVE_INT64, begin, end, path);
   std::vector<Sample> samples;
-  for (std::size_t i = 0; i < times.size(); ++i)
-    samples.push_back({steps[i], times[i], {energies[i], defects[i], means[i]}});
+  for (std::size_t i = 0; i < times.size(); ++i) samples.push_back({steps[i], times[i], {}});
+  auto dataset = scalars_.begin();
+  for_each_scalar([&]<class Value>(char const*, Value Scalars::*member) {
+    auto const values = read_column<Value>(*dataset++, H5T_NATIVE_DOUBLE, begin, end, path);
+    for (std::size_t i = 0; i < values.size(); ++i) samples[i].scalars.*member = values[i];
+  });
   if (!has_checksums()) return samples;
   auto const checksums = read_checksums(begin, end, path);
   auto const sublattices = read_sublattices(begin, end, path);
@@ -189,7 +207,7 @@ std::uint32_t ScalarSeries::spins_checksum(std::int64_t frame,
 
 std::vector<std::uint64_t> ScalarSeries::read_checksums(std::int64_t begin, std::int64_t end,
                                                         std::filesystem::path const& path) const {
-  return read_column<std::uint64_t>(checksum_.get(), H5T_NATIVE_UINT64, begin, end, {}, path);
+  return read_column<std::uint64_t>(checksum_, H5T_NATIVE_UINT64, begin, end, path);
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -21,7 +21,7 @@ struct Sample {
   Scalars scalars;
 };
 
-/// The datasets time, step, energy, norm_defect, magnetization and checksum of one group, and
+/// The datasets time, step, checksum and those of for_each_scalar of one group, and
 /// sublattice_magnetization of the frames of crystals with several sites in a cell. Files of
 /// earlier versions have no checksums.
 class ScalarSeries {
@@ -63,7 +63,8 @@ class ScalarSeries {
   std::vector<std::uint64_t> read_checksums(std::int64_t begin, std::int64_t end,
                                             std::filesystem::path const& path) const;
 
-  DatasetHandle time_, step_, energy_, norm_defect_, magnetization_, checksum_, sublattices_;
+  DatasetHandle time_, step_, checksum_, sublattices_;
+  std::vector<DatasetHandle> scalars_;  // in the order of for_each_scalar
   std::int64_t cell_sites_ = 1;
   hsize_t size_ = 0;
 };

@@ -109,9 +109,9 @@ void write_results(Writer& writer, std::vector<SweptRun> const& runs) {
   writer.column("status", runs, [](auto const& run) { return run.status; });
   writer.column("step", runs, [](auto const& run) { return run.step; });
   writer.column("time", runs, [](auto const& run) { return run.time; });
-  writer.column("energy", runs, [](auto const& run) { return run.scalars.energy; });
-  writer.column("norm_defect", runs, [](auto const& run) { return run.scalars.norm_defect; });
-  writer.column("magnetization", runs, [](auto const& run) { return run.scalars.magnetization; });
+  for_each_scalar([&](char const* name, auto member) {
+    writer.column(name, runs, [&](auto const& run) { return run.scalars.*member; });
+  });
   writer.column("evaluations", runs, [](auto const& run) { return run.cost.evaluations; });
   writer.column("wall_seconds", runs, [](auto const& run) { return run.cost.wall_seconds; });
   writer.column("step_seconds", runs, [](auto const& run) { return run.cost.step_seconds; });

@@ -111,9 +111,11 @@ std::vector<SweptRun> read_results(Reader const& reader, std::size_t count) {
   auto const message = reader.texts("message", {count});
   auto const step = reader.column<std::int64_t>("step", count);
   auto const time = reader.column<double>("time", count);
-  auto const energy = reader.column<double>("energy", count);
-  auto const norm_defect = reader.column<double>("norm_defect", count);
-  auto const magnetization = reader.column<std::array<double, 3>>("magnetization", count);
+  std::vector<Scalars> scalars(count);
+  for_each_scalar([&]<class Value>(char const* name, Value Scalars::*member) {
+    auto const column = reader.column<Value>(name, count);
+    for (std::size_t i = 0; i < count; ++i) scalars[i].*member = column[i];
+  });
   auto const evaluations = reader.column<std::int64_t>("evaluations", count);
   auto const wall = reader.column<double>("wall_seconds", count);
   auto const stepping = reader.column<double>("step_seconds", count);
@@ -125,7 +127,7 @@ std::vector<SweptRun> read_results(Reader const& reader, std::size_t count) {
                message[i],
                step[i],
                time[i],
-               {energy[i], norm_defect[i], magnetization[i]},
+               scalars[i],
                {evaluations[i], wall[i], stepping[i]},
                H5Lexists(files.get(), name.c_str(), H5P_DEFAULT) > 0};
   }
