@@ -72,8 +72,7 @@ class RunningScene : public Simulation<Real, Space> {
     auto const& now = found.sample;
     found.failure = guard_.judge(step, now.energy, now.norm_defect);
     if (with_torque && !found.failure)
-      found.at_rest =
-          now.energy.value < guard_.first_energy() && now.largest_rate < *until_torque_;
+      found.at_rest = now.energy.value < guard_.first_energy() && now.largest_rate < *until_torque_;
     return found;
   }
 
