@@ -25,26 +25,9 @@ namespace {
 using namespace cayspin;
 using ladder::Ladder;
 using ladder::Spins;
+using ladder::start_of;
 
 std::vector<double> const errors{1e-2, 5e-4, 1e-6};
-
-/// Unit vectors along f(x, y, z, site), x = (index + 1/2) / extent.
-template <class Function>
-std::vector<double> start_of(Lattice const& lattice, Function const& f) {
-  std::vector<double> spins;
-  auto const& [nx, ny, nz] = lattice.shape;
-  auto const place = [](std::int64_t i, std::int64_t n) {
-    return (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-  };
-  for (std::int64_t k = 0; k < nz; ++k)
-    for (std::int64_t j = 0; j < ny; ++j)
-      for (std::int64_t i = 0; i < nx; ++i) {
-        Vec3<double> const m = f(place(i, nx), place(j, ny), 12.9 * i + 78.2 * j + 37.7 * k);
-        double const length = std::sqrt(dot(m, m));
-        for (double const c : {m.x, m.y, m.z}) spins.push_back(c / length);
-      }
-  return spins;
-}
 
 template <class Generator>
 struct Problem {

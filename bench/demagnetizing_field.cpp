@@ -4,7 +4,7 @@
 // fastest, or by cuFFT. Both on one thread with OMP_NUM_THREADS=1. Cases are named
 // PRECISION/WHAT/SHAPE.
 //   bench_demagnetizing_field --benchmark_filter=f64 --benchmark_repetitions=5
-#include "context.hpp"
+#include "main.hpp"
 #include "padded_transforms.hpp"
 #include "scene.hpp"
 
@@ -58,9 +58,7 @@ void add(std::string const& prefix) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Kokkos::ScopeGuard const kokkos(argc, argv);
+void register_benchmarks() {
   add<double>("f64/");
   add<float>("f32/");
-  return run_benchmarks(argc, argv);
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Nanoseconds per spin and evaluation of methods of high order and of adaptive steps, beside
 // RKMK4. Cases are named evaluations/PRECISION/METHOD/SIZE.
-#include "context.hpp"
+#include "main.hpp"
 #include "scene.hpp"
 
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -21,14 +22,7 @@ void report(benchmark::State& state, std::int64_t sites, double evaluations) {
 
 template <class Stepper>
 void time_equal_steps(benchmark::State& state, Lattice const& lattice) {
-  auto spins = scene::random<typename Stepper::spins_type>(lattice);
-  auto const generator = scene::Default::generator(lattice);
-  Stepper stepper(spins);
-  Kokkos::DefaultExecutionSpace const exec;
-  for (auto _ : state) {
-    stepper.step(exec, generator, spins, 0, scene::dt);
-    exec.fence();
-  }
+  scene::time_steps<Stepper>(state, lattice);
   report(state, lattice.sites(), Stepper::evaluations);
 }
 
@@ -54,13 +48,10 @@ void time_adaptive_steps(benchmark::State& state, Lattice const& lattice) {
 template <class Real>
 void register_methods(std::string const& precision) {
   using Spins = SpinField<Real>;
+  std::vector<scene::Size> const sizes{{Lattice::square(256, 256), "256^2"},
+                                       {scene::cube(64).lattice, "64^3"}};
   auto const add = [&](std::string const& method, auto run) {
-    auto const on = [&](Lattice const& lattice, std::string const& size) {
-      scene::add("evaluations/" + precision + "/" + method + "/" + size,
-                 [=](benchmark::State& state) { run(state, lattice); });
-    };
-    on(Lattice::square(256, 256), "256^2");
-    on(scene::cube(64), "64^3");
+    scene::add("evaluations/" + precision + "/" + method, sizes, run);
   };
   add("rkmk4", time_equal_steps<Rkmk4<Spins>>);
   add("rkmk5", time_equal_steps<Rkmk<Spins, tableau::Tsitouras5>>);
@@ -71,9 +62,7 @@ void register_methods(std::string const& precision) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Kokkos::ScopeGuard const kokkos(argc, argv);
+void register_benchmarks() {
   register_methods<double>("f64");
   register_methods<float>("f32");
-  return run_benchmarks(argc, argv);
 }

@@ -3,13 +3,10 @@
 // steps, beside hand-written loops for the same scene: one over numbers, and the same as the
 // compiler vectorises it. Cases are named few spins/METHOD/EXECUTION SPACE, few spins/scalar METHOD
 // and few spins/vectorized METHOD.
-#include "context.hpp"
-#include "hand_written_chain.hpp"
+#include "hand_written.hpp"
+#include "main.hpp"
 #include "scene.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -44,34 +41,16 @@ void run(benchmark::State& state) {
   report(state);
 }
 
-/// How far the spins of the hand-written loop are from those of the library's renormalised method
-/// after a few steps.
-template <class Stepper, class Loop, class Method>
-double distance(Loop& loop, Method method) {
+template <class Renormalized, class Loop, class Method>
+void run_hand_written(benchmark::State& state, Method method) {
   constexpr int few = 11;
-  auto spins = scene::random<Spins>(chain());
-  Stepper stepper(spins);
+  Loop loop({sites, scene::exchange, scene::anisotropy, scene::applied, scene::damping});
   hand_written::Vectors<double> m(sites);
   hand_written::fill(m, random_spins(sites));
   (loop.*method)(m, scene::dt, few);
-  for (int step = 0; step < few; ++step)
-    stepper.step(Kokkos::DefaultHostExecutionSpace(), scene::Default::generator(chain()), spins, 0,
-                 scene::dt);
-  auto const ours = copy_to_host(spins);
-  double most = 0;
-  for (std::size_t i = 0; i < sites; ++i)
-    most = std::max({most, std::abs(ours[3 * i] - m.x.data[i]),
-                     std::abs(ours[3 * i + 1] - m.y.data[i]),
-                     std::abs(ours[3 * i + 2] - m.z.data[i])});
-  return most;
-}
-
-template <class Renormalized, class Loop, class Method>
-void run_hand_written(benchmark::State& state, Method method) {
-  Loop loop({sites, scene::exchange, scene::anisotropy, scene::applied, scene::damping});
-  if (!(distance<Renormalized>(loop, method) < 1e-13))
+  if (!(scene::distance_to<Renormalized>(hand_written::numbers_of(m, sites), chain(), few,
+                                         scene::dt) < 1e-13))
     return state.SkipWithError("the loop does not take the steps that it stands for");
-  hand_written::Vectors<double> m(sites);
   hand_written::fill(m, random_spins(sites));
   for (auto _ : state) (loop.*method)(m, scene::dt, steps);
   report(state);
@@ -84,8 +63,9 @@ void add_hand_written(std::string const& name, Method method) {
   });
 }
 
-using Scalar = hand_written::ChainSteps<hand_written::Loops::scalar>;
-using Vectorized = hand_written::ChainSteps<hand_written::Loops::vectorized>;
+using hand_written::Chain, hand_written::Loops;
+using Scalar = hand_written::Steps<Chain<Loops::scalar>>;
+using Vectorized = hand_written::Steps<Chain<Loops::vectorized>>;
 template <class Loop>
 using MethodOf = void (Loop::*)(hand_written::Vectors<double>&, double, std::int64_t);
 
@@ -104,13 +84,11 @@ void add(std::string const& name, MethodOf<Scalar> scalar, MethodOf<Vectorized> 
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Kokkos::ScopeGuard const kokkos(argc, argv);
+void register_benchmarks() {
   add<cayspin::LieEuler<Spins>, cayspin::ProjectedEuler<Spins>>("Euler", &Scalar::euler,
                                                                 &Vectorized::euler);
   add<cayspin::LieHeun<Spins>, cayspin::ProjectedHeun<Spins>>("Heun", &Scalar::heun,
                                                               &Vectorized::heun);
   add<cayspin::Rkmk4<Spins>, cayspin::ProjectedRk4<Spins>>("RKMK4", &Scalar::runge_kutta4,
                                                            &Vectorized::runge_kutta4);
-  return run_benchmarks(argc, argv);
 }

@@ -2,74 +2,95 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <vector>
 
 // What a good engineer writes in a day for exactly one scene, without a library: separate component
 // arrays, OpenMP over rows, a vectorised inner loop, one fused loop per stage, renormalised at the
-// end of the step. Exchange with six neighbours (open ends), uniaxial anisotropy and field along z,
-// damping. It is the yardstick of the benchmarks: it shares no code with cayspin, and is compiled
-// on its own with the flags that serve it best.
+// end of the step. It is the yardstick of the benchmarks: it shares no code with cayspin, and is
+// compiled on its own with the flags that serve it best.
 namespace hand_written {
 
 /// Asks for 2 MiB pages; without them the loop waits for address translation beyond the caches.
 void advise_huge_pages(void* begin, std::size_t bytes);
 
-template <class Real>
+template <class Number>
 struct Array {
   explicit Array(std::size_t n)
-      : data(static_cast<Real*>(::operator new(n * sizeof(Real), std::align_val_t(64)))) {
-    advise_huge_pages(data, n * sizeof(Real));
+      : data(static_cast<Number*>(::operator new(n * sizeof(Number), std::align_val_t(64)))) {
+    advise_huge_pages(data, n * sizeof(Number));
   }
   ~Array() { ::operator delete(data, std::align_val_t(64)); }
   Array(Array const&) = delete;
   Array& operator=(Array const&) = delete;
-  Real* data;
+  Number* data;
 };
 
-template <class Real>
+template <class Number>
 struct Vectors {
   explicit Vectors(std::size_t n) : x(n), y(n), z(n) {}
-  Array<Real> x, y, z;
+  Array<Number> x, y, z;
 };
 
 /// From (sites, 3); each thread touches first what it works on.
-template <class Real>
-void fill(Vectors<Real>& vectors, std::vector<double> const& from);
+template <class Number>
+void fill(Vectors<Number>& vectors, std::vector<double> const& from);
+/// To (sites, 3).
+template <class Number>
+std::vector<double> numbers_of(Vectors<Number> const& vectors, std::size_t sites);
 
-/// n x n x n sites and the coefficients of the scene.
-template <class Real>
+/// n x n x n sites: exchange with six neighbours (open ends), uniaxial anisotropy and field along
+/// z, damping.
+template <class Number>
 struct Cube {
+  using Real = Number;
   int n;
   Real exchange, anisotropy, applied, damping;
 
   std::size_t sites() const { return static_cast<std::size_t>(n) * n * n; }
 };
 
-template <class Real>
-class Heun {
- public:
-  explicit Heun(Cube<Real> const& cube) : cube_(cube), v_(cube.sites()), k_(cube.sites()) {}
-  void step(Vectors<Real>& m, Real dt);
+/// bcc, n x n x n periodic cells of two sites, exchange with 8 neighbours or, with a second shell,
+/// 14, a field along z, damping. It is what one writes who knows the offsets of all neighbours when
+/// the program is compiled. Spins by plane z, and in it sites 0 of all cells before sites 1.
+template <class Number, bool SecondShell>
+struct Bcc {
+  using Real = Number;
+  int n;
+  Real first_shell, second_shell, applied, damping;
 
- private:
-  Cube<Real> cube_;
-  Vectors<Real> v_, k_;
+  std::size_t sites() const { return 2 * static_cast<std::size_t>(n) * n * n; }
 };
 
-template <class Real>
-class RungeKutta4 {
+/// One source, compiled twice: number by number, and with packs that the compiler makes of it.
+enum class Loops { scalar, vectorized };
+
+/// n sites along x with open ends, otherwise as Cube, in double, on one thread.
+template <Loops>
+struct Chain {
+  using Real = double;
+  std::size_t n;
+  double exchange, anisotropy, applied, damping;
+
+  std::size_t sites() const { return n; }
+};
+
+/// Steps of one of these scenes: a loop for each stage, renormalised at the end of the step.
+template <class Scene>
+class Steps {
+  using Real = typename Scene::Real;
+
  public:
-  explicit RungeKutta4(Cube<Real> const& cube)
-      : cube_(cube), v_(cube.sites()), w_(cube.sites()), sum_(cube.sites()) {}
-  void step(Vectors<Real>& m, Real dt);
+  explicit Steps(Scene const& scene)
+      : scene_(scene), v_(scene.sites()), w_(scene.sites()), sum_(scene.sites()) {}
+
+  void euler(Vectors<Real>& m, Real dt, std::int64_t steps = 1);
+  void heun(Vectors<Real>& m, Real dt, std::int64_t steps = 1);
+  void runge_kutta4(Vectors<Real>& m, Real dt, std::int64_t steps = 1);
 
  private:
-  template <bool First>
-  void stage(Vectors<Real> const& m, Vectors<Real> const& at, Vectors<Real>& next, Real step,
-             Real weight);
-
-  Cube<Real> cube_;
+  Scene scene_;
   Vectors<Real> v_, w_, sum_;
 };
 

@@ -34,16 +34,10 @@ constexpr double horizon = 16, damping = 0.02, exchange = 32.3;
 Lattice film() { return {.shape = {200, 50, 1}, .spacing = {2.5, 2.5, 3}}; }
 
 std::vector<double> start() {
-  std::vector<double> spins;
-  for (int j = 0; j < 50; ++j)
-    for (int i = 0; i < 200; ++i) {
-      using std::numbers::pi;
-      double const x = (i + 0.5) / 200, y = (j + 0.5) / 50;
-      Vec3<double> const m{1, 0.4 + 0.3 * std::cos(pi * y), 0.3 * std::cos(pi * x)};
-      double const length = std::sqrt(dot(m, m));
-      for (double const c : {m.x, m.y, m.z}) spins.push_back(c / length);
-    }
-  return spins;
+  using std::numbers::pi;
+  return ladder::start_of(film(), [](double x, double y, double) {
+    return Vec3<double>{1, 0.4 + 0.3 * std::cos(pi * y), 0.3 * std::cos(pi * x)};
+  });
 }
 
 auto cheap_field() {

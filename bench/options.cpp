@@ -2,30 +2,108 @@
 // What each option of the integrators costs: nanoseconds per spin and step of a chain of 100 spins,
 // of cubes, and of a lattice that the second cache holds. Cases are named options/METHOD,
 // OPTION/SIZE.
-#include "context.hpp"
+#include "main.hpp"
 #include "scene.hpp"
 #include "stream.hpp"
-#include "systems.hpp"
 
+#include <cmath>
 #include <string>
+#include <vector>
 
 namespace {
 
-using Spins = cayspin::SpinField<double>;
 using namespace cayspin;
+using Spins = SpinField<double>;
 using scene::Default, scene::Orthogonal;
-using namespace systems;
+
+// The scene with one thing changed.
+struct Bodies {
+  static auto generator(Lattice const&) { return RigidBody::principal(1, 2, 3); }
+};
+
+/// One number on all sites, kept for each of them.
+ScalarField<double> on_sites(Lattice const& lattice, double number) {
+  return {"coefficient", lattice, number};
+}
+
+template <class Exchange, class Anisotropy, class Applied, class... Others>
+auto landau_lifshitz(Exchange exchange, Anisotropy anisotropy, Applied applied, Others... others) {
+  return LandauLifshitz(EffectiveField(exchange, anisotropy, applied, others...), scene::damping);
+}
+
+Exchange exchange(Lattice const& lattice) { return {lattice, scene::exchange}; }
+UniaxialAnisotropy anisotropy() { return {scene::anisotropy, {0, 0, 1}}; }
+Zeeman applied() { return {{0, 0, scene::applied}}; }
+
+struct Turning {
+  Vec3<double> operator()(double t) const {
+    return {scene::applied * std::sin(t), 0, scene::applied * std::cos(t)};
+  }
+};
+
+struct FieldOfTime {
+  static auto generator(Lattice const& lattice) {
+    return landau_lifshitz(exchange(lattice), anisotropy(), TimeDependentZeeman(Turning()));
+  }
+};
+
+struct HostDemag {
+  static auto generator(Lattice const& lattice) {
+    return landau_lifshitz(exchange(lattice), anisotropy(), applied(),
+                           HostField<Spins, SlabDemagOnHost>(lattice, SlabDemagOnHost({0, 0, 1})));
+  }
+};
+
+struct AnisotropyOfSites {
+  static auto generator(Lattice const& lattice) {
+    Spins const axes("axes", lattice);
+    return landau_lifshitz(
+        exchange(lattice),
+        SiteDependentUniaxialAnisotropy(on_sites(lattice, scene::anisotropy), axes), applied());
+  }
+};
+
+struct ExchangeOfSites {
+  static auto generator(Lattice const& lattice) {
+    return landau_lifshitz(SiteDependentExchange(on_sites(lattice, scene::exchange)), anisotropy(),
+                           applied());
+  }
+};
+
+struct DampingOfSites {
+  static auto generator(Lattice const& lattice) {
+    return LandauLifshitz(scene::Default::field(lattice), on_sites(lattice, scene::damping));
+  }
+};
+
+/// Steps through integrate with energy, norm defect and magnetization taken after each.
+template <class Stepper>
+void time_observed_steps(benchmark::State& state, Lattice const& lattice) {
+  auto spins = scene::random<typename Stepper::spins_type>(lattice);
+  auto const generator = scene::Default::generator(lattice);
+  Stepper stepper(spins);
+  std::vector<Sample> samples;
+  Record record(scene::Default::field(lattice), samples);
+  Kokkos::DefaultExecutionSpace const exec;
+  constexpr std::int64_t steps = 8;
+  std::int64_t done = 0;
+  for (auto _ : state) {
+    samples.clear();
+    integrate(exec, stepper, generator, spins,
+              {.begin = 0, .dt = scene::dt, .steps = done + steps, .first = done}, record);
+    done += steps;
+  }
+  double const words_of_step = 6, words_of_sample = 3;
+  scene::report(state, lattice.sites() * steps,
+                words_of_step + words_of_sample * (steps + 1) / steps, 0);
+}
 
 template <class Run>
 void on_sizes(std::string const& name, Run run) {
-  auto const on = [&](Lattice const& lattice, char const* size) {
-    scene::add("options/" + name + "/" + size,
-               [=](benchmark::State& state) { run(state, lattice); });
-  };
-  on(Lattice::chain(100), "100");
-  on(scene::in_l2(), "L2");
-  on(scene::cube(32), "32");
-  on(scene::cube(128), "128");
+  scene::add(
+      "options/" + name,
+      {{Lattice::chain(100), "100"}, {scene::in_l2(), "L2"}, scene::cube(32), scene::cube(128)},
+      run);
 }
 
 /// `words`: see scene::words_moved; 0 if there is no prediction.
@@ -86,12 +164,9 @@ void register_order_4() {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Kokkos::ScopeGuard const kokkos(argc, argv);
-  stream::Arrays arrays;
-  stream::register_copies(arrays);
+void register_benchmarks() {
+  stream::register_copies();
   register_euler();
   register_heun();
   register_order_4();
-  return run_benchmarks(argc, argv);
 }

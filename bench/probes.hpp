@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 // How fast a step can be on one core, out of its second cache: each method written out for one
@@ -15,31 +14,37 @@ struct Scene {
   double exchange, anisotropy, applied, damping;
 };
 
-/// One method and its work memory.
+/// The spins of a scene, work memory, and steps by each method.
 template <class Real>
 class Probe {
  public:
-  virtual ~Probe() = default;
-  virtual void step(Real dt) = 0;
+  explicit Probe(Scene const& scene);
+
+  void euler(Real dt);
+  void heun(Real dt);
+  void rkmk4(Real dt);
+  void chart_heun(Real dt);
+  void chart_rk4(Real dt);
+  void projected_rk4(Real dt);
+
   /// Spins as (sites, 3), x fastest.
-  virtual void set(std::vector<double> const& spins) = 0;
-  virtual std::vector<double> get() const = 0;
+  void set(std::vector<double> const& spins);
+  std::vector<double> get() const;
+
+ private:
+  static constexpr int margin = 64 / static_cast<int>(sizeof(Real));
+
+  auto read(int field, std::ptrdiff_t at) const;
+  template <class Vector>
+  void write(Vector const& v, int field, std::ptrdiff_t at);
+  template <bool Whole, class Body>
+  void for_each_pack(int level, int out, Body const& body);
+  template <class Work>
+  void for_each_site(Work const& work) const;
+
+  Scene scene_;
+  std::ptrdiff_t pitch_, stride_;
+  std::vector<Real> fields_[7];  // the spins are the first
 };
-
-template <class Real>
-using Made = std::unique_ptr<Probe<Real>>;
-
-template <class Real>
-Made<Real> euler(Scene const& scene);
-template <class Real>
-Made<Real> heun(Scene const& scene);
-template <class Real>
-Made<Real> rkmk4(Scene const& scene);
-template <class Real>
-Made<Real> chart_heun(Scene const& scene);
-template <class Real>
-Made<Real> chart_rk4(Scene const& scene);
-template <class Real>
-Made<Real> projected_rk4(Scene const& scene);
 
 }  // namespace probes

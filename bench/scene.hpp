@@ -7,7 +7,11 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 // The scene of the benchmarks, and how a stepper is timed on it.
 namespace scene {
@@ -19,7 +23,13 @@ inline constexpr double exchange = 1, anisotropy = 0.5, applied = 0.3, damping =
 /// Small enough for the second cache, and run by the calling thread.
 inline cayspin::Lattice in_l2() { return cayspin::Lattice::cubic(128, 4, 4); }
 
-inline cayspin::Lattice cube(std::int64_t n) { return cayspin::Lattice::cubic(n, n, n); }
+/// A lattice, and what cases on it are called.
+struct Size {
+  cayspin::Lattice lattice;
+  std::string name;
+};
+
+inline Size cube(std::int64_t n) { return {cayspin::Lattice::cubic(n, n, n), std::to_string(n)}; }
 
 struct Default {
   static auto field(cayspin::Lattice const& lattice) {
@@ -83,9 +93,9 @@ double work_bytes(Stepper const& stepper) {
     return 0;
 }
 
-/// Times step after step.
-template <class Stepper, class System>
-void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double words_of_passes) {
+/// Times step after step; returns the stepper.
+template <class Stepper, class System = Default>
+Stepper time_steps(benchmark::State& state, cayspin::Lattice const& lattice) {
   auto spins = random<typename Stepper::spins_type>(lattice);
   auto const generator = System::generator(lattice);
   auto stepper = make_stepper<Stepper>(spins);
@@ -96,12 +106,42 @@ void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double
     stepper.step(exec, generator, spins, 0, dt);
     exec.fence();
   }
+  return stepper;
+}
+/// And reports them.
+template <class Stepper, class System>
+void time_steps(benchmark::State& state, cayspin::Lattice const& lattice, double words_of_passes) {
+  auto const stepper = time_steps<Stepper, System>(state, lattice);
   report(state, lattice.sites(), words_moved(stepper, words_of_passes), work_bytes(stepper));
+}
+
+/// How far `others`, (sites, 3), are from the spins after so many of the library's steps.
+template <class Stepper, class System = Default>
+double distance_to(std::vector<double> const& others, cayspin::Lattice const& lattice, int steps,
+                   double step) {
+  using Spins = typename Stepper::spins_type;
+  typename Spins::memory_space::execution_space const exec;
+  auto spins = random<Spins>(lattice);
+  auto stepper = make_stepper<Stepper>(spins);
+  auto const generator = System::generator(lattice);
+  for (int i = 0; i < steps; ++i) stepper.step(exec, generator, spins, 0, step);
+  auto const ours = copy_to_host(spins);
+  double most = 0;
+  for (std::size_t i = 0; i < others.size(); ++i)
+    most = std::max(most, std::abs(static_cast<double>(ours[i]) - others[i]));
+  return most;
 }
 
 template <class Run>
 void add(std::string const& name, Run run) {
   benchmark::RegisterBenchmark(name.c_str(), run)->UseRealTime()->Unit(benchmark::kMillisecond);
+}
+/// NAME/SIZE for each size: run(state, lattice).
+template <class Run>
+void add(std::string const& name, std::vector<Size> const& sizes, Run run) {
+  for (auto const& size : sizes)
+    add(name + "/" + size.name,
+        [run, lattice = size.lattice](benchmark::State& state) { run(state, lattice); });
 }
 
 }  // namespace scene

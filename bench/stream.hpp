@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #if defined(__linux__)
@@ -55,7 +56,7 @@ inline std::int64_t array_bytes() {
   return std::clamp(4 * cache, std::int64_t(256) << 20, std::int64_t(1) << 30);
 }
 
-/// Allocated by the first copy; lives as long as the benchmarks run.
+/// Allocated by the first copy.
 struct Arrays {
   std::int64_t size = array_bytes() / 8 / block * block;
   Array from, to;
@@ -94,13 +95,14 @@ void run(benchmark::State& state, Arrays& arrays) {
       benchmark::Counter::kIsRate);
 }
 
-inline void register_copies(Arrays& arrays) {
+inline void register_copies() {
+  auto const arrays = std::make_shared<Arrays>();
   auto const add = [](char const* name, auto run) {
     benchmark::RegisterBenchmark(name, run)->UseRealTime()->Unit(benchmark::kMillisecond);
   };
-  add("stream copy", [&arrays](benchmark::State& state) { run<false>(state, arrays); });
+  add("stream copy", [arrays](benchmark::State& state) { run<false>(state, *arrays); });
   add("stream copy, non-temporal",
-      [&arrays](benchmark::State& state) { run<true>(state, arrays); });
+      [arrays](benchmark::State& state) { run<true>(state, *arrays); });
 }
 
 }  // namespace stream

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps alone, and with the noise of a temperature between them: nanoseconds per spin and step.
 // Cases are named thermal/METHOD, PRECISION[, noise]/SIZE.
-#include "context.hpp"
+#include "main.hpp"
 #include "scene.hpp"
 
 #include <cayspin/observer/thermal_noise.hpp>
 
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -33,17 +34,14 @@ struct Noisy {
 
 template <class Stepper>
 void add_pair(std::string const& name) {
-  auto const add_on = [&](Lattice const& lattice, std::string const& size) {
-    scene::add("thermal/" + name + "/" + size, [=](benchmark::State& state) {
-      scene::time_steps<Stepper, scene::Default>(state, lattice, 0);
-    });
-    scene::add("thermal/" + name + ", noise/" + size, [=](benchmark::State& state) {
-      scene::time_steps<Noisy<Stepper>, scene::Default>(state, lattice, 0);
-    });
-  };
-  add_on(scene::in_l2(), "L2");
-  add_on(scene::cube(32), "32");
-  add_on(scene::cube(128), "128");
+  std::vector<scene::Size> const sizes{{scene::in_l2(), "L2"}, scene::cube(32), scene::cube(128)};
+  scene::add("thermal/" + name, sizes, [](benchmark::State& state, Lattice const& lattice) {
+    scene::time_steps<Stepper, scene::Default>(state, lattice, 0);
+  });
+  scene::add("thermal/" + name + ", noise", sizes,
+             [](benchmark::State& state, Lattice const& lattice) {
+               scene::time_steps<Noisy<Stepper>, scene::Default>(state, lattice, 0);
+             });
 }
 
 template <class Real>
@@ -56,9 +54,7 @@ void add_all(std::string const& precision) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Kokkos::ScopeGuard const kokkos(argc, argv);
+void register_benchmarks() {
   add_all<double>("double");
   add_all<float>("single");
-  return run_benchmarks(argc, argv);
 }

@@ -4,67 +4,53 @@
 // or L2 for a lattice that the second cache holds. There a probe stands beside each method: its
 // step written out for this scene alone, on one core.
 //   bench_throughput --benchmark_filter='/(32|128)/' --benchmark_out=32_128.json
-#include "context.hpp"
 #include "hand_written.hpp"
+#include "main.hpp"
 #include "probes.hpp"
 #include "scene.hpp"
 #include "stream.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace {
 
-template <template <class> class Method, class Real>
-void run_hand_written(benchmark::State& state, int n, double words) {
-  hand_written::Cube<Real> const cube{
-      n, static_cast<Real>(scene::exchange), static_cast<Real>(scene::anisotropy),
-      static_cast<Real>(scene::applied), static_cast<Real>(scene::damping)};
+template <class Real>
+using Cube = hand_written::Cube<Real>;
+
+template <class Real, class Method>
+void run_hand_written(benchmark::State& state, Method method, int n, double words) {
+  Cube<Real> const cube{n, static_cast<Real>(scene::exchange), static_cast<Real>(scene::anisotropy),
+                        static_cast<Real>(scene::applied), static_cast<Real>(scene::damping)};
   hand_written::Vectors<Real> spins(cube.sites());
   auto const sites = static_cast<std::int64_t>(cube.sites());
   hand_written::fill(spins, random_spins(sites));
-  Method<Real> method(cube);
-  for (int i = 0; i < 2; ++i) method.step(spins, static_cast<Real>(scene::dt));
-  for (auto _ : state) method.step(spins, static_cast<Real>(scene::dt));
+  hand_written::Steps<Cube<Real>> steps(cube);
+  auto const dt = static_cast<Real>(scene::dt);
+  (steps.*method)(spins, dt, 2);
+  for (auto _ : state) (steps.*method)(spins, dt, 1);
   scene::report(state, sites, words, 0);
 }
 
-/// How far the spins of a probe are from those of the library's method after a few steps.
-template <class Stepper>
-double distance(probes::Probe<typename Stepper::spins_type::value_type>& probe) {
-  auto const lattice = scene::in_l2();
-  auto spins = scene::random<typename Stepper::spins_type>(lattice);
-  auto stepper = scene::make_stepper<Stepper>(spins);
-  auto const generator = scene::Default::generator(lattice);
-  probe.set(random_spins(lattice.sites()));
-  for (int step = 0; step < 10; ++step) {
-    stepper.step(Kokkos::DefaultExecutionSpace(), generator, spins, 0, scene::dt);
-    probe.step(static_cast<typename Stepper::spins_type::value_type>(scene::dt));
-  }
-  auto const ours = copy_to_host(spins);
-  auto const its = probe.get();
-  double most = 0;
-  for (std::size_t i = 0; i < its.size(); ++i)
-    most = std::max(most, std::abs(static_cast<double>(ours[i]) - its[i]));
-  return most;
-}
-
-template <class Stepper, class Make>
-void run_probe(benchmark::State& state, Make const& make, double words) {
+template <class Stepper, class Method>
+void run_probe(benchmark::State& state, Method method, double words) {
   using Real = typename Stepper::spins_type::value_type;
-  auto const shape = scene::in_l2().shape;
-  auto const probe = make(probes::Scene{static_cast<int>(shape[0]), static_cast<int>(shape[1]),
-                                        static_cast<int>(shape[2]), scene::exchange,
-                                        scene::anisotropy, scene::applied, scene::damping});
-  if (!(distance<Stepper>(*probe) < 200 * std::numeric_limits<Real>::epsilon()))
+  constexpr int few = 10;
+  auto const dt = static_cast<Real>(scene::dt);
+  auto const lattice = scene::in_l2();
+  auto const& shape = lattice.shape;
+  probes::Probe<Real> probe({static_cast<int>(shape[0]), static_cast<int>(shape[1]),
+                             static_cast<int>(shape[2]), scene::exchange, scene::anisotropy,
+                             scene::applied, scene::damping});
+  probe.set(random_spins(lattice.sites()));
+  for (int step = 0; step < few; ++step) (probe.*method)(dt);
+  if (!(scene::distance_to<Stepper>(probe.get(), lattice, few, scene::dt) <
+        200 * std::numeric_limits<Real>::epsilon()))
     return state.SkipWithError("the probe does not take the steps that it stands for");
-  for (auto _ : state) probe->step(static_cast<Real>(scene::dt));
-  scene::report(state, scene::in_l2().sites(), words, 0);
+  for (auto _ : state) (probe.*method)(dt);
+  scene::report(state, lattice.sites(), words, 0);
 }
 
 constexpr int edges[] = {5, 10, 16, 24, 32, 48, 64, 96, 128, 192, 256, 292};
@@ -72,21 +58,22 @@ constexpr int edges[] = {5, 10, 16, 24, 32, 48, 64, 96, 128, 192, 256, 292};
 template <class Real>
 class Register {
   using Spins = cayspin::SpinField<Real>;
+  using Loop = hand_written::Steps<Cube<Real>>;
+  using Probe = probes::Probe<Real>;
 
  public:
   explicit Register(std::string const& precision) : prefix_(precision + "/") {
     using cayspin::StereographicRungeKutta, cayspin::tableau::Heun, cayspin::tableau::Classical4;
     using Orthogonal = scene::Orthogonal<scene::Default>;
     // Numbers read and written per spin and step where each stage is a pass over memory.
-    hand_written<hand_written::Heun>("hand-written Heun", 27);
-    hand_written<hand_written::RungeKutta4>("hand-written RK4", 63);
-    add_probe<cayspin::LieEuler<Spins>>("Euler", probes::euler<Real>, 6);
-    add_probe<cayspin::LieHeun<Spins>>("Heun", probes::heun<Real>, 21);
-    add_probe<cayspin::Rkmk4<Spins>>("RKMK4", probes::rkmk4<Real>, 57);
-    add_probe<StereographicRungeKutta<Spins, Heun>>("Heun tangent", probes::chart_heun<Real>, 15);
-    add_probe<StereographicRungeKutta<Spins, Classical4>>("RKMK4 tangent", probes::chart_rk4<Real>,
-                                                          39);
-    add_probe<cayspin::ProjectedRk4<Spins>>("RK4 projected", probes::projected_rk4<Real>, 51);
+    hand_written("hand-written Heun", &Loop::heun, 27);
+    hand_written("hand-written RK4", &Loop::runge_kutta4, 63);
+    add_probe<cayspin::LieEuler<Spins>>("Euler", &Probe::euler, 6);
+    add_probe<cayspin::LieHeun<Spins>>("Heun", &Probe::heun, 21);
+    add_probe<cayspin::Rkmk4<Spins>>("RKMK4", &Probe::rkmk4, 57);
+    add_probe<StereographicRungeKutta<Spins, Heun>>("Heun tangent", &Probe::chart_heun, 15);
+    add_probe<StereographicRungeKutta<Spins, Classical4>>("RKMK4 tangent", &Probe::chart_rk4, 39);
+    add_probe<cayspin::ProjectedRk4<Spins>>("RK4 projected", &Probe::projected_rk4, 51);
     add<cayspin::LieEuler<Spins>>("Euler", 6);
     add<cayspin::LieHeun<Spins>>("Heun", 21);
     add<cayspin::Rkmk4<Spins>>("RKMK4", 57);
@@ -100,28 +87,27 @@ class Register {
   }
 
  private:
-  template <template <class> class Method>
-  void hand_written(std::string const& name, double words) const {
+  template <class Method>
+  void hand_written(std::string const& name, Method method, double words) const {
     for (int const n : edges)
       scene::add(prefix_ + name + "/" + std::to_string(n),
-                 [=](benchmark::State& state) { run_hand_written<Method, Real>(state, n, words); });
+                 [=](benchmark::State& state) { run_hand_written<Real>(state, method, n, words); });
   }
 
-  template <class Stepper, class Make>
-  void add_probe(std::string const& name, Make make, double words) const {
+  template <class Stepper, class Method>
+  void add_probe(std::string const& name, Method method, double words) const {
     scene::add(prefix_ + "probe " + name + "/L2",
-               [=](benchmark::State& state) { run_probe<Stepper>(state, make, words); });
+               [=](benchmark::State& state) { run_probe<Stepper>(state, method, words); });
   }
 
   template <class Stepper, class System = scene::Default>
   void add(std::string const& name, double words) const {
-    auto const on = [&](cayspin::Lattice const& lattice, std::string const& size) {
-      scene::add(prefix_ + name + "/" + size, [=](benchmark::State& state) {
-        scene::time_steps<Stepper, System>(state, lattice, words);
-      });
-    };
-    on(scene::in_l2(), "L2");
-    for (int const n : edges) on(scene::cube(n), std::to_string(n));
+    std::vector<scene::Size> sizes{{scene::in_l2(), "L2"}};
+    for (int const n : edges) sizes.push_back(scene::cube(n));
+    scene::add(prefix_ + name, sizes,
+               [=](benchmark::State& state, cayspin::Lattice const& lattice) {
+                 scene::time_steps<Stepper, System>(state, lattice, words);
+               });
   }
 
   std::string prefix_;
@@ -129,11 +115,8 @@ class Register {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  Kokkos::ScopeGuard const kokkos(argc, argv);
-  stream::Arrays arrays;
-  stream::register_copies(arrays);
+void register_benchmarks() {
+  stream::register_copies();
   Register<double>("f64");
   Register<float>("f32");
-  return run_benchmarks(argc, argv);
 }

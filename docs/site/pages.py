@@ -10,10 +10,9 @@ import shutil
 
 TREE = {
     "Guide": ["docs/README", "docs/guide/first_run", "docs/guide/first_program", "docs/gallery",
-              "docs/guide/choosing_a_method", "docs/guide/scenes_hold", "docs/guide/states_of_rest",
-              "docs/guide/python", "docs/guide/units", "docs/guide/own_field_term",
-              "docs/guide/own_generator", "docs/guide/own_views", "docs/guide/many_ranks",
-              "docs/guide/linking"],
+              "docs/guide/choosing_a_method", "docs/guide/states_of_rest", "docs/guide/python",
+              "docs/guide/units", "docs/guide/own_field_term", "docs/guide/own_generator",
+              "docs/guide/own_views", "docs/guide/many_ranks", "docs/guide/linking"],
     "Reference": ["docs/reference/scene", "docs/reference/command_line",
                   "docs/reference/file_format", "docs/reference/conventions",
                   "docs/reference/field_terms", "docs/reference/methods", "docs/reference/classes",

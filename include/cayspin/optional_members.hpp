@@ -12,29 +12,27 @@ namespace cayspin::inline v0_1::detail {
 
 template <class Term, class Stencil>
 concept has_field = requires(Term const& term, Stencil const& stencil) {
-  { term.field(stencil) } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+  { term.field(stencil) } -> std::convertible_to<VectorOf<Stencil>>;
 };
 
 template <class Term, class Stencil>
 concept has_energy_density = requires(Term const& term, Stencil const& stencil) {
-  { term.energy_density(stencil) } -> std::convertible_to<typename Stencil::value_type>;
+  { term.energy_density(stencil) } -> std::convertible_to<ValueOf<Stencil>>;
 };
 
 template <class Term, class Stencil>
 concept has_linear_field = requires(Term const& term, Stencil const& stencil) {
-  { term.linear_field(stencil) } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+  { term.linear_field(stencil) } -> std::convertible_to<VectorOf<Stencil>>;
 };
 
 template <class Term, class Stencil>
 concept has_field_rate = requires(Term const& term, Stencil const& stencil) {
-  {
-    term.field_rate(stencil.center(), stencil)
-  } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+  { term.field_rate(stencil.center(), stencil) } -> std::convertible_to<VectorOf<Stencil>>;
 };
 
 template <class Generator, class Stencil>
 concept is_generator = requires(Generator const& generator, Stencil const& stencil) {
-  { generator(stencil) } -> std::convertible_to<Vec3<typename Stencil::value_type>>;
+  { generator(stencil) } -> std::convertible_to<VectorOf<Stencil>>;
 };
 
 /// The sentences that a wrong term is answered with.
@@ -69,8 +67,8 @@ constexpr void check_conservative() {
 
 /// `h` and a term's field at a stencil's centre: most terms add it in fewer operations.
 template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
-    Term const& term, Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Term const& term, Stencil const& stencil,
+                                                        VectorOf<Stencil> const& h) {
   check_field<Term, Stencil>();
   if constexpr (requires { term.add_field(stencil, h); })
     return term.add_field(stencil, h);
@@ -80,28 +78,29 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
 
 /// The same up to a multiple of the spin.
 template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
-    Term const& term, Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term,
+                                                                Stencil const& stencil,
+                                                                VectorOf<Stencil> const& h) {
   if constexpr (requires { term.add_turning_field(stencil, h); })
     return term.add_turning_field(stencil, h);
   else
     return add_field(term, stencil, h);
 }
 template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
-    Term const& term, Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Term const& term,
+                                                            Stencil const& stencil) {
   if constexpr (requires { term.turning_field(stencil); })
     return term.turning_field(stencil);
   else if constexpr (requires { term.add_turning_field(stencil, stencil.center()); })
-    return term.add_turning_field(stencil, zero<typename Stencil::value_type>());
+    return term.add_turning_field(stencil, zero<ValueOf<Stencil>>());
   else
     return term.field(stencil);
 }
 
 /// The linear part of an affine field at a stencil's centre, applied to the stencil's array.
 template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-    Term const& term, Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Term const& term,
+                                                           Stencil const& stencil) {
   if constexpr (requires { Term::degree; }) {
     static_assert(
         Term::degree == 1 || Term::degree == 2,
@@ -110,7 +109,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
     if constexpr (Term::degree == 2)
       return term.field(stencil);
     else
-      return zero<typename Stencil::value_type>();
+      return zero<ValueOf<Stencil>>();
   } else {
     static_assert(has_linear_field<Term, Stencil>,
                   "This needs the derivative of each field term: a static constexpr int degree (1 "
@@ -132,8 +131,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Term const& term, Vec3<Value>
 
 /// The sum of the absolute values of an energy's terms.
 template <class Source, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Source const& source,
-                                                                          Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& source,
+                                                              Stencil const& stencil) {
   if constexpr (requires { source.energy_magnitude(stencil); })
     return source.energy_magnitude(stencil);
   else
@@ -171,6 +170,14 @@ inline constexpr bool is_local = [] {
   if constexpr (requires { Term::is_local; }) return Term::is_local;
   return false;
 }();
+
+/// A base of terms that are prepared once for all t and spins.
+struct PreparedOnce {
+  template <class Exec, class Spins>
+  bool is_stationary(Exec const&, Spins const&) const {
+    return true;
+  }
+};
 
 template <class Term, class Exec, class Spins>
 bool is_stationary(Term const& term, Exec const& exec, Spins const& spins) {
@@ -230,8 +237,8 @@ auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double
 
 /// A generator's A at the centre of a stencil.
 template <class Generator, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> evaluate(Generator const& generator,
-                                                                        Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> evaluate(Generator const& generator,
+                                                       Stencil const& stencil) {
   static_assert(is_generator<Generator, Stencil>,
                 "A generator needs a const, device-callable template operator()(stencil) that "
                 "returns Vec3<typename Stencil::value_type>: the A of m' = A x m.");
@@ -240,8 +247,8 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> evaluate(Generato
 
 /// The same up to a multiple of the spin: what turns it.
 template <class Generator, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
-    Generator const& generator, Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_part(Generator const& generator,
+                                                           Stencil const& stencil) {
   if constexpr (requires { generator.turning_part(stencil); })
     return generator.turning_part(stencil);
   else

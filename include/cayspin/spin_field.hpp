@@ -209,19 +209,29 @@ class SpinField : public SiteField<Real, 3, MemorySpace> {
       : SiteField<Real, 3, MemorySpace>(label, lattice, Real(1)) {}
 };
 
+namespace detail {
+
+template <bool ToField, class Exec, class View, class Real, int Components, class MemorySpace>
+void copy_sites(Exec const& exec, View const& view,
+                SiteField<Real, Components, MemorySpace> const& field) {
+  static_assert(View::rank() == 2, "cayspin::copy takes a View of rank 2: (sites, components).");
+  check_access<Exec, MemorySpace>();
+  check_access<Exec, typename View::memory_space>();
+  require_extents("cayspin::copy", view, field.sites(), Components);
+  Kokkos::parallel_for(
+      "cayspin::copy",
+      Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, field.sites()),
+      CopySites<View, Real, Components, ToField>{view, field.array(), field.layout()});
+}
+
+}  // namespace detail
+
 /// Copies a View of extents (sites, Components), x fastest, into a field. Does not wait, unless the
 /// field is on a part of a lattice: then ghosts are brought up to date, and all parts call it.
 /// Throws std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, View const& from, SiteField<Real, Components, MemorySpace> const& to) {
-  static_assert(View::rank() == 2, "cayspin::copy takes a View of rank 2: (sites, components).");
-  detail::check_access<Exec, MemorySpace>();
-  detail::check_access<Exec, typename View::memory_space>();
-  detail::require_extents("cayspin::copy", from, to.sites(), Components);
-  Kokkos::parallel_for(
-      "cayspin::copy",
-      Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, to.sites()),
-      detail::CopySites<View, Real, Components, true>{from, to.array(), to.layout()});
+  detail::copy_sites<true>(exec, from, to);
   detail::update_ghosts(exec, to.lattice(), to);
 }
 
@@ -229,14 +239,7 @@ void copy(Exec const& exec, View const& from, SiteField<Real, Components, Memory
 /// Throws std::invalid_argument when the extents differ.
 template <class Exec, class View, class Real, int Components, class MemorySpace>
 void copy(Exec const& exec, SiteField<Real, Components, MemorySpace> const& from, View const& to) {
-  static_assert(View::rank() == 2, "cayspin::copy takes a View of rank 2: (sites, components).");
-  detail::check_access<Exec, MemorySpace>();
-  detail::check_access<Exec, typename View::memory_space>();
-  detail::require_extents("cayspin::copy", to, from.sites(), Components);
-  Kokkos::parallel_for(
-      "cayspin::copy",
-      Kokkos::RangePolicy<Exec, Kokkos::IndexType<std::int64_t>>(exec, 0, from.sites()),
-      detail::CopySites<View, Real, Components, false>{to, from.array(), from.layout()});
+  detail::copy_sites<false>(exec, to, from);
 }
 
 /// Reads numbers in host memory, (sites, Components) with x fastest, into a field; waits.

@@ -46,6 +46,12 @@ struct Vec3 {
   KOKKOS_FORCEINLINE_FUNCTION Vec3& operator-=(Vec3 const& a) { return *this = *this - a; }
 };
 
+/// The numbers and the vectors of a stencil, a spin or a site, in the words of terms.
+template <class Stencil>
+using ValueOf = typename Stencil::value_type;
+template <class Stencil>
+using VectorOf = Vec3<typename Stencil::value_type>;
+
 /// s a + b
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> multiply_add(Value const& s, Vec3<Value> const& a,

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "describe.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
+#include "simulation/plan.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/text.hpp"
@@ -21,6 +23,12 @@
 
 namespace cayspin::program {
 namespace {
+
+struct CheckOptions : SceneOptions {
+  Precision precision = Precision::double_precision;
+  std::optional<std::string> ranks;  // "y,z"
+  bool json = false;
+};
 
 bool has_stable_dt(Plan const& plan) { return std::isfinite(plan.stable_dt); }
 
@@ -51,28 +59,40 @@ std::optional<std::int64_t> evaluations(io::Scene const& scene, Variant const& v
   return 2 * scene.integrator.substeps * *variant.evaluations;
 }
 
+std::string memory_json(Plan const& plan) {
+  auto const& memory = plan.memory;
+  return fmt::format(
+      "\"sites\": {}, \"bytes_per_site\": {}, \"spins_bytes\": {}, \"work_bytes\": {}, "
+      "\"field_bytes\": {}, \"host_buffer_bytes\": {}, \"memory_bytes\": {}",
+      plan.lattice.sites(), bytes_per_site(plan), memory.spins, memory.work, memory.field,
+      memory.files, memory.total());
+}
+
+// Nothing in reduced units.
+std::string units_json(io::Units const& units) {
+  if (!units.si) return {};
+  return fmt::format(
+      ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
+      "\"energy_unit\": {}",
+      units.time, units.length, units.field, units.energy);
+}
+
 void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
                 std::optional<double> const& repeated) {
-  auto const& memory = plan.memory;
   auto const& units = scene.units;
   auto const per_step = evaluations(scene, plan.variant);
   auto const stable_in = [&](double unit) {
     return has_stable_dt(plan) ? fmt::format("{}", plan.stable_dt * unit) : "null";
   };
   fmt::print(
-      "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, \"sites\": {}, \"bytes_per_site\": {}, "
-      "\"spins_bytes\": {}, \"work_bytes\": {}, \"field_bytes\": {}, \"host_buffer_bytes\": {}, "
-      "\"memory_bytes\": {}, \"evaluations_per_step\": {}, \"order\": {}, \"frames\": {}, "
-      "\"file_bytes\": {}, \"method\": \"{}\", \"precision\": \"{}\"",
-      stable_in(units.time), plan.times.dt * units.time, plan.times.steps, plan.lattice.sites(),
-      bytes_per_site(plan), memory.spins, memory.work, memory.field, memory.files, memory.total(),
+      "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, {}, \"evaluations_per_step\": {}, "
+      "\"order\": {}, \"frames\": {}, \"file_bytes\": {}, \"method\": \"{}\", "
+      "\"precision\": \"{}\"{}",
+      stable_in(units.time), plan.times.dt * units.time, plan.times.steps, memory_json(plan),
       per_step ? fmt::format("{}", *per_step) : "null", order(scene, plan.variant), plan.frames,
-      plan.file_bytes, plan.variant.method->word, to_string(precision));
+      plan.file_bytes, plan.variant.method->word, to_string(precision), units_json(units));
   if (units.si)
-    fmt::print(
-        ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
-        "\"energy_unit\": {}, \"reduced\": {{\"stable_dt\": {}, \"dt\": {}}}",
-        units.time, units.length, units.field, units.energy, stable_in(1), plan.times.dt);
+    fmt::print(", \"reduced\": {{\"stable_dt\": {}, \"dt\": {}}}", stable_in(1), plan.times.dt);
   if (is_thermal(scene))
     fmt::print(", \"temperature\": {}, \"noise_turn\": {}", typed_temperature(scene),
                plan.noise_turn);
@@ -81,21 +101,11 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
 }
 
 void print_json_to_relax(io::Scene const& scene, Plan const& plan, Precision precision) {
-  auto const& memory = plan.memory;
-  auto const& units = scene.units;
   fmt::print(
-      "{{\"stable_dt\": null, \"sites\": {}, \"bytes_per_site\": {}, \"spins_bytes\": {}, "
-      "\"work_bytes\": {}, \"field_bytes\": {}, \"host_buffer_bytes\": {}, "
-      "\"memory_bytes\": {}, \"evaluations_per_step\": null, \"states\": {}, "
-      "\"file_bytes\": {}, \"precision\": \"{}\"",
-      plan.lattice.sites(), bytes_per_site(plan), memory.spins, memory.work, memory.field,
-      memory.files, memory.total(), plan.frames, plan.file_bytes, to_string(precision));
-  if (units.si)
-    fmt::print(
-        ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
-        "\"energy_unit\": {}",
-        units.time, units.length, units.field, units.energy);
-  fmt::print("}}\n");
+      "{{\"stable_dt\": null, {}, \"evaluations_per_step\": null, \"states\": {}, "
+      "\"file_bytes\": {}, \"precision\": \"{}\"{}}}\n",
+      memory_json(plan), plan.frames, plan.file_bytes, to_string(precision),
+      units_json(scene.units));
 }
 
 // In SI with the reduced number after it.
@@ -227,8 +237,6 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   return Status::done;
 }
 
-}  // namespace
-
 int check(CheckOptions const& options) {
   auto scene = io::read_scene_to_run_or_relax(options.scene, options.overrides);
   io::check_files(scene);
@@ -248,6 +256,19 @@ int check(CheckOptions const& options) {
     draw(scene, start);
   }
   return Status::done;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& program) {
+  auto const options = std::make_shared<CheckOptions>();
+  auto* const command = program.add_subcommand(
+      "check", "Validate a scene and say what it models, the stable dt, memory and cost");
+  add_scene_options(*command, *options);
+  command->add_flag("--json", options->json, "The numbers as JSON");
+  add_ranks_option(*command, options->ranks,
+                   "Say what a run with so many parts along y and z repeats");
+  return {command, [options](Ranks&) { return check(*options); }};
 }
 
 }  // namespace cayspin::program

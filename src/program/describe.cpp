@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "command.hpp"
+#include "describe.hpp"
+
 #include "simulation/dear_method.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
@@ -13,6 +14,9 @@
 #include <iterator>
 
 namespace cayspin::program {
+
+using namespace simulation;
+
 namespace {
 
 std::string vector_text(io::Triple const& v) {
@@ -74,11 +78,11 @@ std::string lattice_text(io::Scene const& scene) {
 template <class Term>
 std::string term_text(Term const& term) {
   fmt::dynamic_format_arg_store<fmt::format_context> numbers;
-  for (auto const& [name, member] : Term::parameters) {
-    if (auto const* const number = std::get_if<double Term::*>(&member))
+  for (auto const& key : Term::keys()) {
+    if (auto const* const number = std::get_if<double Term::*>(&key.member))
       numbers.push_back(fmt::format("{:.6g}", term.**number));
     else
-      numbers.push_back(vector_text(term.*std::get<io::Triple Term::*>(member)));
+      numbers.push_back(vector_text(term.*std::get<io::Triple Term::*>(key.member)));
   }
   return fmt::vformat(Term::formula, numbers);
 }
@@ -89,12 +93,8 @@ std::string component_text(io::AppliedComponent const& component) {
 }
 
 std::string components_text(std::array<io::AppliedComponent, 3> const& applied) {
-  std::string text;
-  for (auto const& component : applied) {
-    if (!text.empty()) text += ", ";
-    text += component_text(component);
-  }
-  return "(" + text + ")";
+  return fmt::format("({}, {}, {})", component_text(applied[0]), component_text(applied[1]),
+                     component_text(applied[2]));
 }
 
 std::string applied_text(io::Scene const& scene) {

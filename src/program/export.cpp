@@ -18,6 +18,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct ExportOptions {
+  fs::path file, folder;
+  std::optional<io::OvfFormat> format;  // default: the one that keeps the bits of /spins
+  std::string frames = "last";          // or "all", or a number counted from 0
+  bool overwrite = false;
+};
+
+io::OvfFormat ovf_format(std::string const& name) {
+  if (auto const* const known = io::find_word<io::OvfFormat>(name)) return known->value;
+  throw UsageError(fmt::format("--format {}: accepted: text, binary4, binary8", name));
+}
+
 std::vector<std::int64_t> chosen_frames(ExportOptions const& options, std::int64_t frames) {
   if (frames == 0)
     throw std::runtime_error(fmt::format("{}: it holds no frame", options.file.string()));
@@ -99,8 +111,6 @@ void create_folder(fs::path const& folder) {
                                          error ? error.message() : std::string("it is a file")));
 }
 
-}  // namespace
-
 int export_ovf(ExportOptions const& options) {
 #if defined(SIGXFSZ)
   std::signal(SIGXFSZ, SIG_IGN);  // then a write past the limit of a file's size is an error
@@ -122,6 +132,26 @@ int export_ovf(ExportOptions const& options) {
     fmt::print("{} to {}: {} files\n", name_of(options, frames.front()).string(), last,
                frames.size());
   return Status::done;
+}
+
+}  // namespace
+
+Command add_export(CLI::App& program) {
+  auto const options = std::make_shared<ExportOptions>();
+  auto* const command =
+      program.add_subcommand("export", "Write frames of a trajectory file for other programs");
+  command->add_option("FILE", options->file, "Trajectory file (HDF5)")->required();
+  command->add_option("--ovf", options->folder, "Folder for OVF 2.0 files, one per frame")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option_function<std::string>(
+          "--format", [options](std::string const& name) { options->format = ovf_format(name); },
+          "text, binary4 or binary8 (default: the binary one that keeps the bits)")
+      ->type_name("NAME");
+  command->add_option("--frames", options->frames, "last (default), all or a number");
+  command->add_flag("--overwrite", options->overwrite, "Replace files that exist");
+  return {command, [options](Ranks&) { return export_ovf(*options); }};
 }
 
 }  // namespace cayspin::program

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "describe.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 #include "sweep/table.hpp"
@@ -46,9 +47,7 @@ int print_sweep(std::filesystem::path const& file) {
   return Status::done;
 }
 
-}  // namespace
-
-int info(std::filesystem::path const& file) {
+int print_info(std::filesystem::path const& file) {
   if (io::is_sweep(file)) return print_sweep(file);
   auto const info = io::read_info(file);
   auto const& header = info.header;
@@ -73,6 +72,15 @@ int info(std::filesystem::path const& file) {
   print_scene("scene", header.scene_text);
   if (!header.resolved_scene.empty()) print_scene("scene as resolved", header.resolved_scene);
   return Status::done;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& program) {
+  auto const file = std::make_shared<std::filesystem::path>();
+  auto* const command = program.add_subcommand("info", "Say what a trajectory file holds");
+  command->add_option("FILE", *file, "Trajectory file (HDF5)")->required();
+  return {command, [file](Ranks&) { return print_info(*file); }};
 }
 
 }  // namespace cayspin::program

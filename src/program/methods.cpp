@@ -38,9 +38,7 @@ std::string evaluations(Variant const& variant) {
   return variant.method->adaptive ? "adaptive" : "iterates";
 }
 
-}  // namespace
-
-int methods() {
+int print_methods() {
   constexpr auto line = "{:<25} {:<27} {:<20} {:<20} {:>5} {:>11} {:>11}\n";
   fmt::print(line, "method", "isotropy", "generator", "rotation", "order", "evaluations",
              "work fields");
@@ -58,6 +56,13 @@ int methods() {
       "the\n"
       "end, take neither generator, isotropy nor rotation.\n");
   return Status::done;
+}
+
+}  // namespace
+
+Command add_methods(CLI::App& program) {
+  return {program.add_subcommand("methods", "List the integrators and their options"),
+          [](Ranks&) { return print_methods(); }};
 }
 
 }  // namespace cayspin::program

@@ -12,19 +12,22 @@
 namespace cayspin::program {
 namespace {
 
+struct NewOptions {
+  std::string kind;
+  std::optional<std::filesystem::path> output;
+  bool overwrite = false;
+};
+
 std::string replaced(std::string text, std::string_view what, std::string const& by) {
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
     text.replace(at, what.size(), by);
   return text;
 }
 
-}  // namespace
-
 std::string names_of_new_scenes() {
-  std::string names;
-  for (auto const& scene : new_scenes)
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.kind);
-  return names;
+  std::vector<std::string_view> names;
+  for (auto const& scene : new_scenes) names.push_back(scene.kind);
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 int write_new(NewOptions const& options) {
@@ -37,6 +40,17 @@ int write_new(NewOptions const& options) {
   file.commit();
   fmt::print("{0}: try `cayspin check {0}`, then `cayspin run {0}`\n", path.string());
   return Status::done;
+}
+
+}  // namespace
+
+Command add_new(CLI::App& program) {
+  auto const options = std::make_shared<NewOptions>();
+  auto* const command = program.add_subcommand("new", "Write a commented scene to begin with");
+  command->add_option("KIND", options->kind, names_of_new_scenes())->required();
+  command->add_option("--output", options->output, "The file to write (default: KIND.toml)");
+  command->add_flag("--overwrite", options->overwrite, "Replace a file that exists");
+  return {command, [options](Ranks&) { return write_new(*options); }};
 }
 
 }  // namespace cayspin::program

@@ -14,6 +14,21 @@ namespace cayspin::program {
 
 using namespace simulation;
 
+namespace {
+
+// A bar with a text in place of the line that is there.
+void draw_over(std::FILE* stream, double share, std::string const& text) {
+  fmt::print(stream, "\r{}\x1b[K", fitted(fmt::format("{} {}", bar(share), text)));
+}
+
+// Into a pipe lines come one by one, too.
+void say(std::string const& line) {
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
 Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, bool equal_steps,
                    Listener listener)
     : listener_(listener),
@@ -27,7 +42,7 @@ Progress::Progress(std::int64_t first, std::int64_t steps, std::int64_t sites, b
                                          : first + 1) {}
 
 void Progress::draw(double done, std::string const& text) {
-  fmt::print("\r{}\x1b[K", fitted(fmt::format("{} {}", bar(done), text)));
+  draw_over(stdout, done, text);
   std::fflush(stdout);
   on_line_ = true;
 }
@@ -45,22 +60,13 @@ void Progress::show(Step const& step) {
     draw(0, fmt::format("step {} of {}", first_, steps_));
   if (pause.count() < least_pause) return;
   shown_ = now;
-  if (listener_ == Listener::program) {
-    fmt::print("{} {}\n", step.number, steps_);
-    std::fflush(stdout);
-    return;
-  }
+  if (listener_ == Listener::program) return say(fmt::format("{} {}", step.number, steps_));
   double const done = static_cast<double>(step.number) / static_cast<double>(steps_);
   auto text = fmt::format("{:5.1f} %  step {} of {}", 100 * done, step.number, steps_);
   if (equal_steps_)
     text += fmt::format("  {}spin updates/s", rate_text(rate * static_cast<double>(sites_)));
   text += fmt::format("  {} left", duration_text(static_cast<double>(steps_ - step.number) / rate));
-  if (terminal_) {
-    draw(done, text);
-  } else {
-    fmt::print("{}\n", text);
-    std::fflush(stdout);
-  }
+  terminal_ ? draw(done, text) : say(text);
 }
 
 void Progress::close(Summary const& summary, std::int64_t frames, std::string const& file) {
@@ -76,9 +82,42 @@ void Progress::close(Summary const& summary, std::int64_t frames, std::string co
   if (summary.own_steps > 0)
     rate += fmt::format(", {} of its own, {} rejected", counted(summary.own_steps, "step"),
                         summary.rejected);
-  fmt::print("{}: {}, {} in {}{}\n", file, counted(summary.steps, "step"), counted(frames, "frame"),
-             duration_text(total.count()), rate);
-  std::fflush(stdout);
+  say(fmt::format("{}: {}, {} in {}{}", file, counted(summary.steps, "step"),
+                  counted(frames, "frame"), duration_text(total.count()), rate));
+}
+
+TrialProgress::TrialProgress(bool quiet, bool lines)
+    : quiet_(quiet), lines_(lines), terminal_(is_terminal(stderr)) {
+  if (terminal_) shown_ = {};  // the first one at once
+}
+
+void TrialProgress::announce(double most_seconds) {
+  most_seconds_ = most_seconds;
+  if (!quiet_ && !terminal_ && lines_)
+    say(fmt::format("trying methods for at most {}", duration_text(most_seconds)));
+}
+
+void TrialProgress::show(double share, std::string const& what) {
+  if (quiet_ || (!terminal_ && !lines_)) return;
+  auto const now = Clock::now();
+  auto const pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
+  if (now - shown_ < pause) return;
+  shown_ = now;
+  double const elapsed = std::chrono::duration<double>(now - begin_).count();
+  auto const so_far = fmt::format("{} so far", duration_text(elapsed));
+  auto const left =
+      most_seconds_ > 0 ? fmt::format("{}, at most {}", so_far, duration_text(most_seconds_))
+      : share > 0.02    ? fmt::format("about {} left", duration_text(elapsed * (1 - share) / share))
+                        : so_far;
+  auto const text = fmt::format("{:5.1f} %  {}  {}", 100 * share, left, what);
+  if (!terminal_) return say(text);
+  draw_over(stderr, share, text);
+  drawn_ = true;
+}
+
+void TrialProgress::clear() {
+  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  drawn_ = false;
 }
 
 }  // namespace cayspin::program

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/plan.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/space.hpp"
@@ -21,6 +23,12 @@
 
 namespace cayspin::program {
 namespace {
+
+struct RelaxOptions : DeviceOptions {
+  double torque = 1e-6;
+  std::int64_t evaluations = 100000;  // at each field
+  bool keep_saddles = false, quiet = false;
+};
 
 template <class Real, class Space>
 class Relaxation {
@@ -107,8 +115,6 @@ class Relaxation {
   MinimizeEnd first_failure_ = MinimizeEnd::converged;
 };
 
-}  // namespace
-
 int relax(RelaxOptions const& options) {
   auto const scene = io::read_scene_to_relax(options.scene, options.overrides);
   require_rest(scene);
@@ -126,6 +132,24 @@ int relax(RelaxOptions const& options) {
   return in_space(space, options.precision, [&]<class Real, class Space>() {
     return Relaxation<Real, Space>(scene, plan.lattice, options).run();
   });
+}
+
+}  // namespace
+
+Command add_relax(CLI::App& program) {
+  auto const options = std::make_shared<RelaxOptions>();
+  auto* const command = program.add_subcommand(
+      "relax", "Find the state of rest of a scene, or one for each of its fields (HDF5)");
+  add_device_options(*command, *options);
+  command->add_option("--torque", options->torque, "Largest |m x H| (default: 1e-6)");
+  command
+      ->add_option("--evaluations", options->evaluations,
+                   "Most evaluations of a field (default: 100000)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 53U));
+  command->add_flag("--keep-saddles", options->keep_saddles,
+                    "End at a state without torque, also where the energy falls from there");
+  command->add_flag("--quiet", options->quiet, "No progress");
+  return {command, [options](Ranks&) { return relax(*options); }};
 }
 
 }  // namespace cayspin::program

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "describe.hpp"
+#include "run_watch.hpp"
 #include "simulation/checkpoint_of_ranks.hpp"
 #include "simulation/command_line.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
+#include "simulation/plan.hpp"
 #include "simulation/restart.hpp"
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
-#include "watch.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
 
@@ -24,16 +26,13 @@
 #include <vector>
 
 namespace cayspin::program {
-
-std::filesystem::path output_file(io::Scene const& scene,
-                                  std::optional<std::filesystem::path> const& output) {
-  if (output) return *output;
-  if (scene.output.file) return *scene.output.file;
-  throw io::scene_error(scene, "output.file",
-                        "no file to write to; accepted: this key, or --output FILE.h5");
-}
-
 namespace {
+
+struct RunOptions : DeviceOptions {
+  std::optional<std::filesystem::path> restart;
+  std::optional<std::string> ranks;  // "y,z"
+  Listener listener = Listener::user;
+};
 
 void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ranks const& ranks) {
   if (!ranks.many()) return;
@@ -192,7 +191,7 @@ io::Scene with_method(io::Scene const& typed, LeftBehind const* left, RunOptions
   bool const silent = options.listener != Listener::user;
   std::optional<io::Scene> scene;
   ranks.together([&] {
-    trade::TrialProgress progress(silent, true);
+    TrialProgress progress(silent, true);
     if (ranks.is_first()) scene = trade::with_method(typed, space, options.precision, &progress);
   });
   std::string text = scene ? scene->text : std::string();
@@ -242,8 +241,6 @@ int run_on_ranks(RunOptions const& options, Ranks& ranks) {
   });
 }
 
-}  // namespace
-
 int run(RunOptions const& options, Ranks& ranks) {
   try {
     return run_on_ranks(options, ranks);
@@ -252,6 +249,24 @@ int run(RunOptions const& options, Ranks& ranks) {
     if (ranks.many() && !ranks.agreed()) ranks.leave_by(report(std::current_exception()));
     throw;
   }
+}
+
+}  // namespace
+
+Command add_run(CLI::App& program) {
+  auto const options = std::make_shared<RunOptions>();
+  auto* const command =
+      program.add_subcommand("run", "Run a scene and write its trajectory (HDF5)");
+  add_device_options(*command, *options);
+  add_ranks_option(*command, options->ranks, "Parts of the lattice along y and z, on ranks of MPI");
+  command->add_option("--restart", options->restart,
+                      "Go on from the last frame of a trajectory file");
+  command->add_flag_callback(
+      "--quiet", [options] { options->listener = Listener::nobody; }, "No progress");
+  command
+      ->add_flag_callback("--report-progress", [options] { options->listener = Listener::program; })
+      ->group("");  // what `sweep` starts its runs with
+  return {command, [options](Ranks& ranks) { return run(*options, ranks); }};
 }
 
 }  // namespace cayspin::program

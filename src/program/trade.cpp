@@ -3,6 +3,7 @@
 #include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/plan.hpp"
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
 #include "trade/verdict.hpp"
@@ -19,13 +20,33 @@ namespace {
 
 using namespace trade;
 
+/// Of commands that try methods.
+struct TryOptions : SceneOptions {
+  std::optional<Precision> precision;  // the only one
+  std::optional<std::string> space;
+  std::optional<int> threads;
+  bool json = false, quiet = false;
+};
+
+struct TradeOptions : TryOptions {
+  double seconds = 10;  // that a run may take
+  bool advice = false;
+};
+
+struct AdviseOptions : TryOptions {
+  double error = 0;
+  std::optional<double> budget;  // seconds
+};
+
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
 
-std::string steps_text(Pilot const& pilot, Candidate const& candidate, Rung const& rung) {
+// Of a rung, or of an advice.
+template <class Run>
+std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const& run) {
   auto const& units = pilot.scene().units;
   return candidate.method->adaptive
-             ? fmt::format("tol {:.1e}", rung.steps.tolerance)
-             : fmt::format("dt {:.3e}{}", rung.dt * units.time, units.si ? " s" : "");
+             ? fmt::format("tol {:.1e}", run.steps.tolerance)
+             : fmt::format("dt {:.3e}{}", run.dt * units.time, units.si ? " s" : "");
 }
 
 std::string amount_text(double amount, char const* form) {
@@ -119,9 +140,8 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
                  duration_text(advised.seconds));
       continue;
     }
-    Rung const rung{choice->steps, choice->dt, 0, 0, 0, false};
     fmt::print(line, fmt::format("{:.0e}", asked), choice->candidate.name(),
-               steps_text(pilot, choice->candidate, rung), fmt::format("{:.2f}", error / asked),
+               steps_text(pilot, choice->candidate, *choice), fmt::format("{:.2f}", error / asked),
                fmt::format("{:.2f}", seconds / best),
                fmt::format("{:.2f}", seconds / choice->seconds), duration_text(advised.seconds));
   }
@@ -201,8 +221,6 @@ io::Scene scene_to_try(std::filesystem::path const& path,
   return scene;
 }
 
-}  // namespace
-
 int trade_off(TradeOptions const& options) {
   if (!(options.seconds > 0) || !std::isfinite(options.seconds))
     throw UsageError(fmt::format("--seconds {}; accepted: a number > 0", options.seconds));
@@ -268,6 +286,43 @@ int advise_on(AdviseOptions const& options) {
   else
     print_text(options, scene, advised, resolved);
   return Status::done;
+}
+
+void add_try_options(CLI::App& command, TryOptions& options) {
+  add_scene_options(command, options, "double or single alone (default: both)");
+  add_space_options(command, options);
+  command.add_flag("--quiet", options.quiet, "No progress");
+}
+
+}  // namespace
+
+Command add_trade(CLI::App& program) {
+  auto const options = std::make_shared<TradeOptions>();
+  auto* const command = program.add_subcommand(
+      "trade", "Measure error against time and evaluations for every method on a scene");
+  add_try_options(*command, *options);
+  command->add_option("--seconds", options->seconds, "Longest run (default: 10)");
+  auto* const json = command->add_flag("--json", options->json, "The numbers as JSON");
+  command->add_flag("--advice", options->advice, "Also judge what `advise` says of the scene")
+      ->excludes(json);
+  return {command, [options](Ranks&) { return trade_off(*options); }};
+}
+
+Command add_advise(CLI::App& program) {
+  auto const options = std::make_shared<AdviseOptions>();
+  auto* const command = program.add_subcommand(
+      "advise",
+      "Name the cheapest method and its dt or tolerance for an error. Takes at most a tenth of the "
+      "run's time, or 2 s");
+  add_try_options(*command, *options);
+  command->add_option("--error", options->error, "Largest distance of any spin")->required();
+  command->add_option("--budget", options->budget, "Time that the run may take")
+      ->transform(
+          CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
+                                CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
+      ->type_name("TIME");
+  command->add_flag("--json", options->json, "The answer as JSON");
+  return {command, [options](Ranks&) { return advise_on(*options); }};
 }
 
 }  // namespace cayspin::program

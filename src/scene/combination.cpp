@@ -2,14 +2,12 @@
 #include "sections.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace cayspin::inline v0_1::io {
 namespace {
 
-[[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
-                         std::string_view accepted) {
-  throw scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
-}
+using detail::refuse;
 
 std::string accepted_isotropies(Integrator const& integrator, SystemKind kind) {
   std::string list;
@@ -38,11 +36,10 @@ void check_energy_control(Scene const& scene) {
 }
 
 std::string compensated_methods() {
-  std::string list;
+  std::vector<std::string_view> list;
   for (auto const* const method : methods())
-    if (method->compensated)
-      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", method->word);
-  return list;
+    if (method->compensated) list.push_back(method->word);
+  return fmt::format("\"{}\"", fmt::join(list, "\", \""));
 }
 
 void check_compensation(Scene const& scene) {

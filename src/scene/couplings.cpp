@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
 #include "quantity.hpp"
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
@@ -22,14 +21,8 @@ constexpr std::string_view accepted_couplings =
     "an array of tables { between, offset, J, D, tensor, biquadratic }, { shells = [J, ..] } or "
     "{ file = \"NAME.ucf\" }";
 
-std::vector<double> numbers(Item const& item, std::size_t count, std::string_view accepted) {
-  std::vector<double> read;
-  for (auto const& entry : entries(item, count, count, accepted)) read.push_back(number(entry));
-  return read;
-}
-
-int small_integer(Item const& item, std::int64_t least, std::string_view accepted) {
-  auto const value = integer(item, least, accepted);
+int small_integer(Item const& item, double least, std::string_view accepted) {
+  auto const value = integer(item, {accepted, least});
   if (value < -1'000'000 || value > 1'000'000)
     item.fail(fmt::format("{} is too large", value), accepted);
   return static_cast<int>(value);
@@ -50,12 +43,13 @@ Triple read_vector(Item const& item, Scene& scene) {
 std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   constexpr std::string_view accepted = "three rows of three numbers";
   auto const [value, unit] = in_joules_of_atoms(item, scene);
+  auto const row = [&](Item const& each) {
+    return three(each, accepted, [](Item const& entry) { return number(entry); });
+  };
   std::array<double, 9> tensor;
-  auto const rows = entries(value, 3, 3, accepted);
-  for (std::size_t i = 0; i < 3; ++i)
-    std::ranges::copy(numbers(rows[i], 3, accepted),
-                      tensor.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  for (double& entry : tensor) entry *= unit;
+  auto at = tensor.begin();
+  for (auto const& numbers : three(value, accepted, row))
+    for (double const entry : numbers) *at++ = entry * unit;
   return tensor;
 }
 
@@ -74,11 +68,10 @@ Coupling read_coupling(Item const& item, Scene& scene) {
         both[end].fail(fmt::format("the cell has no site {}", between[end]), accepted);
     }
   }
-  if (auto const three = table.find("offset")) {
+  if (auto const cells = table.find("offset")) {
     constexpr std::string_view accepted = "three whole numbers of cells";
-    auto const all = entries(*three, 3, 3, accepted);
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      offset[axis] = small_integer(all[axis], std::numeric_limits<std::int64_t>::min(), accepted);
+    offset = three(*cells, accepted,
+                   [&](Item const& each) { return small_integer(each, Limits().least, accepted); });
   }
   if (between[0] == between[1] && offset == std::array<int, 3>{})
     item.fail("couples a site to itself", "another site, or an offset");
@@ -172,12 +165,10 @@ namespace cayspin::inline v0_1::io {
 std::vector<Coupling> couplings(Scene const& scene) {
   auto const& field = scene.field;
   if (field.couplings_file.empty()) return field.couplings;
-  try {
+  return detail::for_key(scene, "field.couplings.file", [&] {
     return detail::read_unit_cell_couplings(field.couplings_file, crystal(scene.lattice),
                                             field.couplings_scale);
-  } catch (std::runtime_error const& error) {
-    throw scene_error(scene, "field.couplings.file", error.what());
-  }
+  });
 }
 
 }  // namespace cayspin::inline v0_1::io

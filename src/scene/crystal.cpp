@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
 
 #include "sections.hpp"
 #include "unit_cell_file.hpp"
@@ -13,20 +12,10 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-constexpr std::string_view crystal_words =
-    "\"bcc\", \"fcc\", \"hcp\", \"honeycomb\", \"kagome\", \"pyrochlore\"";
-
-Crystal crystal_of(Item const& item) {
-  auto const name = string(item, crystal_words);
-  if (name == "bcc") return Crystal::bcc();
-  if (name == "fcc") return Crystal::fcc();
-  if (name == "hcp") return Crystal::hcp();
-  if (name == "honeycomb") return Crystal::honeycomb();
-  if (name == "kagome") return Crystal::kagome();
-  if (name == "pyrochlore") return Crystal::pyrochlore();
-  unknown_word(item, name, {"bcc", "fcc", "hcp", "honeycomb", "kagome", "pyrochlore"},
-               crystal_words);
-}
+constexpr Word<Crystal (*)()> crystals[] = {
+    {"bcc", Crystal::bcc},       {"fcc", Crystal::fcc},
+    {"hcp", Crystal::hcp},       {"honeycomb", Crystal::honeycomb},
+    {"kagome", Crystal::kagome}, {"pyrochlore", Crystal::pyrochlore}};
 
 // A unit-cell file says what the cell is, where the scene does not.
 std::optional<Crystal> crystal_of_couplings(Table const& root) {
@@ -47,8 +36,7 @@ std::optional<Crystal> crystal_of_couplings(Table const& root) {
 
 void read_cell(Item const& item, Lattice& lattice) {
   constexpr std::string_view accepted = "three vectors of three numbers that span a volume";
-  auto const vectors = entries(item, 3, 3, accepted);
-  for (std::size_t i = 0; i < 3; ++i) lattice.cell[i] = triple(vectors[i]);
+  lattice.cell = three(item, accepted, triple);
   if (!(crystal(lattice).fullness() > 1e-12)) item.fail("the vectors span no volume", accepted);
 }
 
@@ -83,7 +71,7 @@ void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
     for (auto const* const name : {"cell", "basis"})
       if (auto const other = table.find(name))
         other->fail("stands beside lattice.crystal, which says it", "no such key");
-    use(crystal_of(*item));
+    use(word_among<Crystal (*)()>(crystals, *item)());
   }
   if (!table.contains("crystal") && !table.contains("cell") && !table.contains("basis"))
     if (auto const found = crystal_of_couplings(root)) use(*found);
@@ -100,24 +88,24 @@ void check_crystal(Scene const& scene) {
   auto const& lattice = scene.lattice;
   auto const& field = scene.field;
   if (lattice.basis.size() == 1 && lattice.cell == Lattice{}.cell) return;
-  auto const refuse = [&](bool there, std::string_view key, std::string_view accepted) {
+  auto const refuse_if = [&](bool there, std::string_view key, std::string_view accepted) {
     if (!there) return;
     auto const needs = lattice.basis.size() > 1 ? "needs one site in a cell"
                                                 : "needs a cell along the axes, of the spacing";
-    throw scene_error(scene, key, fmt::format("{}; accepted: {}", needs, accepted));
+    detail::refuse(scene, key, needs, accepted);
   };
   bool const si = scene.units.si;
-  refuse(field.exchange.has_value(), si ? "material.J" : "field.exchange",
-         "field.couplings with J");
-  refuse(field.dmi || field.bulk_dmi,
-         !si         ? "field.dmi"
-         : field.dmi ? "material.D"
-                     : "material.D_bulk",
-         "field.couplings with D");
-  refuse(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
-         "no such key");
-  refuse(field.demag.has_value(), "field.demag", "no such key");
-  refuse(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
+  refuse_if(field.exchange.has_value(), si ? "material.J" : "field.exchange",
+            "field.couplings with J");
+  refuse_if(field.dmi || field.bulk_dmi,
+            !si         ? "field.dmi"
+            : field.dmi ? "material.D"
+                        : "material.D_bulk",
+            "field.couplings with D");
+  refuse_if(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
+            "no such key");
+  refuse_if(field.demag.has_value(), "field.demag", "no such key");
+  refuse_if(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

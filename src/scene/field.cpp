@@ -16,29 +16,21 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-// A table with every parameter of the term.
 template <class Term>
 Term read_term(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  std::vector<std::string_view> keys;
-  for (auto const& parameter : Term::parameters) keys.push_back(parameter.name);
-  table.accept_only(keys);
+  table.accept_only(names_of_keys<Term>());
   Term term;
-  for (auto const& [name, member] : Term::parameters) {
-    if (auto const* const value = std::get_if<double Term::*>(&member))
-      term.** value = number(table.required(name, "a finite number"));
-    else
-      term.*std::get<Triple Term::*>(member) = direction(table.required(name, "three numbers"));
-  }
+  read_keys(table, term);
   return term;
 }
 
-// Such a table, or the number itself where the term has no other parameter.
+// Such a table, or the number itself where the term has no other key.
 template <class Term>
 Term read_lattice_term(Item const& item, Scene& scene) {
-  if constexpr (Term::parameters.size() == 1) {
+  if constexpr (Term::keys().size() == 1) {
     Term term;
-    term.*std::get<double Term::*>(Term::parameters[0].member) = number(item);
+    term.*std::get<double Term::*>(Term::keys()[0].member) = number(item);
     return term;
   } else {
     return read_term<Term>(item, scene);
@@ -92,7 +84,7 @@ int read_site(Table const& table) {
   if (!item) return -1;
   auto const sites = table.scene().lattice.basis.size();
   auto const accepted = fmt::format("a site of the cell, 0 to {}", sites - 1);
-  auto const site = integer(*item, 0, accepted);
+  auto const site = integer(*item, {accepted, 0});
   if (site >= static_cast<std::int64_t>(sites))
     item->fail(fmt::format("the cell has no site {}", site), accepted);
   return static_cast<int>(site);
@@ -140,23 +132,6 @@ void read_anisotropies(Item const& item, Scene& scene, Field& field) {
     read_anisotropy(entry, scene, field);
 }
 
-}  // namespace
-
-AppliedComponent read_component_in_time(Item const& item) {
-  constexpr std::string_view accepted = "a finite number, or a string with an expression in t";
-  if (!item.node->is_string()) return number(item, accepted);
-  auto text = string(item, accepted);
-  try {
-    double const start = 0;
-    Expression(text, {"t"})(&start);
-  } catch (std::exception const& error) {
-    item.fail(error.what());
-  }
-  return text;
-}
-
-namespace {
-
 // Three components, or a list of fields of three numbers each.
 void read_applied(Item const& item, Field& field) {
   auto const* const array = item.node->as_array();
@@ -166,9 +141,7 @@ void read_applied(Item const& item, Field& field) {
       field.applied_in_turn.push_back(triple(entry));
     return;
   }
-  auto const three = entries(item, 3, 3, "three numbers or expressions in t");
-  field.applied.emplace();
-  std::ranges::transform(three, field.applied->begin(), read_component_in_time);
+  field.applied = three(item, "three numbers or expressions in t", component_in_time);
 }
 
 // Whether the scene's one word stands there.
@@ -182,24 +155,16 @@ bool option(Table const& table, std::string_view name, std::string_view only) {
 }
 
 SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
+  auto slab = read_term<SlabDemagnetization>(item, scene);
   Table const table(item, scene);
-  table.accept_only({"normal", "strength", "average", "where", "dear"});
-  SlabDemagnetization slab;
-  auto const normal = table.required("normal", "three numbers");
-  slab.normal = direction(normal);
-  if (auto const strength = table.find("strength")) slab.strength = number(*strength);
   slab.average_layer = option(table, "average", "layer");
   slab.on_host = option(table, "where", "host");
-  if (auto const dear = table.find("dear")) {
-    slab.dear = boolean(*dear);
-    if (slab.dear && !slab.average_layer && !slab.on_host)
-      dear->fail("site by site the field is of each spin alone, and cheap",
-                 "average = \"layer\" or where = \"host\" beside it, or no such key");
-  }
-  if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2) {
-    normal.fail("average = \"layer\" needs a normal along an axis",
-                "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");
-  }
+  if (slab.dear && !slab.average_layer && !slab.on_host)
+    table.find("dear")->fail("site by site the field is of each spin alone, and cheap",
+                             "average = \"layer\" or where = \"host\" beside it, or no such key");
+  if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2)
+    table.find("normal")->fail("average = \"layer\" needs a normal along an axis",
+                               "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");
   return slab;
 }
 
@@ -211,20 +176,15 @@ std::optional<Demagnetization> read_demag(Item const& item, Scene& scene) {
   }
   constexpr std::string_view accepted = "true, or { strength, periodic_images, dear }";
   if (!item.node->is_table()) item.wrong_type(accepted);
-  Table const table(item, scene);
-  table.accept_only({"strength", "periodic_images", "dear"});
-  Demagnetization demag;
-  if (auto const strength = table.find("strength")) demag.strength = number(*strength);
-  if (auto const images = table.find("periodic_images")) {
-    constexpr std::string_view three = "three numbers of images, 0 to 1000";
-    auto const of_axes = entries(*images, 3, 3, three);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      auto const count = integer(of_axes[axis], 0, three);
-      if (count > 1000) of_axes[axis].fail(fmt::format("{} images are too many", count), three);
-      demag.periodic_images[axis] = static_cast<int>(count);
-    }
+  auto demag = read_term<Demagnetization>(item, scene);
+  if (auto const images = Table(item, scene).find("periodic_images")) {
+    constexpr std::string_view of_images = "three numbers of images, 0 to 1000";
+    demag.periodic_images = three(*images, of_images, [&](Item const& each) {
+      auto const count = integer(each, {of_images, 0});
+      if (count > 1000) each.fail(fmt::format("{} images are too many", count), of_images);
+      return static_cast<int>(count);
+    });
   }
-  if (auto const dear = table.find("dear")) demag.dear = boolean(*dear);
   return demag;
 }
 
@@ -242,25 +202,19 @@ void refuse_reduced_keys(Table const& table) {
 
 Field read_field(Table const& root, SystemKind kind) {
   Field field;
-  auto const found = root.find("field");
+  auto const found = table_of_spins(root, "field", kind);
   if (!found) return field;
-  if (kind == SystemKind::rigid_body) {
-    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
-  }
-  Table const table(*found, root.scene());
+  auto const& table = *found;
+  auto& scene = root.scene();
   table.accept_only(field_keys());
-  if (root.scene().units.si) refuse_reduced_keys(table);
+  if (scene.units.si) refuse_reduced_keys(table);
   read_lattice_terms(table, field);
-  if (auto const item = table.find("couplings")) read_couplings(*item, root.scene(), field);
-  if (auto const item = table.find("anisotropy")) {
-    read_anisotropies(*item, root.scene(), field);
-  }
+  if (auto const item = table.find("couplings")) read_couplings(*item, scene, field);
+  if (auto const item = table.find("anisotropy")) read_anisotropies(*item, scene, field);
   if (auto const item = table.find("applied")) read_applied(*item, field);
-  if (auto const item = table.find("slab_demag")) {
-    field.slab_demag = read_slab_demag(*item, root.scene());
-  }
+  if (auto const item = table.find("slab_demag")) field.slab_demag = read_slab_demag(*item, scene);
   if (auto const item = table.find("demag")) {
-    field.demag = read_demag(*item, root.scene());
+    field.demag = read_demag(*item, scene);
     if (field.demag && field.slab_demag)
       item->fail("is the whole demagnetising field, and slab_demag a part of it", "one of the two");
   }

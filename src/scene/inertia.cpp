@@ -37,23 +37,16 @@ RealDataset open_inertia(std::filesystem::path const& path, std::int64_t count) 
 std::vector<InertiaTensor> read_file(Scene const& scene, std::filesystem::path const& path) {
   constexpr std::string_view key = "system.inertia.file";
   std::vector<InertiaTensor> tensors(static_cast<std::size_t>(sites(scene)));
-  double tolerance = 0;
-  try {
-    auto const [values, epsilon] = read_guarded(path, [&] {
-      auto const dataset = open_inertia(path, sites(scene));
-      return std::pair(dataset.read(), dataset.epsilon());
-    });
-    for (std::size_t body = 0; body < tensors.size(); ++body) {
-      std::copy_n(values.data() + 9 * body, 9, tensors[body].begin());
-    }
-    tolerance = 16 * epsilon;
-  } catch (std::runtime_error const& error) {
-    throw scene_error(scene, key, error.what());
-  }
+  auto const read = [&] {
+    auto const dataset = open_inertia(path, sites(scene));
+    return std::pair(dataset.read(), dataset.epsilon());
+  };
+  auto const [values, epsilon] =
+      detail::for_key(scene, key, [&] { return read_guarded(path, read); });
   for (std::size_t body = 0; body < tensors.size(); ++body) {
-    if (auto const fault = detail::inertia_fault(tensors[body], tolerance)) {
+    std::copy_n(values.data() + 9 * body, 9, tensors[body].begin());
+    if (auto const fault = detail::inertia_fault(tensors[body], 16 * epsilon))
       throw scene_error(scene, key, fmt::format("{}: body {}: {}", path.string(), body, *fault));
-    }
   }
   return tensors;
 }
@@ -73,24 +66,17 @@ std::optional<std::string> detail::inertia_fault(InertiaTensor const& tensor, do
 }
 
 void check_files(Scene const& scene) {
-  if (auto const* const start = std::get_if<FileStart>(&scene.initial)) {
-    try {
-      detail::check_start_file(start->path, scene.lattice);
-    } catch (std::runtime_error const& error) {
-      throw scene_error(scene, "initial.file", error.what());
-    }
-  }
+  if (auto const* const start = std::get_if<FileStart>(&scene.initial))
+    detail::for_key(scene, "initial.file",
+                    [&] { detail::check_start_file(start->path, scene.lattice); });
   couplings(scene);
   detail::require_occupied(scene);
   detail::check_site_numbers(scene);
   auto const* const file = std::get_if<InertiaFile>(&scene.system.inertia);
-  if (scene.system.kind == SystemKind::rigid_body && file != nullptr) {
-    try {
+  if (scene.system.kind == SystemKind::rigid_body && file != nullptr)
+    detail::for_key(scene, "system.inertia.file", [&] {
       try_in_child(file->path, [&] { open_inertia(file->path, sites(scene)); });
-    } catch (std::runtime_error const& error) {
-      throw scene_error(scene, "system.inertia.file", error.what());
-    }
-  }
+    });
 }
 
 std::vector<InertiaTensor> inertia(Scene const& scene) {

@@ -1,36 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "random_bits.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
 #include "start.hpp"
+#include "start_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 ExpressionStart read_expressions(Item const& item, Lattice const& lattice) {
   constexpr std::string_view accepted = "three strings, each an expression in x, y, z, i, j, k";
-  ExpressionStart start;
-  auto const three = entries(item, 3, 3, accepted);
-  for (std::size_t component = 0; component < 3; ++component) {
-    auto text = string(three[component], accepted);
+  return {three(item, accepted, [&](Item const& each) {
+    auto text = string(each, accepted);
     try {
       site_expression(text, lattice);
     } catch (std::invalid_argument const& error) {
-      three[component].fail(error.what());
+      each.fail(error.what());
     }
-    start.components[component] = std::move(text);
-  }
-  return start;
+    return text;
+  })};
 }
 
 RandomStart read_random(Item const& item, Scene& scene) {
   constexpr std::string_view accepted = "a whole number >= 0";
   Table const table(item, scene);
   table.accept_only({"seed"});
-  return {integer(table.required("seed", accepted), 0, accepted)};
+  return {integer(table.required("seed", accepted), {accepted, 0})};
 }
 
 GivenStart read_given(Item const& item, Scene const& scene) {
@@ -60,3 +61,117 @@ Initial read_initial(Table const& root) {
 }
 
 }  // namespace cayspin::inline v0_1::io::detail
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+using Site = std::array<std::int64_t, 3>;
+
+Site site_at(SiteBox const& box, std::size_t number) {
+  auto const n = static_cast<std::int64_t>(number);
+  auto const& [nx, ny, nz] = box.extent;
+  return {box.begin[0] + n % nx, box.begin[1] + n / nx % ny, box.begin[2] + n / nx / ny};
+}
+
+struct Start {
+  Scene const& scene;
+  SiteBox const& box;
+  std::vector<unsigned char> const& occupied;
+  std::vector<double>& spins;
+
+  std::size_t size() const { return spins.size() / 3; }
+  // A site without a spin has the zero vector.
+  bool is_vacant(std::size_t site) const { return !occupied.empty() && !occupied[site]; }
+  void set(std::size_t site, Triple const& m) const {
+    if (is_vacant(site)) return;
+    std::copy_n(m.data(), 3, spins.begin() + static_cast<std::ptrdiff_t>(3 * site));
+  }
+
+  // The site and its spin go into the message.
+  void set_normalised(std::size_t site, Triple const& m, std::string_view key) const {
+    if (is_vacant(site)) return;
+    if (auto const unit = detail::normalise(m)) {
+      set(site, *unit);
+      return;
+    }
+    auto const [i, j, plane] = site_at(box, site);
+    auto const sites = static_cast<std::int64_t>(scene.lattice.basis.size());
+    auto const where = sites == 1 ? fmt::format("site ({}, {}, {})", i, j, plane)
+                                  : fmt::format("site {} of cell ({}, {}, {})", plane % sites, i, j,
+                                                plane / sites);
+    detail::refuse(scene, key,
+                   fmt::format("the spin of {} is ({}, {}, {})", where, m[0], m[1], m[2]),
+                   "a finite vector that is not zero");
+  }
+
+  void operator()(UniformStart const& uniform) const {
+    for (std::size_t site = 0; site < size(); ++site) set(site, uniform.direction);
+  }
+
+  void operator()(ExpressionStart const& start) const {
+    std::vector<Expression> components;
+    for (auto const& text : start.components) {
+      components.push_back(detail::site_expression(text, scene));
+    }
+    for (std::size_t site = 0; site < size(); ++site) {
+      auto const variables = detail::site_values(scene.lattice, site_at(box, site));
+      Triple m;
+      detail::for_key(scene, "initial.expression", [&] {
+        for (std::size_t c = 0; c < 3; ++c) m[c] = components[c](variables.data());
+      });
+      set_normalised(site, m, "initial.expression");
+    }
+  }
+
+  // Uniform on the sphere: z and the azimuth are uniform (Archimedes).
+  void operator()(RandomStart const& random) const {
+    auto const seed = static_cast<std::uint64_t>(random.seed);
+    auto const& shape = scene.lattice.shape;
+    for (std::size_t site = 0; site < size(); ++site) {
+      auto const [i, j, k] = site_at(box, site);
+      auto const counter = static_cast<std::uint64_t>((k * shape[1] + j) * shape[0] + i);
+      double const z = 2 * detail::random_number(seed, 2 * counter) - 1;
+      double const azimuth = 2 * std::numbers::pi * detail::random_number(seed, 2 * counter + 1);
+      double const radius = std::sqrt((1 - z) * (1 + z));
+      set_normalised(site, {radius * std::cos(azimuth), radius * std::sin(azimuth), z},
+                     "initial.random");
+    }
+  }
+
+  void operator()(FileStart const& file) const {
+    auto const read = [&] { return detail::read_start_file(file.path, scene.lattice, box); };
+    set_all(detail::for_key(scene, "initial.file", read), "initial.file");
+  }
+
+  void operator()(GivenStart const& start) const {
+    auto const numbers = 3 * static_cast<std::size_t>(sites(scene));
+    if (start.spins->size() != numbers)
+      detail::refuse(scene, "initial.given",
+                     fmt::format("{} numbers were given", start.spins->size()),
+                     fmt::format("{}, three for each site", numbers));
+    set_all(numbers_in(box, scene.lattice.shape, 3, *start.spins), "initial.given");
+  }
+
+  void set_all(std::vector<double> const& values, std::string_view key) const {
+    for (std::size_t site = 0; site < size(); ++site) {
+      auto const* const m = values.data() + 3 * site;
+      set_normalised(site, {m[0], m[1], m[2]}, key);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<double> initial_spins(Scene const& scene) {
+  return initial_spins(scene, {{0, 0, 0}, scene.lattice.shape});
+}
+
+std::vector<double> initial_spins(Scene const& scene, SiteBox const& box) {
+  auto const& [nx, ny, nz] = box.extent;
+  std::vector<double> spins(3 * static_cast<std::size_t>(nx * ny * nz));
+  auto const occupied = io::occupied(scene, box);
+  std::visit(Start{scene, box, occupied, spins}, scene.initial);
+  return spins;
+}
+
+}  // namespace cayspin::inline v0_1::io

@@ -17,7 +17,7 @@ constexpr double most_steps = 9007199254740992.0;  // 2^53
 // `end` over dt, whole to 1e-9 of a step. Beyond 2e6 steps the rounding of the two decimal numbers
 // and of their quotient (2 eps of it) is larger than that and must not refuse a whole number.
 std::int64_t steps_until(Item const& end, double dt) {
-  auto const time = non_negative_number(end);
+  auto const time = number(end, not_negative);
   double const quotient = time / dt;
   if (!(quotient <= most_steps)) end.fail("more than 2^53 steps", "a smaller end or a larger dt");
   double const whole = std::round(quotient);
@@ -40,7 +40,7 @@ std::int64_t read_steps(Table const& table, double dt) {
   if (end && steps) end->fail("stands beside integrator.steps", accepted);
   if (end) return steps_until(*end, dt);
   if (!steps) detail::fail(table.item().place, "integrator.end", "is missing", accepted);
-  auto const count = integer(*steps, 0, "a whole number >= 0");
+  auto const count = integer(*steps, {"a whole number >= 0", 0});
   if (static_cast<double>(count) > most_steps) steps->fail("more than 2^53 steps");
   return count;
 }
@@ -65,14 +65,10 @@ void read_isotropy(Item const& item, Scene& scene, Integrator& integrator) {
 }
 
 Method const* read_method(Table const& table) {
-  std::vector<std::string_view> known;
-  for (auto const* const method : methods()) known.push_back(method->word);
-  auto const accepted = fmt::format("\"{}\"", fmt::join(known, "\", \""));
-  auto const item = table.required("method", accepted);
-  auto const word = string(item, accepted);
-  auto const* const method = find_method(word);
-  if (method == nullptr) unknown_word(item, word, known, accepted);
-  return method;
+  std::vector<Word<Method const*>> known;
+  for (auto const* const method : methods()) known.push_back({method->word, method});
+  std::span<Word<Method const*> const> const words = known;
+  return word_among(words, table.required("method", quoted(words)));
 }
 
 // How the method meets the group: what the baselines do not have.
@@ -113,15 +109,9 @@ void read_tolerance(Table const& table, Integrator& integrator) {
   }
   constexpr std::string_view accepted = "a number > 0, at most 1";
   auto const tolerance = table.required("tolerance", accepted);
-  integrator.tolerance = number(tolerance, accepted);
+  integrator.tolerance = number(tolerance, {accepted});
   if (!(*integrator.tolerance > 0) || *integrator.tolerance > 1)
     tolerance.fail(fmt::format("{} is no tolerance", *integrator.tolerance), accepted);
-  if (auto const item = table.find("min_dt")) integrator.min_dt = non_negative_number(*item);
-  if (auto const item = table.find("max_dt")) {
-    integrator.max_dt = positive_number(*item);
-    if (integrator.max_dt < integrator.min_dt)
-      item->fail(fmt::format("{} is below min_dt", integrator.max_dt), "a number >= min_dt");
-  }
 }
 
 // What "auto" chooses a method for.
@@ -133,7 +123,7 @@ void read_error(Table const& table, Integrator& integrator) {
   }
   constexpr std::string_view accepted = "a number from 1e-13 to 1";
   auto const error = table.required("error", accepted);
-  integrator.error = number(error, accepted);
+  integrator.error = number(error, {accepted});
   if (!(*integrator.error >= 1e-13) || *integrator.error > 1)
     error.fail(fmt::format("{} is out of reach", *integrator.error), accepted);
 }
@@ -154,10 +144,7 @@ double read_dt(Table const& table, Integrator const& integrator) {
 Integrator read_integrator(Table const& root, SystemKind kind) {
   auto const table =
       root.table("integrator", "a table [integrator]; only cayspin relax goes without");
-  table.accept_only(with_flags<Integrator>(
-      {"method", "generator", "isotropy", "isotropy_cap", "rotation", "dt", "end", "steps",
-       "substeps", "tolerance", "min_dt", "max_dt", "error", "until_torque"},
-      "until_torque"));
+  table.accept_only(names_of_keys<Integrator>());
   Integrator integrator;
   integrator.method = read_method(table);
   read_coordinates(table, integrator);
@@ -168,15 +155,12 @@ Integrator read_integrator(Table const& root, SystemKind kind) {
   if (!std::isfinite(static_cast<double>(integrator.steps) * integrator.dt)) {
     table.find("dt")->fail("the last time is not finite", "a smaller dt or fewer steps");
   }
-  if (auto const item = table.find("substeps"))
-    integrator.substeps = integer(*item, 1, "a whole number >= 1");
-  read_flags(table, integrator);
-  if (auto const item = table.find("until_torque")) {
-    if (kind == SystemKind::rigid_body) {
-      item->fail("a rigid body has no torque m x H", "no such key");
-    }
-    integrator.until_torque = positive_number(*item);
-  }
+  read_keys(table, integrator);
+  if (integrator.max_dt < integrator.min_dt)
+    table.find("max_dt")->fail(fmt::format("{} is below min_dt", integrator.max_dt),
+                               "a number >= min_dt");
+  if (auto const item = table.find("until_torque"); item && kind == SystemKind::rigid_body)
+    item->fail("a rigid body has no torque m x H", "no such key");
   return integrator;
 }
 

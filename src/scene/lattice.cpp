@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "crystal.hpp"
 #include "sections.hpp"
 
 #include <fmt/format.h>
@@ -45,7 +44,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
   Lattice lattice;
   std::int64_t room = std::numeric_limits<std::int64_t>::max() / std::int64_t{3 * sizeof(double)};
   for (std::size_t axis = 0; axis < extents.size(); ++axis) {
-    auto const extent = integer(extents[axis], 1, "a whole number >= 1");
+    auto const extent = integer(extents[axis], {"a whole number >= 1", 1});
     if (extent > most_extent)
       extents[axis].fail(fmt::format("{} is too large", extent),
                          fmt::format("a whole number from 1 to {}", most_extent));
@@ -63,7 +62,7 @@ Lattice read_lattice(Table const& root, SystemKind kind) {
     constexpr std::string_view cell = "the size of a cell in m: one number, or three";
     auto const item = table.required("spacing", cell);
     if (item.node->is_array())
-      std::ranges::transform(entries(item, 3, 3, cell), lattice.spacing.begin(), positive_number);
+      lattice.spacing = three(item, cell, positive_number);
     else
       lattice.spacing.fill(positive_number(item));
   } else if (auto const item = table.find("spacing")) {

@@ -13,7 +13,7 @@
 namespace cayspin::inline v0_1::io::detail {
 namespace {
 
-double positive(Item const& item, double value) {
+double positive_moment(Item const& item, double value) {
   if (!(value > 0)) item.fail(fmt::format("{} is not positive", value), "a number > 0");
   return value;
 }
@@ -50,14 +50,14 @@ void read_moments(Item const& item, Scene& scene, Material& material) {
                                           accepted_moment, sites);
   auto const typed = in_joules_per_tesla(item, scene, accepted);
   if (!typed.value.node->is_array()) {
-    material.moment = positive(typed.value, number(typed.value, accepted) * typed.unit);
+    material.moment = positive_moment(typed.value, number(typed.value, {accepted}) * typed.unit);
     return;
   }
   bool const has_unit = typed.value.node != item.node;
   for (auto const& entry : entries(typed.value, sites, sites, accepted)) {
     auto const [value, unit] =
         has_unit ? InUnit{entry, typed.unit} : in_joules_per_tesla(entry, scene);
-    material.moments.push_back(positive(value, number(value, accepted_moment) * unit));
+    material.moments.push_back(positive_moment(value, number(value, {accepted_moment}) * unit));
   }
   material.moment = material.moments.front();
 }
@@ -72,24 +72,21 @@ Triple direction_with(Table const& table, std::string_view name, std::string_vie
 }
 
 void read_damping(Table const& table, Material& material) {
-  constexpr std::string_view forms = "\"gilbert\", \"landau_lifshitz\"";
+  constexpr Word<bool> forms[] = {{"gilbert", true}, {"landau_lifshitz", false}};
   auto const alpha = table.required("alpha", "a number >= 0");
   if (read_site_numbers(alpha, table.scene(), material.alpha_factors))
     material.alpha_factors.key = alpha.key;
   else
-    material.alpha = non_negative_number(alpha);
+    material.alpha = number(alpha, not_negative);
   auto const form = table.find("damping_form");
   if (!form) {
     if (material.alpha > 0 || material.alpha_factors.there())
       detail::fail(table.item().place, "material.damping_form",
                    "is missing: the two forms of damping differ by a factor 1 + alpha^2 in time",
-                   forms);
+                   quoted<bool>(forms));
     return;
   }
-  auto const name = string(*form, forms);
-  if (name != "gilbert" && name != "landau_lifshitz")
-    unknown_word(*form, name, {"gilbert", "landau_lifshitz"}, forms);
-  material.gilbert = name == "gilbert";
+  material.gilbert = word_among<bool>(forms, *form);
 }
 
 }  // namespace
@@ -129,32 +126,32 @@ void read_material(Table const& root, Scene& scene) {
 }
 
 bool read_is_si(Table const& root) {
-  constexpr std::string_view accepted = "\"reduced\", \"SI\"";
+  constexpr Word<bool> systems[] = {{"reduced", false}, {"SI", true}};
   auto const item = root.find("units");
-  auto const name = item ? string(*item, accepted) : std::string("reduced");
-  if (name == "SI") return true;
-  if (name != "reduced") unknown_word(*item, name, {"reduced", "SI"}, accepted);
+  if (item && word_among<bool>(systems, *item)) return true;
   if (auto const material = root.find("material"))
     material->fail("belongs to units = \"SI\"", "that word above all tables, or no such table");
   return false;
 }
 
 void check_si(Scene const& scene) {
-  auto const refuse = [&](std::string_view key, std::string_view wrong, std::string_view accepted) {
-    if (scene.places.contains(key))
-      throw scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
+  auto const refuse_if_typed = [&](std::string_view key, std::string_view wrong,
+                                   std::string_view accepted) {
+    if (scene.places.contains(key)) refuse(scene, key, wrong, accepted);
   };
   bool const atomistic = scene.material->atomistic;
-  refuse("lattice.moments", "belongs to reduced units",
-         atomistic ? "material.mu_s, one number or one for each site of the cell" : "material.Ms");
+  refuse_if_typed(
+      "lattice.moments", "belongs to reduced units",
+      atomistic ? "material.mu_s, one number or one for each site of the cell" : "material.Ms");
   if (!atomistic)
     for (auto const* const key :
          {"lattice.crystal", "lattice.cell", "lattice.basis", "field.couplings"})
-      refuse(key, "is of atoms, and material.Ms of a continuum", "material.mu_s, or no such key");
+      refuse_if_typed(key, "is of atoms, and material.Ms of a continuum",
+                      "material.mu_s, or no such key");
   auto const& moments = scene.material->moments;
   if (std::ranges::adjacent_find(moments, std::not_equal_to<>()) != moments.end())
     for (auto const* const key : {"field.slab_demag", "field.demag"})
-      refuse(key, "needs moments that are all alike", "one number in material.mu_s");
+      refuse_if_typed(key, "needs moments that are all alike", "one number in material.mu_s");
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

@@ -44,7 +44,7 @@ double constant_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
   bool const has_unit = table != nullptr && !table->contains("file") && !table->contains("given");
   if (!has_unit && read_site_numbers(item, scene, numbers)) return 1;
   auto const [value, unit] = in_joules(item, scene, accepted);
-  return number(value, accepted) * unit;
+  return number(value, {accepted}) * unit;
 }
 
 InUnit in_joules_of_atoms(Item const& item, Scene& scene) {

@@ -65,21 +65,18 @@ void check_purpose(Purpose purpose, Scene const& scene) {
   if (purpose == Purpose::any) purpose = is_to_relax(scene) ? Purpose::relax : Purpose::run;
   if (purpose == Purpose::run) {
     if (!scene.field.applied_in_turn.empty())
-      throw scene_error(scene, "field.applied",
-                        "a list of fields is for cayspin relax; accepted: three numbers or "
-                        "expressions in t");
+      detail::refuse(scene, "field.applied", "a list of fields is for cayspin relax",
+                     "three numbers or expressions in t");
     return;
   }
   if (scene.system.kind != SystemKind::llg)
-    throw scene_error(scene, "system.kind",
-                      "rigid bodies have no state of rest; accepted: \"llg\"");
+    detail::refuse(scene, "system.kind", "rigid bodies have no state of rest", "\"llg\"");
   if (has_torque(scene.field))
-    throw scene_error(scene, "torque",
-                      "moves spins for ever, and a state of rest needs an energy that falls; "
-                      "accepted: no such table");
+    detail::refuse(scene, "torque",
+                   "moves spins for ever, and a state of rest needs an energy that falls",
+                   "no such table");
   if (depends_on_time(scene.field))
-    throw scene_error(scene, "field.applied",
-                      "depends on t, and a state of rest does not; accepted: numbers");
+    detail::refuse(scene, "field.applied", "depends on t, and a state of rest does not", "numbers");
 }
 
 // Where the cell is that of a unit-cell file, its sites go into the text: who reads that again need
@@ -213,6 +210,11 @@ SceneError scene_error(Scene const& scene, std::string_view key, std::string_vie
   }
   return SceneError(
       detail::one_line(fmt::format("{}:1: {}: {}", scene.path.string(), key, message)));
+}
+
+void detail::refuse(Scene const& scene, std::string_view key, std::string_view wrong,
+                    std::string_view accepted) {
+  throw scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
 }
 
 std::int64_t sites(Scene const& scene) {

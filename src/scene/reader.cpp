@@ -3,6 +3,8 @@
 
 #include "start.hpp"
 
+#include <cayspin/io/expression.hpp>
+
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -132,33 +134,25 @@ Table Table::table(std::string_view name, std::string_view accepted) const {
   return Table(required(name, accepted), *scene_);
 }
 
-double number(Item const& item, std::string_view accepted) {
-  if (auto const* const whole = item.node->as_integer()) return static_cast<double>(whole->get());
-  auto const* const real = item.node->as_floating_point();
-  if (real == nullptr) item.wrong_type(accepted);
-  if (!std::isfinite(real->get()))
-    item.fail(fmt::format("{} is not finite", real->get()), accepted);
-  return real->get();
-}
-
-double positive_number(Item const& item) {
-  constexpr std::string_view accepted = "a number > 0";
-  auto const value = number(item, accepted);
-  if (!(value > 0)) item.fail(fmt::format("{} is not positive", value), accepted);
-  return value;
-}
-
-double non_negative_number(Item const& item) {
-  constexpr std::string_view accepted = "a number >= 0";
-  auto const value = number(item, accepted);
-  if (value < 0) item.fail(fmt::format("{} is negative", value), accepted);
-  return value;
-}
-
-std::int64_t integer(Item const& item, std::int64_t minimum, std::string_view accepted) {
+double number(Item const& item, Limits const& limits) {
+  if (!item.node->is_number()) item.wrong_type(limits.accepted);
   auto const* const whole = item.node->as_integer();
-  if (whole == nullptr) item.wrong_type(accepted);
-  if (whole->get() < minimum) item.fail(fmt::format("{} is too small", whole->get()), accepted);
+  auto const value =
+      whole ? static_cast<double>(whole->get()) : item.node->as_floating_point()->get();
+  if (!std::isfinite(value)) item.fail(fmt::format("{} is not finite", value), limits.accepted);
+  if (limits.without_least && value <= limits.least)
+    item.fail(fmt::format("{} is not positive", value), limits.accepted);
+  if (value < limits.least) item.fail(fmt::format("{} is negative", value), limits.accepted);
+  return value;
+}
+
+std::int64_t integer(Item const& item, Limits const& limits) {
+  auto const* const whole = item.node->as_integer();
+  if (whole == nullptr) item.wrong_type(limits.accepted);
+  auto const value = static_cast<double>(whole->get());
+  if (value < limits.least)
+    item.fail(fmt::format("{} is too small", whole->get()), limits.accepted);
+  if (value > limits.most) item.fail(fmt::format("{} is too large", whole->get()), limits.accepted);
   return whole->get();
 }
 
@@ -172,6 +166,19 @@ std::string string(Item const& item, std::string_view accepted) {
   auto const* const value = item.node->as_string();
   if (value == nullptr) item.wrong_type(accepted);
   return value->get();
+}
+
+AppliedComponent component_in_time(Item const& item) {
+  constexpr std::string_view accepted = "a finite number, or a string with an expression in t";
+  if (!item.node->is_string()) return number(item, {accepted});
+  auto text = string(item, accepted);
+  try {
+    double const start = 0;
+    Expression(text, {"t"})(&start);
+  } catch (std::exception const& error) {
+    item.fail(error.what());
+  }
+  return text;
 }
 
 std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
@@ -190,8 +197,7 @@ std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
 }
 
 Triple triple(Item const& item) {
-  auto const three = entries(item, 3, 3, "three numbers");
-  return {number(three[0]), number(three[1]), number(three[2])};
+  return three(item, "three numbers", [](Item const& each) { return number(each); });
 }
 
 Triple direction(Item const& item) {

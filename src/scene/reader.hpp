@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <algorithm>
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace cayspin::inline v0_1::io::detail {
@@ -62,16 +64,23 @@ class Table {
   Scene* scene_;
 };
 
-double number(Item const& item, std::string_view accepted = "a finite number");
-double positive_number(Item const& item);
-double non_negative_number(Item const& item);
-std::int64_t integer(Item const& item, std::int64_t minimum, std::string_view accepted);
+double number(Item const& item, Limits const& limits = {});
+inline double positive_number(Item const& item) { return number(item, positive); }
+std::int64_t integer(Item const& item, Limits const& limits);
 bool boolean(Item const& item);
 std::string string(Item const& item, std::string_view accepted);
+/// A number, or an expression in t.
+AppliedComponent component_in_time(Item const& item);
 
 /// The entries of an array of `least` to `most` entries.
 std::vector<Item> entries(Item const& item, std::size_t least, std::size_t most,
                           std::string_view accepted);
+/// Three entries, each of them read by `read`.
+template <class Read>
+auto three(Item const& item, std::string_view accepted, Read const& read) {
+  auto const each = entries(item, 3, 3, accepted);
+  return std::array{read(each[0]), read(each[1]), read(each[2])};
+}
 Triple triple(Item const& item);
 /// Three numbers, normalised; a zero vector is refused.
 Triple direction(Item const& item);
@@ -80,12 +89,17 @@ Triple direction(Item const& item);
 std::filesystem::path input_file(Table const& table, std::string_view name,
                                  std::string_view accepted = "the name of an HDF5 file");
 
+/// The names, each in quotes.
 template <class Value>
-std::string all_words() {
+std::string quoted(std::span<Word<Value> const> words) {
   std::string list;
-  for (auto const& word : words<Value>())
+  for (auto const& word : words)
     list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word.name);
   return list;
+}
+template <class Value>
+std::string all_words() {
+  return quoted(words<Value>());
 }
 
 /// Refuses a word that is not one of `known`.
@@ -93,31 +107,59 @@ std::string all_words() {
                                std::vector<std::string_view> const& known,
                                std::string_view accepted);
 
+/// One of these words; `accepted`: for messages, in place of all of them.
+template <class Value>
+Value word_among(std::span<Word<Value> const> words, Item const& item,
+                 std::string_view accepted = {}) {
+  auto const all = accepted.empty() ? quoted(words) : std::string(accepted);
+  auto const name = string(item, all);
+  std::vector<std::string_view> known;
+  for (auto const& word : words) {
+    if (word.name == name) return word.value;
+    known.push_back(word.name);
+  }
+  unknown_word(item, name, known, all);
+}
 /// A word of the tables in words.hpp.
 template <class Value>
 Value word(Item const& item, std::string_view accepted = {}) {
-  auto const all = accepted.empty() ? all_words<Value>() : std::string(accepted);
-  auto const name = string(item, all);
-  if (auto const* const found = find_word<Value>(name)) return found->value;
-  std::vector<std::string_view> known;
-  for (auto const& word : words<Value>()) known.push_back(word.name);
-  unknown_word(item, name, known, all);
+  return word_among(words<Value>(), item, accepted);
 }
 
-/// Sets the keys of a section that are true or false.
 template <class Section>
-void read_flags(Table const& table, Section& section) {
-  for (auto const& flag : Section::flags())
-    if (auto const item = table.find(flag.key)) section.*flag.member = boolean(*item);
+std::vector<std::string_view> names_of_keys() {
+  std::vector<std::string_view> names;
+  for (auto const& key : Section::keys()) names.push_back(key.name);
+  return names;
 }
 
-/// `keys` with those of a section's flags before the one that is `before`, or at the end.
+template <class Member>
+void read_member(Item const& item, Limits const& limits, Member& member) {
+  if constexpr (std::is_same_v<Member, bool> || std::is_same_v<Member, std::optional<bool>>)
+    member = boolean(item);
+  else if constexpr (std::is_integral_v<Member>)
+    member = static_cast<Member>(integer(item, limits));
+  else if constexpr (std::is_same_v<Member, Triple>)
+    member = direction(item);
+  else if constexpr (std::is_same_v<Member, AppliedComponent>)
+    member = component_in_time(item);
+  else
+    member = number(item, limits);
+}
+
+/// Sets the members that the section's keys() name.
 template <class Section>
-std::vector<std::string_view> with_flags(std::vector<std::string_view> keys,
-                                         std::string_view before = {}) {
-  auto place = std::ranges::find(keys, before);
-  for (auto const& flag : Section::flags()) place = keys.insert(place, flag.key) + 1;
-  return keys;
+void read_keys(Table const& table, Section& section) {
+  for (auto const& key : Section::keys()) {
+    auto const item = key.required ? std::optional(table.required(key.name, key.limits.accepted))
+                                   : table.find(key.name);
+    if (!item) continue;
+    auto const read = [&](auto pointer) {
+      if constexpr (!std::is_same_v<decltype(pointer), std::monostate>)
+        read_member(*item, key.limits, section.*pointer);
+    };
+    std::visit(read, key.member);
+  }
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

@@ -5,6 +5,19 @@
 
 namespace cayspin::inline v0_1::io::detail {
 
+/// Throws scene_error with what is accepted.
+[[noreturn]] void refuse(Scene const& scene, std::string_view key, std::string_view wrong,
+                         std::string_view accepted);
+/// What std::runtime_error says of `work` becomes the scene_error of a key.
+template <class Work>
+auto for_key(Scene const& scene, std::string_view key, Work const& work) {
+  try {
+    return work();
+  } catch (std::runtime_error const& error) {
+    throw scene_error(scene, key, error.what());
+  }
+}
+
 /// Is it units = "SI"? The sections then hold what is typed until convert_to_reduced.
 bool read_is_si(Table const& root);
 /// After the lattice; the sections after it are read with the material known.
@@ -13,9 +26,9 @@ void read_material(Table const& root, Scene& scene);
 void check_si(Scene const& scene);
 /// Turns the scene, of which all sections have been read, into reduced units.
 void convert_to_reduced(Scene& scene);
-/// A formula in t, with t in units of `time` and the result in units of `field`.
-std::string scaled_expression(std::string_view text, double time, double field);
 
+/// A table that rigid bodies do not have, where it is typed.
+std::optional<Table> table_of_spins(Table const& root, std::string_view name, SystemKind kind);
 System read_system(Table const& root);
 /// Where spins are, and where they do not move: after the lattice.
 void read_occupied(Table const& root, Scene& scene);
@@ -23,11 +36,12 @@ void read_occupied(Table const& root, Scene& scene);
 void read_dampings(Table const& root, Scene& scene);
 /// A rigid body takes neither spacing nor boundary, and one extent.
 Lattice read_lattice(Table const& root, SystemKind kind);
+/// The keys of [lattice] that say what is in a cell. Where the cell is that of a unit-cell file,
+/// this is read.
+void read_crystal(Table const& root, Table const& lattice_table, Lattice& lattice);
 /// After the lattice, which the scene has by then.
 Field read_field(Table const& root, SystemKind kind);
 void read_couplings(Item const& item, Scene& scene, Field& field);
-/// A number, or an expression in t.
-AppliedComponent read_component_in_time(Item const& item);
 Torque read_torque(Table const& root, SystemKind kind);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);

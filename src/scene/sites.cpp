@@ -44,8 +44,7 @@ void require_occupied(Scene const& scene) {
     auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], at_once}});
     if (std::ranges::find(there, 1) != there.end()) return;
   }
-  throw scene_error(scene, "lattice.occupied",
-                    "leaves no spin; accepted: numbers that are not 0 somewhere");
+  refuse(scene, "lattice.occupied", "leaves no spin", "numbers that are not 0 somewhere");
 }
 
 }  // namespace detail

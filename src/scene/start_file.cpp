@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "start_file.hpp"
 
-#include "hdf5/real_dataset.hpp"
+#include "dataset_of_sites.hpp"
 #include "hdf5/survives.hpp"
 #include "trajectory/stored_spins.hpp"
 
@@ -38,41 +38,11 @@ std::int64_t sites_of(Lattice const& lattice) {
 }
 
 /// /spins (site, nz, ny, nx, 3) of a crystal: a state, without frames.
-class StateOfCrystal {
- public:
-  StateOfCrystal(std::filesystem::path const& path, Lattice const& lattice)
-      : shape_(lattice.shape), sites_(sites_of(lattice)), dataset_(path, "/spins") {
-    std::array<std::int64_t, 5> const expected{sites_, shape_[2] / sites_, shape_[1], shape_[0], 3};
-    auto const& extents = dataset_.extents();
-    auto const same = [](std::int64_t a, hsize_t b) { return static_cast<hsize_t>(a) == b; };
-    if (!std::equal(expected.begin(), expected.end(), extents.begin(), extents.end(), same)) {
-      auto const inner = fmt::format("{})", fmt::join(expected, ", "));
-      dataset_.refuse_extents(fmt::format("({} or (frame, {}", inner, inner));
-    }
-  }
-
-  /// In the order of a lattice, whose planes are the sites of a cell in turn.
-  std::vector<double> in(SiteBox const& box) const {
-    auto const plane = 3 * box.extent[0] * box.extent[1];
-    std::vector<double> spins;
-    for (std::int64_t z = box.begin[2]; z < box.begin[2] + box.extent[2]; ++z) {
-      auto const numbers =
-          dataset_.read(extents({z % sites_, z / sites_, box.begin[1], box.begin[0], 0}),
-                        extents({1, 1, box.extent[1], box.extent[0], 3}));
-      spins.insert(spins.end(), numbers.begin(), numbers.begin() + plane);
-    }
-    return spins;
-  }
-
- private:
-  static Extents extents(std::array<std::int64_t, 5> const& inner) {
-    return Extents(inner.begin(), inner.end());
-  }
-
-  std::array<std::int64_t, 3> shape_;
-  std::int64_t sites_;
-  RealDataset dataset_;
-};
+DatasetOfSites open_state(std::filesystem::path const& path, Lattice const& lattice) {
+  DatasetOfSites state(path, "/spins", lattice, 3);
+  if (!state.fits()) state.refuse_extents(fmt::format("({0}) or (frame, {0})", state.expected()));
+  return state;
+}
 
 bool is_state_of_crystal(std::filesystem::path const& path, Lattice const& lattice) {
   return lattice.basis.size() > 1 && RealDataset(path, "/spins").extents().size() != 6;
@@ -87,7 +57,7 @@ void check_start_file(std::filesystem::path const& path, Lattice const& lattice)
   } else {
     try_in_child(path, [&] {
       if (is_state_of_crystal(path, lattice))
-        StateOfCrystal(path, lattice);
+        open_state(path, lattice);
       else
         StoredSpins(path, lattice.shape, sites_of(lattice));
     });
@@ -98,7 +68,7 @@ std::vector<double> read_start_file(std::filesystem::path const& path, Lattice c
                                     SiteBox const& box) {
   if (!is_ovf(path)) {
     if (read_guarded(path, [&] { return is_state_of_crystal(path, lattice); }))
-      return read_guarded(path, [&] { return StateOfCrystal(path, lattice).in(box); });
+      return read_guarded(path, [&] { return open_state(path, lattice).in(box); });
     return read_spins(path, lattice.shape, box, sites_of(lattice));
   }
   refuse_crystals(lattice, path);

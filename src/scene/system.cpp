@@ -36,7 +36,7 @@ std::variant<PrincipalMoments, InertiaTensor, InertiaFile> read_inertia(Item con
   return tensor;
 }
 
-void refuse(Table const& table, std::string_view name, std::string_view kind) {
+void refuse_key(Table const& table, std::string_view name, std::string_view kind) {
   if (auto const item = table.find(name)) {
     item->fail(fmt::format("has no meaning for kind = \"{}\"", kind), "no such key");
   }
@@ -44,24 +44,32 @@ void refuse(Table const& table, std::string_view name, std::string_view kind) {
 
 }  // namespace
 
+std::optional<Table> table_of_spins(Table const& root, std::string_view name, SystemKind kind) {
+  auto const found = root.find(name);
+  if (!found) return std::nullopt;
+  if (kind == SystemKind::rigid_body)
+    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
+  return Table(*found, root.scene());
+}
+
 System read_system(Table const& root) {
   auto const table = root.table("system", "a table [system]");
   table.accept_only({"kind", "damping", "precession", "inertia"});
   System system;
   system.kind = word<SystemKind>(table.required("kind", all_words<SystemKind>()));
   if (system.kind == SystemKind::llg) {
-    refuse(table, "inertia", "llg");
+    refuse_key(table, "inertia", "llg");
     if (!table.scene().units.si) {
       auto const item = table.required("damping", "a number >= 0");
       if (!item.node->is_string() && !item.node->is_table())
-        system.damping = non_negative_number(item);
+        system.damping = number(item, not_negative);
     } else if (auto const item = table.find("damping")) {
       item->fail("belongs to reduced units", "material.alpha with material.damping_form");
     }
     if (auto const item = table.find("precession")) system.precession = boolean(*item);
   } else {
-    refuse(table, "damping", "rigid_body");
-    refuse(table, "precession", "rigid_body");
+    refuse_key(table, "damping", "rigid_body");
+    refuse_key(table, "precession", "rigid_body");
     system.inertia = read_inertia(table.required("inertia", inertia_accepted), table.scene());
   }
   return system;

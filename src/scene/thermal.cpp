@@ -6,15 +6,11 @@
 namespace cayspin::inline v0_1::io::detail {
 
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind) {
-  auto const item = root.find("thermal");
-  if (!item) return std::nullopt;
-  if (kind == SystemKind::rigid_body)
-    item->fail("has no meaning for kind = \"rigid_body\"", "no such table");
-  auto const table = root.table("thermal", "a table [thermal]");
-  table.accept_only({"temperature", "seed"});
+  auto const table = table_of_spins(root, "thermal", kind);
+  if (!table) return std::nullopt;
+  table->accept_only(names_of_keys<Thermal>());
   Thermal thermal;
-  thermal.temperature = non_negative_number(table.required("temperature", "a number >= 0"));
-  if (auto const seed = table.find("seed")) thermal.seed = integer(*seed, 0, "a whole number >= 0");
+  read_keys(*table, thermal);
   return thermal;
 }
 
@@ -22,26 +18,25 @@ void check_thermal(Scene const& scene) {
   if (!scene.thermal || scene.thermal->temperature == 0) return;
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   auto const& method = *integrator.method;
-  auto const refuse = [&](std::string_view key, std::string_view wrong, std::string_view accepted) {
-    throw scene_error(scene, key, fmt::format("{}; accepted: {}", wrong, accepted));
-  };
   if (!(system.damping > 0))
-    refuse("thermal.temperature", "a temperature needs damping: it is what spins take heat by",
+    refuse(scene, "thermal.temperature",
+           "a temperature needs damping: it is what spins take heat by",
            "a damping > 0, or temperature = 0");
   if (!method.has_equal_steps() || !method.keeps_length)
-    refuse("integrator.method",
+    refuse(scene, "integrator.method",
            fmt::format("\"{}\" does not go with a temperature: it {}", method.word,
                        method.keeps_length ? "chooses its steps" : "does not keep |m| = 1"),
            "a method with steps of dt, such as \"heun\", \"rkmk4\", \"red_black2\"");
   if (integrator.compensated)
-    refuse("integrator.compensated", "does not go with a temperature, whose noise is rounded, too",
-           "no such key");
+    refuse(scene, "integrator.compensated",
+           "does not go with a temperature, whose noise is rounded, too", "no such key");
   if (integrator.until_torque)
-    refuse("integrator.until_torque", "spins at a temperature do not come to rest", "no such key");
+    refuse(scene, "integrator.until_torque", "spins at a temperature do not come to rest",
+           "no such key");
   double const half =
       largest_noise(scene) * system.damping * scene.thermal->temperature * integrator.dt;
   if (!(half <= 1))
-    refuse("integrator.dt",
+    refuse(scene, "integrator.dt",
            fmt::format("damping times temperature times dt{} is {:.3g}: the noise of a step would "
                        "lose all memory of a direction",
                        scene.lattice.moments.empty() ? "" : " over the least moment", half),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // From SI to reduced units.
-#include "crystal.hpp"
 #include "sections.hpp"
 
 #include <cayspin/units.hpp>
@@ -9,9 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 namespace cayspin::inline v0_1::io::detail {
 namespace {
+
+// A formula in t, with t in units of `time` and the result in units of `field`.
+std::string scaled_expression(std::string const& text, double time, double field) {
+  static std::regex const variable(R"(\bt\b)");
+  return fmt::format("({})/{}", std::regex_replace(text, variable, fmt::format("({}*t)", time)),
+                     field);
+}
 
 // Of numbers that differ from site to site, the sites take their own part.
 units::Damping damping_of(Material const& material) {
@@ -133,10 +140,8 @@ void convert(Scene& scene, auto const& units) {
   for (double const unit : {units.time_unit(), units.length_unit(), units.field_unit(),
                             units.energy_unit(), units.velocity_unit()})
     if (!std::isnormal(unit))
-      throw scene_error(scene, "material",
-                        fmt::format("a unit of the reduced equation comes to {}; accepted: numbers "
-                                    "in SI units",
-                                    unit));
+      refuse(scene, "material", fmt::format("a unit of the reduced equation comes to {}", unit),
+             "numbers in SI units");
   scene.system.damping = units.damping();
   scene.system.dampings = scene.material->alpha_factors;
   scene.system.gilbert_of_sites = scene.system.dampings.there() && scene.material->gilbert;
@@ -145,9 +150,9 @@ void convert(Scene& scene, auto const& units) {
   convert_integrator(scene.integrator, units);
   if (scene.thermal) scene.thermal->temperature = units.temperature(scene.thermal->temperature);
   if (!std::isnormal(scene.integrator.dt))
-    throw scene_error(scene, "integrator.dt",
-                      fmt::format("comes to {} units of {} s; accepted: a time in s",
-                                  scene.integrator.dt, units.time_unit()));
+    refuse(scene, "integrator.dt",
+           fmt::format("comes to {} units of {} s", scene.integrator.dt, units.time_unit()),
+           "a time in s");
 }
 
 // Of the lattice's sites in a cube of the spacing, which the dipolar field of a slab is of.
@@ -167,9 +172,8 @@ void convert_to_reduced(Scene& scene) {
     spacing = units.spacing();
   } else {
     if (spacing[1] != spacing[0] || spacing[2] != spacing[0])
-      throw scene_error(scene, "lattice.spacing",
-                        "differs from axis to axis; accepted: one lattice constant, since "
-                        "material.J is that of every bond");
+      refuse(scene, "lattice.spacing", "differs from axis to axis",
+             "one lattice constant, since material.J is that of every bond");
     units::Atomistic const units({material.moment, energy_unit(material, scene.field), spacing[0],
                                   damping_of(material), material.gamma});
     if (scene.field.slab_demag) scene.field.slab_demag->strength *= sites_in_cube(scene.lattice);

@@ -13,13 +13,6 @@ namespace {
 
 constexpr std::string_view three_components = "three numbers or expressions in t";
 
-std::array<AppliedComponent, 3> read_components(Item const& item) {
-  std::array<AppliedComponent, 3> read;
-  std::ranges::transform(entries(item, 3, 3, three_components), read.begin(),
-                         read_component_in_time);
-  return read;
-}
-
 AppliedComponent times(AppliedComponent const& component, double factor) {
   if (auto const* const number = std::get_if<double>(&component))
     return factor * *number + 0.0;  // no -0
@@ -49,40 +42,37 @@ std::optional<Item> find_current(Table const& table, std::string_view torque,
 // Velocities in m/s in a scene in SI.
 ZhangLi read_zhang_li(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  table.accept_only({"velocity", "current_density", "polarization", "nonadiabaticity"});
+  table.accept_only(names_of_keys<ZhangLi>());
   ZhangLi read;
+  read_keys(table, read);
   if (auto const current = find_current(table, "velocity", {"polarization"})) {
     auto const& [Ms, gamma] = std::tie(scene.material->moment, scene.material->gamma);
     auto const polarization = number(table.required("polarization", "a number"));
-    read.velocity = read_components(*current);
+    read.velocity = three(*current, three_components, component_in_time);
     for (auto& component : read.velocity)
       component = times(component, units::drift_velocity(1, polarization, Ms, gamma));
   } else {
-    read.velocity = read_components(table.required("velocity", three_components));
+    auto const velocity = table.required("velocity", three_components);
+    read.velocity = three(velocity, three_components, component_in_time);
   }
-  if (auto const xi = table.find("nonadiabaticity")) read.nonadiabaticity = number(*xi);
   return read;
 }
 
 // Strengths in T in a scene in SI.
 Slonczewski read_slonczewski(Item const& item, Scene& scene) {
   Table const table(item, scene);
-  table.accept_only(
-      {"damping_like", "field_like", "polarization", "current_density", "efficiency", "thickness"});
-  Slonczewski read;
-  auto const damping_like = table.find("damping_like"), field_like = table.find("field_like");
+  table.accept_only(names_of_keys<Slonczewski>());
   auto const current = find_current(table, "damping_like", {"efficiency", "thickness"});
-  if (!damping_like && !field_like && !current)
+  if (!table.contains("damping_like") && !table.contains("field_like") && !current)
     item.fail("has no strength", "damping_like, field_like");
-  if (damping_like) read.damping_like = read_component_in_time(*damping_like);
-  if (field_like) read.field_like = read_component_in_time(*field_like);
+  Slonczewski read;
+  read_keys(table, read);
   if (current) {
     auto const efficiency = number(table.required("efficiency", "a number"));
     auto const thickness = positive_number(table.required("thickness", "a number > 0, in m"));
-    read.damping_like = times(read_component_in_time(*current),
+    read.damping_like = times(component_in_time(*current),
                               units::spin_torque(1, efficiency, scene.material->moment, thickness));
   }
-  read.polarization = direction(table.required("polarization", "three numbers"));
   return read;
 }
 
@@ -90,14 +80,11 @@ Slonczewski read_slonczewski(Item const& item, Scene& scene) {
 
 Torque read_torque(Table const& root, SystemKind kind) {
   Torque torque;
-  auto const found = root.find("torque");
-  if (!found) return torque;
-  if (kind == SystemKind::rigid_body)
-    found->fail("has no meaning for kind = \"rigid_body\"", "no such table");
-  Table const table(*found, root.scene());
-  table.accept_only({"zhang_li", "slonczewski"});
-  auto const zhang_li = table.find("zhang_li"), slonczewski = table.find("slonczewski");
-  if (!zhang_li && !slonczewski) found->fail("is empty", "zhang_li, slonczewski");
+  auto const table = table_of_spins(root, "torque", kind);
+  if (!table) return torque;
+  table->accept_only({"zhang_li", "slonczewski"});
+  auto const zhang_li = table->find("zhang_li"), slonczewski = table->find("slonczewski");
+  if (!zhang_li && !slonczewski) table->item().fail("is empty", "zhang_li, slonczewski");
   if (zhang_li) torque.zhang_li = read_zhang_li(*zhang_li, root.scene());
   if (slonczewski) torque.slonczewski = read_slonczewski(*slonczewski, root.scene());
   return torque;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "unit_cell_file.hpp"
 
-#include "crystal.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <tuple>
 
@@ -70,15 +70,11 @@ class Lines {
   }
 
  private:
-  static Words words_of(std::string_view line) {
-    constexpr std::string_view gaps = " \t\r,";
-    Words words;
-    for (std::size_t at = 0; (at = line.find_first_not_of(gaps, at)) != line.npos;) {
-      auto const end = std::min(line.find_first_of(gaps, at), line.size());
-      words.emplace_back(line.substr(at, end - at));
-      at = end;
-    }
-    return words;
+  static Words words_of(std::string line) {
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream stream(line);
+    using Iterator = std::istream_iterator<std::string>;
+    return Words(Iterator(stream), Iterator());
   }
 
   std::filesystem::path path_;

@@ -4,6 +4,7 @@
 #include <cayspin/coupling.hpp>
 #include <cayspin/crystal.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,9 @@
 // Unit-cell files of Vampire, which other programs write, too. Both functions throw
 // std::runtime_error with one line that names the file's line.
 namespace cayspin::inline v0_1::io::detail {
+
+/// Sites in a cell.
+constexpr std::int64_t most_sites = 32767;
 
 constexpr std::string_view accepted_unit_cell_file = "the name of a unit-cell file of Vampire";
 

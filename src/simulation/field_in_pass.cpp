@@ -7,6 +7,7 @@
 #include "sites_of_cell.hpp"
 #include "space.hpp"
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/io/scene.hpp>
@@ -27,16 +28,6 @@
 
 namespace cayspin::simulation {
 namespace {
-
-template <class Element, class Memory>
-Kokkos::View<Element*, Memory> table_of(char const* name, std::vector<Element> const& from) {
-  Kokkos::View<Element*, Memory> table(
-      Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string("cayspin::FieldInPass::") + name),
-      from.size());
-  Kokkos::deep_copy(table, Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                               from.data(), from.size()));
-  return table;
-}
 
 // That of all sites alike.
 double bulk_constant(io::Scene const& scene) {
@@ -145,8 +136,8 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     noise_of_sites_.push_back(site.gyromagnetic / site.moment);
     largest_moment_ = std::max(largest_moment_, site.moment);
   }
-  sites_ = table_of<CellSite, Memory>("sites", sites);
-  cubics_ = table_of<CubicAnisotropy, Memory>("cubics", cubics);
+  sites_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::sites", sites);
+  cubics_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::cubics", cubics);
 
   auto const box = own_sites(lattice);
   auto const occupied = io::occupied(scene, box), frozen = io::frozen(scene, box);
@@ -227,7 +218,7 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
     constants_of_axes_.push_back(field_of<Real, Memory>("anisotropy", lattice_, values));
     axes.push_back({constants_of_axes_.back().array(), vector(term.axis)});
   }
-  anisotropies_ = table_of<AnisotropyOfSites<Real>, Memory>("anisotropies", axes);
+  anisotropies_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::anisotropies", axes);
 }
 
 template <class Spins>

@@ -4,6 +4,7 @@
 #include "../backends/equal_bits.hpp"
 #include "../order/chain.hpp"
 #include "../support/backends.hpp"
+#include "../support/field_that_jumps.hpp"
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -57,16 +58,6 @@ TYPED_TEST(AdaptiveOn, HasTheBitsOfSerial) {
   }
 }
 
-/// A field that is switched on at once.
-struct SwitchedOn {
-  static constexpr bool depends_on_time = true;
-  double at;
-  template <class Exec, class Field>
-  Zeeman prepare(Exec const&, Field const&, double t) const {
-    return Zeeman{t < at ? Vector{0, 0, 1} : Vector{3, 0, 0}};
-  }
-};
-
 TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
   double const jump = 0.5123456789;
   LandauLifshitz const before(EffectiveField(Zeeman{{0, 0, 1}}), 0.1);
@@ -79,19 +70,13 @@ TEST(AdaptiveTolerance, HoldsAcrossAFieldSwitchedOnInMidStep) {
   for (double const tolerance : {1e-3, 1e-5, 1e-7}) {
     auto spins = start();
     Tsit5 stepper(spins, {.tolerance = tolerance, .max_dt = 0.1});
-    stepper.step(Space(), LandauLifshitz(EffectiveField(SwitchedOn{jump}), 0.1), spins, 0, 1);
+    stepper.step(Space(),
+                 LandauLifshitz(EffectiveField(FieldThatJumps{jump, {0, 0, 1}, {3, 0, 0}}), 0.1),
+                 spins, 0, 1);
     EXPECT_GT(stepper.rejected_steps(), 0);
     expect_below("error across the jump", largest_distance(spins, exact), 30 * tolerance);
   }
 }
-
-struct OffAndOn {
-  static constexpr bool depends_on_time = true;
-  template <class Exec, class Field>
-  Zeeman prepare(Exec const&, Field const&, double t) const {
-    return Zeeman{{0, 0, t < 2.5 ? 0.0 : 1.0}};
-  }
-};
 
 // The steps of a spin at rest are long when its field comes, and turn it by so much that all
 // solutions are near half a turn.
@@ -104,30 +89,54 @@ TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
                                        start(), 1e-3, 3500);
   auto spins = start();
   AdaptiveRkmk<Spins, tableau::DormandPrince5> stepper(spins, {.tolerance = tolerance});
-  LandauLifshitz const generator(EffectiveField(OffAndOn{}), 0.1);
+  LandauLifshitz const generator(EffectiveField(FieldThatJumps{2.5, {0, 0, 0}, {0, 0, 1}}), 0.1);
   for (double t = 0; t < 6; ++t) stepper.step(Space(), generator, spins, t, 1);
   expect_below("error after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
-/// Not a number from a time on.
-struct Failing {
-  static constexpr bool depends_on_time = true;
-  template <class Exec, class Field>
-  Zeeman prepare(Exec const&, Field const&, double t) const {
-    return Zeeman{{t < 0.5 ? 1 : std::nan(""), 0, 1}};
-  }
-};
+// What all methods with steps of their own do alike.
+template <class Stepper>
+struct EveryAdaptive : ::testing::Test {};
+using AllAdaptive =
+    ::testing::Types<AdaptiveRkmk<Spins>, AdaptiveProjected<Spins>, AdaptiveStiffGauss2<Spins>>;
+TYPED_TEST_SUITE(EveryAdaptive, AllAdaptive);
 
-TEST(AdaptiveFailure, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
+TYPED_TEST(EveryAdaptive, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
   auto spins = chain_start();
   auto const start = copy_to_host(spins);
-  LandauLifshitz const generator(EffectiveField(Failing{}), 0.1);
-  Tsit5 stepper(spins, {.tolerance = 1e-6});
+  FieldThatJumps const failing{0.5, {1, 0, 1}, {std::nan(""), 0, 1}};
+  LandauLifshitz const generator(EffectiveField(Exchange(spins.lattice(), 1), failing), 0.1);
+  TypeParam stepper(spins, {.tolerance = 1e-4});
   EXPECT_THROW(stepper.step(Space(), generator, spins, 0, 1), StepTooSmall);
   EXPECT_EQ(copy_to_host(spins), start);
   stepper.reset();
   stepper.step(Space(), generator, spins, 0, 0.25);
   EXPECT_NE(copy_to_host(spins), start);
+}
+
+TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
+  Slab const slab = coupled_chain(0.05);
+  auto seldom = chain_start(), often = chain_start();
+  StepOptions const options{.tolerance = 1e-4, .end = 2};
+  TypeParam one(seldom, options), many(often, options);
+  one.step(Space(), slab.natural(), seldom, 0, 2);
+  advance(many, slab.natural(), often, 2. / 256, 256);
+  EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
+  EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
+}
+
+TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
+  auto spins = chain_start();
+  for (StepOptions const& options :
+       {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 1e-15}, StepOptions{.tolerance = 2},
+        StepOptions{.min_dt = -1}, StepOptions{.max_dt = 0}, StepOptions{.min_dt = 2, .max_dt = 1},
+        StepOptions{.first_dt = -1}, StepOptions{.tolerance = std::nan("")}})
+    EXPECT_THROW(TypeParam(spins, options), std::invalid_argument);
+  TypeParam stepper(spins, {.tolerance = 1e-4, .end = 1});
+  EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, -0.1),
+               std::invalid_argument);
+  EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, 1.1),
+               std::invalid_argument);
 }
 
 // Rates whose square overflows, and times that no such step moves on from.
@@ -176,16 +185,6 @@ TEST(AdaptiveEnd, NoStageLooksBeyondIt) {
   EXPECT_THROW(stepper.step(Space(), generator, spins, end, 0.1), std::invalid_argument);
 }
 
-TEST(AdaptiveEnd, AskingOftenDoesNotChangeTheSteps) {
-  Slab const slab = coupled_chain(0.05);
-  auto seldom = chain_start(), often = chain_start();
-  Tsit5 one(seldom, {.tolerance = 1e-7, .end = 2}), many(often, {.tolerance = 1e-7, .end = 2});
-  one.step(Space(), slab.natural(), seldom, 0, 2);
-  advance(many, slab.natural(), often, 2. / 256, 256);
-  EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
-  EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
-}
-
 TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   auto spins = make_spins(Lattice::chain(8), [](auto...) { return Vector{0, 0, 1}; });
   auto const start = copy_to_host(spins);
@@ -196,13 +195,7 @@ TEST(AdaptiveAtRest, NothingMovesAndStepsGrow) {
   EXPECT_LT(stepper.accepted_steps(), detail::is_host_execution<Space> ? 20 : 30);
 }
 
-TEST(AdaptiveOptions, WhatCannotBeIsRefused) {
-  auto const spins = chain_start();
-  for (StepOptions const& options :
-       {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 1e-15}, StepOptions{.tolerance = 2},
-        StepOptions{.min_dt = -1}, StepOptions{.max_dt = 0}, StepOptions{.min_dt = 2, .max_dt = 1},
-        StepOptions{.first_dt = -1}, StepOptions{.tolerance = std::nan("")}})
-    EXPECT_THROW(Tsit5(spins, options), std::invalid_argument);
+TEST(AdaptiveOptions, ToleranceBelowTheRoundOffOfSinglePrecisionIsRefused) {
   using Single = SpinField<float, Space::memory_space>;
   EXPECT_THROW((AdaptiveRkmk<Single, tableau::Tsitouras5>(Single("spins", Lattice::chain(2)),
                                                           {.tolerance = 1e-7})),

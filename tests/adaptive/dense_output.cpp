@@ -30,16 +30,13 @@ class WithinAStep {
   /// The distance from the solution, for the longest step and its halves.
   void expect_order(char const* name, int dense_order, double longest, double tolerance) const {
     for (double const s : {0.35, 0.8}) {
-      std::vector<double> dts, errors;
-      for (double dt = longest; dts.size() < 3; dt /= 2) {
-        auto const exact = run<Rkmk<Spins, tableau::DormandPrince8>>(
-            slab_.natural(), copied<Spins>(chain_start<Field>()), s * dt / 64, 64);
-        dts.push_back(dt);
-        errors.push_back(largest_distance(at(s, dt), exact));
-      }
-      std::printf("    %-20s s = %g, errors %.2e .. %.2e\n", name, s, errors.front(),
-                  errors.back());
-      test::expect_order(name, fitted_order(dts, errors), dense_order + 1, tolerance);
+      SCOPED_TRACE(s);
+      expect_convergence(
+          name, longest, std::array{1, 2, 4}, dense_order + 1, tolerance, [&](int, double dt) {
+            auto const exact = run<Rkmk<Spins, tableau::DormandPrince8>>(
+                slab_.natural(), copied<Spins>(chain_start<Field>()), s * dt / 64, 64);
+            return largest_distance(at(s, dt), exact);
+          });
     }
   }
 

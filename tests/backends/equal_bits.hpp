@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/coefficients.hpp"
 #include "../support/landau_lifshitz.hpp"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,12 @@
 namespace cayspin::test {
 
 using Threaded = Kokkos::DefaultHostExecutionSpace;
+
+/// Typed tests on host spaces.
+template <class Real>
+struct InHostMemory : ::testing::Test {
+  using Field = SpinField<Real, Kokkos::HostSpace>;
+};
 
 inline std::string name_of(Lattice const& lattice) {
   std::string name;
@@ -42,6 +49,22 @@ inline Slab every_term(Lattice const& lattice) {
           .demag = 0.8,
           .applied = {0.3, 0.1, 0.4},
           .damping = 0.1};
+}
+
+constexpr auto natural = [](Slab const& slab) { return slab.natural(); };
+
+/// Coefficients that differ from site to site, and vacancies.
+template <class Field>
+auto site_dependent(Slab const& slab) {
+  auto const numbers = [&](auto const& value) { return numbers_on<Field>(slab.lattice, value); };
+  EffectiveField const field(
+      SiteDependentExchange(numbers([](auto site) { return 0.1 * (site % 8); })),
+      SiteDependentUniaxialAnisotropy(numbers([](auto site) { return 0.4 - 0.1 * (site % 9); }),
+                                      random_spins<Field>(slab.lattice, 3)),
+      Zeeman{slab.applied});
+  return LandauLifshitz(
+      FieldWithVacancies(field, numbers([](auto site) { return site % 6 == 1 ? 0 : 1; })),
+      numbers([](auto site) { return 0.05 * (site % 5); }));
 }
 
 template <class Real>
@@ -75,10 +98,9 @@ struct Outcome {
   Sample seen;
 };
 
-/// Serial and the threaded space, step by step and scalar by scalar.
 template <class Stepper, class Choose>
-void expect_same_on_host_spaces(Choose const& choose,
-                                std::vector<Lattice> const& lattices = odd_lattices()) {
+void expect_same_on_host_spaces_of(Choose const& choose, std::vector<Lattice> const& lattices) {
+  SCOPED_TRACE(::testing::internal::GetTypeName<Stepper>());
   using Field = typename Stepper::spins_type;
   for (Lattice const& lattice : lattices) {
     auto const generator = choose(every_term(lattice));
@@ -98,6 +120,13 @@ void expect_same_on_host_spaces(Choose const& choose,
     expect_equal_bits(a.magnetization.y, b.magnetization.y, where + "m_y");
     expect_equal_bits(a.magnetization.z, b.magnetization.z, where + "m_z");
   }
+}
+
+/// Serial and the threaded space, step by step and scalar by scalar.
+template <class... Steppers, class Choose>
+void expect_same_on_host_spaces(Choose const& choose,
+                                std::vector<Lattice> const& lattices = odd_lattices()) {
+  (expect_same_on_host_spaces_of<Steppers>(choose, lattices), ...);
 }
 
 }  // namespace cayspin::test

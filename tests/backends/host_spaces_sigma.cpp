@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The same bits on Serial and on the threaded space: steppers that remember, iterate, differentiate
-// and project.
+// and project, and one that changes sites in place while others are read.
 #include "equal_bits.hpp"
 
 using namespace cayspin;
@@ -10,18 +10,9 @@ namespace {
 
 using namespace isotropy;
 
-constexpr auto natural = [](Slab const& slab) { return slab.natural(); };
-constexpr auto undamped = [](Slab slab) {
-  slab.damping = 0;
-  return slab.natural();
-};
-
 template <class Real>
-struct HostSpacesOfSigma : ::testing::Test {
-  using Field = SpinField<Real, Kokkos::HostSpace>;
-};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(HostSpacesOfSigma, Precisions);
+using HostSpacesOfSigma = InHostMemory<Real>;
+TYPED_TEST_SUITE(HostSpacesOfSigma, Precisions, PrecisionName);
 
 template <class Field>
 struct ByNewton : ImplicitMidpoint<Field> {
@@ -33,37 +24,30 @@ struct Projected : EnergyProjection<LieHeun<Field>> {
   explicit Projected(Field const& like) : Projected::EnergyProjection(like, LieHeun(like)) {}
 };
 
-TYPED_TEST(HostSpacesOfSigma, LieEuler) {
+TYPED_TEST(HostSpacesOfSigma, StepAlike) {
   using Field = typename TestFixture::Field;
-  expect_same_on_host_spaces<LieEuler<Field, Analytic>>(natural);
-  expect_same_on_host_spaces<LieEuler<Field, FiniteDifferenceBackward>>(natural);
-}
-
-TYPED_TEST(HostSpacesOfSigma, LieAdamsBashforth2) {
-  expect_same_on_host_spaces<LieAdamsBashforth2<typename TestFixture::Field>>(natural);
-}
-
-TYPED_TEST(HostSpacesOfSigma, LieHeun) {
-  expect_same_on_host_spaces<LieHeun<typename TestFixture::Field>>(natural);
-}
-
-TYPED_TEST(HostSpacesOfSigma, Stereographic) {
-  using Field = typename TestFixture::Field;
-  expect_same_on_host_spaces<StereographicRungeKutta<Field, tableau::Kutta3>>(natural);
-}
-
-TYPED_TEST(HostSpacesOfSigma, Implicit) {
-  using Field = typename TestFixture::Field;
-  expect_same_on_host_spaces<ImplicitLieEuler<Field, Analytic>>(natural);
-  expect_same_on_host_spaces<ByNewton<Field>>(natural);
-}
-
-TYPED_TEST(HostSpacesOfSigma, Series4) {
-  expect_same_on_host_spaces<Series4<typename TestFixture::Field>>(natural);
+  expect_same_on_host_spaces<LieEuler<Field, Analytic>, LieEuler<Field, FiniteDifferenceBackward>,
+                             LieAdamsBashforth2<Field>, LieHeun<Field>,
+                             StereographicRungeKutta<Field, tableau::Kutta3>,
+                             ImplicitLieEuler<Field, Analytic>, ByNewton<Field>, Series4<Field>>(
+      natural);
 }
 
 TYPED_TEST(HostSpacesOfSigma, EnergyProjection) {
-  expect_same_on_host_spaces<Projected<typename TestFixture::Field>>(undamped);
+  expect_same_on_host_spaces<Projected<typename TestFixture::Field>>([](Slab slab) {
+    slab.damping = 0;
+    return slab.natural();
+  });
+}
+
+// On lattices that have a checkerboard.
+TYPED_TEST(HostSpacesOfSigma, RedBlack) {
+  auto checkerboards = odd_lattices();
+  for (Lattice& lattice : checkerboards)
+    if (lattice.boundary[0] == Boundary::periodic)
+      for (auto& extent : lattice.shape)
+        if (extent > 1) extent += extent % 2;
+  expect_same_on_host_spaces<RedBlack4<typename TestFixture::Field>>(natural, checkerboards);
 }
 
 }  // namespace

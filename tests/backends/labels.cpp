@@ -43,6 +43,7 @@ template <class Call>
 Events events_of(Call const& call) {
   Kokkos::fence();
   events = {};
+  auto const before = tools::get_callbacks();
   tools::set_begin_parallel_for_callback(begin_kernel);
   tools::set_begin_parallel_reduce_callback(begin_kernel);
   tools::set_begin_parallel_scan_callback(begin_kernel);
@@ -52,13 +53,7 @@ Events events_of(Call const& call) {
   tools::set_push_region_callback(push_region);
   call();
   Events const seen = events;
-  tools::set_begin_parallel_for_callback(nullptr);
-  tools::set_begin_parallel_reduce_callback(nullptr);
-  tools::set_begin_parallel_scan_callback(nullptr);
-  tools::set_allocate_data_callback(nullptr);
-  tools::set_begin_fence_callback(nullptr);
-  tools::set_begin_deep_copy_callback(nullptr);
-  tools::set_push_region_callback(nullptr);
+  tools::set_callbacks(before);
   return seen;
 }
 

@@ -10,9 +10,8 @@ using namespace cayspin::test;
 namespace {
 
 template <class Real>
-struct Streaming : ::testing::Test {};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(Streaming, Precisions);
+using Streaming = InHostMemory<Real>;
+TYPED_TEST_SUITE(Streaming, Precisions, PrecisionName);
 
 TYPED_TEST(Streaming, StoresEveryLane) {
   using Value = detail::Pack<TypeParam>;
@@ -46,7 +45,7 @@ struct Turn {
 };
 
 TYPED_TEST(Streaming, SameFieldOnEveryLattice) {
-  using Field = SpinField<TypeParam, Kokkos::HostSpace>;
+  using Field = typename TestFixture::Field;
   for (Lattice const& lattice : odd_lattices()) {
     auto const from = random_spins<Field>(lattice, 5);
     Field plain("plain", lattice), streamed("streamed", lattice);

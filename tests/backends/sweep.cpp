@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A sweep of all stages through the lattice writes the bits of one kernel per stage.
-#include "../support/coefficients.hpp"
 #include "sweeping.hpp"
 
 using namespace cayspin;
@@ -9,11 +8,8 @@ using namespace cayspin::test;
 namespace {
 
 template <class Real>
-struct Sweep : ::testing::Test {
-  using Field = SpinField<Real, Kokkos::HostSpace>;
-};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(Sweep, Precisions);
+using Sweep = InHostMemory<Real>;
+TYPED_TEST_SUITE(Sweep, Precisions, PrecisionName);
 
 template <class Exec, class Stepper, class Generator>
 auto numbers_after_steps(Path path, Generator const& generator,
@@ -86,58 +82,27 @@ TYPED_TEST(Sweep, Compensated) {
 // Coefficients and vacancies are read where the lattice has them, not where the buffers are.
 TYPED_TEST(Sweep, SiteDependentCoefficients) {
   using Field = typename TestFixture::Field;
-  expect_same_on_both_paths<LieHeun<Field>>([](Slab const& slab) {
-    auto const& lattice = slab.lattice;
-    return LandauLifshitz(
-        FieldWithVacancies(
-            EffectiveField(SiteDependentExchange(numbers_on<Field>(
-                               lattice, [](auto site) { return 0.1 * (site % 8); })),
-                           Zeeman{slab.applied}),
-            numbers_on<Field>(lattice, [](auto site) { return site % 6 == 1 ? 0 : 1; })),
-        numbers_on<Field>(lattice, [](auto site) { return 0.05 * (site % 5); }));
-  });
+  expect_same_on_both_paths<LieHeun<Field>>(site_dependent<Field>);
 }
 
-// A field made of all spins of a stage cannot be had in the midst of a sweep.
 TYPED_TEST(Sweep, LeavesOffUnderANonlocalField) {
-  using Field = typename TestFixture::Field;
-  auto const lattice = Lattice::cubic(70, 20, 20);
-  LandauLifshitz const generator(
-      EffectiveField(Exchange(lattice, 1),
-                     LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.7)),
-      0.1);
-  auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
-  LieHeun<Field> passing(one), sweeping(other);
-  passing.use(Path::pass);
-  sweeping.use(Path::sweep);
-  Threaded const exec;
-  passing.step(exec, generator, one, 0, 0.1);
-  sweeping.step(exec, generator, other, 0, 0.1);
-  EXPECT_EQ(sweeping.path(), Path::pass);
-  EXPECT_EQ(sweeping.work_bytes(), passing.work_bytes());
-  expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
+  expect_passes_under_a_nonlocal_field<LieHeun<typename TestFixture::Field>>(0.1);
 }
 
 template <class Stepper>
-void expect_chosen_and_predicted(int fields_of_sweep, std::size_t fields_of_pass) {
-  using Field = typename Stepper::spins_type;
+void expect_memory(std::size_t fields_of_sweep, std::size_t fields_of_pass) {
+  expect_chosen_and_predicted<Stepper>(150);
+  auto const lattice = Lattice::cubic(150, 150, 150);
+  std::size_t const field = typename Stepper::spins_type("spins", lattice).bytes();
   int const threads = Threaded().concurrency();
-  for (auto const& [n, path] : {std::pair(8, Path::pass), std::pair(150, Path::sweep)}) {
-    auto const lattice = Lattice::cubic(n, n, n);
-    Stepper const stepper{Field("spins", lattice)};
-    EXPECT_EQ(stepper.path(), path) << n;
-    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << n;
-    if (path == Path::pass) continue;
-    std::size_t const field = Field("spins", lattice).bytes();
-    EXPECT_LT(stepper.work_bytes(), fields_of_sweep * field);
-    EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), fields_of_pass * field);
-  }
+  EXPECT_LT(Stepper::work_bytes(lattice, true, threads), fields_of_sweep * field);
+  EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), fields_of_pass * field);
 }
 
 TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
   using Field = typename TestFixture::Field;
-  expect_chosen_and_predicted<Rkmk4<Field>>(2, 4);
-  expect_chosen_and_predicted<Compensated<Rkmk4<Field>>>(3, 5);
+  expect_memory<Rkmk4<Field>>(2, 4);
+  expect_memory<Compensated<Rkmk4<Field>>>(3, 5);
 }
 
 // Wide lattices of few rows: the buffers of twelve stages would exceed all fields of passes.

@@ -9,11 +9,8 @@ using namespace cayspin::test;
 namespace {
 
 template <class Real>
-struct AdaptiveSweep : ::testing::Test {
-  using Field = SpinField<Real, Kokkos::HostSpace>;
-};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(AdaptiveSweep, Precisions);
+using AdaptiveSweep = InHostMemory<Real>;
+TYPED_TEST_SUITE(AdaptiveSweep, Precisions, PrecisionName);
 
 /// The first step is too long, and the last one ends where the run does.
 StepOptions const options{.tolerance = 3e-3, .first_dt = 1.5, .end = 0.9};
@@ -90,38 +87,16 @@ TYPED_TEST(AdaptiveSweep, InSpace) {
 }
 
 TYPED_TEST(AdaptiveSweep, LeavesOffUnderANonlocalField) {
-  using Field = typename TestFixture::Field;
-  auto const lattice = Lattice::cubic(70, 20, 20);
-  LandauLifshitz const generator(
-      EffectiveField(Exchange(lattice, 1),
-                     LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.7)),
-      0.1);
-  auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
-  AdaptiveRkmk<Field> passing(one, options), sweeping(other, options);
-  passing.use(Path::pass);
-  sweeping.use(Path::sweep);
-  Threaded const exec;
-  passing.step(exec, generator, one, 0, 0.5);
-  sweeping.step(exec, generator, other, 0, 0.5);
-  EXPECT_EQ(sweeping.path(), Path::pass);
-  EXPECT_EQ(sweeping.work_bytes(), passing.work_bytes());
-  expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
+  expect_passes_under_a_nonlocal_field<AdaptiveRkmk<typename TestFixture::Field>>(0.5, options);
 }
 
 TYPED_TEST(AdaptiveSweep, ChosenAndPredictedBySize) {
-  using Field = typename TestFixture::Field;
-  using Stepper = AdaptiveRkmk<Field>;
-  int const threads = Threaded().concurrency();
-  for (auto const& [n, path] : {std::pair(8, Path::pass), std::pair(120, Path::sweep)}) {
-    auto const lattice = Lattice::cubic(n, n, n);
-    Field const like("spins", lattice);
-    Stepper const stepper(like, options);
-    EXPECT_EQ(stepper.path(), path) << n;
-    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << n;
-    std::size_t const of_passes =
-        11 * like.bytes() + ScalarField<typename Field::value_type>("square", lattice).bytes();
-    EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), of_passes) << n;
-  }
+  using Stepper = AdaptiveRkmk<typename TestFixture::Field>;
+  expect_chosen_and_predicted<Stepper>(120, options);
+  auto const lattice = Lattice::cubic(120, 120, 120);
+  EXPECT_EQ(Stepper::work_bytes(lattice, false, Threaded().concurrency()),
+            11 * typename TestFixture::Field("spins", lattice).bytes() +
+                ScalarField<TypeParam>("square", lattice).bytes());
 }
 
 }  // namespace

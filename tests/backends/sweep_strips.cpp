@@ -16,25 +16,27 @@ using namespace cayspin::test;
 namespace {
 
 template <class Real>
-struct SweepStrips : ::testing::Test {
-  using Field = SpinField<Real, Kokkos::HostSpace>;
-};
-using Precisions = ::testing::Types<float, double>;
-TYPED_TEST_SUITE(SweepStrips, Precisions);
+using SweepStrips = InHostMemory<Real>;
+TYPED_TEST_SUITE(SweepStrips, Precisions, PrecisionName);
 
-/// No field. Counts how often it is asked for it, once for each pack of a row.
-struct CountedCalls {
+/// No field.
+struct NoField {
   static constexpr int degree = 1;
+
+  template <class Stencil>
+  KOKKOS_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
+    return typename Stencil::value_type(0);
+  }
+};
+
+/// Counts how often it is asked for it, once for each pack of a row.
+struct CountedCalls : NoField {
   std::int64_t* calls;
 
   template <class Stencil>
   KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
     Kokkos::atomic_inc(calls);
     return zero<typename Stencil::value_type>();
-  }
-  template <class Stencil>
-  KOKKOS_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
-    return typename Stencil::value_type(0);
   }
 };
 
@@ -47,7 +49,8 @@ double repeated(Lattice const& lattice) {
   Stepper stepper(spins);
   stepper.use(Path::sweep);
   std::int64_t calls = 0;
-  LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1), CountedCalls{&calls}), 0.1);
+  LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1), CountedCalls{{}, &calls}),
+                                 0.1);
   stepper.step(Threaded(), generator, spins, 0, 0.01);
   Threaded().fence();
   auto const layout = spins.layout();
@@ -98,20 +101,14 @@ TYPED_TEST(SweepStrips, CutFewThreadsIntoPartsAlone) {
   EXPECT_GT(plan_for<TypeParam>(Lattice::cubic(128, 128, 128), 64).strips, 1);
 }
 
-/// A field that takes long to find at a few sites.
-struct SlowRows {
-  static constexpr int degree = 1;
-
+/// Takes long to find at a few sites.
+struct SlowRows : NoField {
   template <class Stencil>
   KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {
     auto const& site = stencil.site();
     if (site.x() == 0 && site.z() % 5 == 3 && site.y() % 11 == 7)
       std::this_thread::sleep_for(std::chrono::microseconds(100 * (1 + site.y() % 3)));
     return zero<typename Stencil::value_type>();
-  }
-  template <class Stencil>
-  KOKKOS_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
-    return typename Stencil::value_type(0);
   }
 };
 

@@ -44,4 +44,37 @@ inline auto turning(Slab const& slab) {
                         slab.damping);
 }
 
+/// A field made of all spins of a stage cannot be had in the midst of a sweep.
+template <class Stepper, class... Options>
+void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) {
+  using Field = typename Stepper::spins_type;
+  auto const lattice = Lattice::cubic(70, 20, 20);
+  LandauLifshitz const generator(
+      EffectiveField(Exchange(lattice, 1),
+                     LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.7)),
+      0.1);
+  auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
+  Stepper passing(one, options...), sweeping(other, options...);
+  passing.use(Path::pass);
+  sweeping.use(Path::sweep);
+  Threaded const exec;
+  passing.step(exec, generator, one, 0, dt);
+  sweeping.step(exec, generator, other, 0, dt);
+  EXPECT_EQ(sweeping.path(), Path::pass);
+  EXPECT_EQ(sweeping.work_bytes(), passing.work_bytes());
+  expect_equal_bits(copy_to_host(one), copy_to_host(other), "nonlocal");
+}
+
+/// Large lattices of n^3 sites are swept, and the memory is what was said before.
+template <class Stepper, class... Options>
+void expect_chosen_and_predicted(std::int64_t n, Options const&... options) {
+  int const threads = Threaded().concurrency();
+  for (auto const& [extent, path] : {std::pair(std::int64_t{8}, Path::pass), {n, Path::sweep}}) {
+    auto const lattice = Lattice::cubic(extent, extent, extent);
+    Stepper const stepper(typename Stepper::spins_type("spins", lattice), options...);
+    EXPECT_EQ(stepper.path(), path) << extent;
+    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << extent;
+  }
+}
+
 }  // namespace cayspin::test

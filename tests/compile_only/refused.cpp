@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // One mistake for each CAYSPIN_TEST_MISTAKE, or all for -1; the compiler must answer with the
-// library's sentences.
+// library's sentences. CMakeLists.txt takes the name of a mistake from its #if, and the sentence, a
+// regular expression, from the next line.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/dear.hpp>
 #include <cayspin/stepper/multirate.hpp>
@@ -8,17 +9,6 @@
 #define MISTAKE(number) (CAYSPIN_TEST_MISTAKE == (number) || CAYSPIN_TEST_MISTAKE == -1)
 
 using namespace cayspin;
-
-struct Term {
-  template <class Stencil>
-  KOKKOS_FUNCTION auto field(Stencil const& stencil) const {
-    return stencil.center();
-  }
-  template <class Stencil>
-  KOKKOS_FUNCTION auto energy_density(Stencil const& stencil) const {
-    return dot(stencil.center(), stencil.center());
-  }
-};
 
 struct NoField {
   template <class Stencil>
@@ -33,6 +23,8 @@ struct NoEnergy {
     return stencil.center();
   }
 };
+
+struct Term : NoEnergy, NoField {};
 
 struct FieldIsANumber : Term {
   template <class Stencil>
@@ -80,139 +72,175 @@ inline void refused() {
 #if MISTAKE(0)  // none
   with(Term());
 #endif
-#if MISTAKE(1)
+#if MISTAKE(1)  // term_without_field
+  // A field term needs a const, device-callable template field
   with(NoField());
 #endif
-#if MISTAKE(2)
+#if MISTAKE(2)  // term_without_energy
+  // A field term needs a const, device-callable template energy_density
   with(NoEnergy());
 #endif
-#if MISTAKE(3)
+#if MISTAKE(3)  // term_of_wrong_type
+  // A field term needs a const, device-callable template field
   with(FieldIsANumber());
 #endif
-#if MISTAKE(4)
+#if MISTAKE(4)  // not_a_generator
+  // A generator needs a const, device-callable template operator...stencil.
   stepper.step(exec, NotAGenerator(), spins, 0, 0.1);
 #endif
-#if MISTAKE(5)
+#if MISTAKE(5)  // observer_of_wrong_arguments
+  // An observer is called as observer.exec, Step, spins.
   integrate(exec, stepper, body, spins, times, [](Step const&) {});
 #endif
-#if MISTAKE(6)
+#if MISTAKE(6)  // observer_of_wrong_result
+  // An observer returns nothing, or cayspin::Next to say whether to go on
   integrate(exec, stepper, body, spins, times,
             [](auto const&, Step const& step, auto const&) { return step.number > 3; });
 #endif
-#if MISTAKE(7)
+#if MISTAKE(7)  // not_an_execution_space
+  // The first argument of a cayspin function is a Kokkos execution space instance
   norm_defect(Kokkos::HostSpace(), spins);
 #endif
-#if MISTAKE(8)
+#if MISTAKE(8)  // stepper_of_other_spins
+  // The stepper was made for another type of spin field
   {
     SpinField<float, Kokkos::HostSpace> other("other", Lattice::chain(3));
     integrate(exec, stepper, body, other, times);
   }
 #endif
-#if MISTAKE(9)
+#if MISTAKE(9)  // host_field_without_degree
+  // HostField's solver needs a static constexpr int degree
   { HostField<Spins, NoDegree> const field(Lattice::chain(3), NoDegree()); }
 #endif
-#if MISTAKE(10)
+#if MISTAKE(10)  // host_field_not_callable
+  // HostField needs a solver callable as solver
   { HostField<Spins, Term> const field(Lattice::chain(3), Term()); }
 #endif
-#if MISTAKE(11)
+#if MISTAKE(11)  // time_dependent_number
+  // TimeDependentZeeman takes a callable Vec3<double>
   {
     TimeDependentZeeman const field([](double t) { return t; });
   }
 #endif
-#if MISTAKE(12)
+#if MISTAKE(12)  // long_double
+  // cayspin fields hold float or double
   { SpinField<long double, Kokkos::HostSpace> const wide("wide", Lattice::chain(3)); }
 #endif
-#if MISTAKE(13)
+#if MISTAKE(13)  // flat_view
+  // cayspin::copy takes a View of rank 2
   copy(exec, Kokkos::View<double*, Kokkos::HostSpace>("flat", 9), spins);
 #endif
-#if MISTAKE(14)
+#if MISTAKE(14)  // coefficient_of_other_precision
+  // A field of coefficients has the precision and the memory space of the spins
   with(SiteDependentExchange(ScalarField<float, Kokkos::HostSpace>("float", Lattice::chain(3))));
 #endif
-#if MISTAKE(15)
+#if MISTAKE(15)  // layers_with_vacancies
+  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
     LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
     FieldWithVacancies const field(EffectiveField{layers}, occupation);
   }
 #endif
-#if MISTAKE(16)
+#if MISTAKE(16)  // analytic_sigma_for_heun
+  // This isotropy policy does not go with this stepper: Zero and Constant go with all
   LieHeun(spins, isotropy::Analytic()).step(exec, body, spins, 0, 0.1);
 #endif
-#if MISTAKE(17)
+#if MISTAKE(17)  // energy_correction_of_spins
+  // isotropy::Energy knows rigid bodies alone
   LieHeun(spins, isotropy::Energy()).step(exec, spin_chain, spins, 0, 0.1);
 #endif
-#if MISTAKE(18)
+#if MISTAKE(18)  // series_of_changing_field
+  // Series4 refuses fields that depend on t
   Series4(spins).step(exec, LandauLifshitz(EffectiveField(rotating), 0.1), spins, 0, 0.1);
 #endif
-#if MISTAKE(19)
+#if MISTAKE(19)  // term_without_derivative
+  // This needs the derivative of each field term
   LieEuler(spins, isotropy::Analytic())
       .step(exec, LandauLifshitz(EffectiveField(Term()), 0.1), spins, 0, 0.1);
 #endif
-#if MISTAKE(20)
+#if MISTAKE(20)  // extrapolated_generator_without_a_field
+  // Field extrapolation needs a generator that is made of a field
   FieldExtrapolation3(spins).step(exec, WholeGenerator(), spins, 0, 0.1);
 #endif
-#if MISTAKE(21)
+#if MISTAKE(21)  // red_black_of_another_equation
+  // RedBlack moves spins by the Landau-Lifshitz equation: its generator is a
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
 #endif
-#if MISTAKE(22)
+#if MISTAKE(22)  // energy_control_of_changing_field
+  // EnergyControl refuses fields that depend on t
   { EnergyControl const control{LandauLifshitz{EffectiveField{rotating}, 0}, spins}; }
 #endif
-#if MISTAKE(23)
+#if MISTAKE(23)  // host_field_of_other_precision
+  // HostField was made for spins of another precision or memory space
   {
     SpinField<float, Kokkos::HostSpace> const other("other", Lattice::chain(3));
     with(HostField(other, SlabDemagOnHost({1, 0, 0})));
   }
 #endif
-#if MISTAKE(24)
+#if MISTAKE(24)  // normalize_with_adaptive_steps
+  // An observer that changes spins .EnergyControl, Normalize. does not go with an
   {
     AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
     integrate(exec, adaptive, body, spins, times, Every(10, Normalize{}));
   }
 #endif
-#if MISTAKE(25)
+#if MISTAKE(25)  // energy_control_with_adaptive_steps
+  // An observer that changes spins .EnergyControl, Normalize. does not go with an
   {
     AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
     integrate(exec, adaptive, body, spins, times, EnergyControl(body, spins));
   }
 #endif
-#if MISTAKE(26)
+#if MISTAKE(26)  // stepper_that_counts_nothing
+  // A stepper needs step.exec, generator, spins, t, dt.
   {
     WithoutEvaluations uncounted;
     integrate(exec, uncounted, body, spins, times);
   }
 #endif
-#if MISTAKE(27)
+#if MISTAKE(27)  // energy_of_a_generator_without
+  // An energy is that of an EffectiveField, a field term
   energy(exec, orthogonal(WholeGenerator()), spins);
 #endif
-#if MISTAKE(28)
+#if MISTAKE(28)  // energy_control_of_any_generator
+  // EnergyControl needs a generator that says whether it conserves its energy
   { EnergyControl const control{orthogonal(WholeGenerator()), spins}; }
 #endif
-#if MISTAKE(29)
+#if MISTAKE(29)  // field_of_a_generator
+  // A field term needs a const, device-callable template field
   evaluate_field(exec, body, spins, 0, Spins("output", Lattice::chain(3)));
 #endif
-#if MISTAKE(30)
+#if MISTAKE(30)  // rate_of_a_field
+  // A generator needs a const, device-callable template operator
   largest_rate(exec, Zeeman{{0, 0, 1}}, spins);
 #endif
-#if MISTAKE(31)
+#if MISTAKE(31)  // analytic_sigma_in_the_chart
+  // This isotropy policy does not go with this stepper: Zero and Constant go with all
   RungeKutta<Spins, tableau::Heun, update::Stereographic, isotropy::Analytic>("chart", spins)
       .step(exec, body, spins, 0, 0.1);
 #endif
-#if MISTAKE(32)
+#if MISTAKE(32)  // multistep_between_dear_fields
+  // Multirate needs a method that remembers no steps
   {
     Dear const dear(spins, SlabDemag({1, 0, 0}));
     Multirate multirate(spins, LieAdamsBashforth2<Spins>(spins), dear);
   }
 #endif
-#if MISTAKE(33)
+#if MISTAKE(33)  // dear_term_of_unknown_degree
+  // Dear needs a term with a static constexpr int degree
   with(Dear(spins, Term()));
 #endif
-#if MISTAKE(34)
+#if MISTAKE(34)  // minimum_under_a_torque
+  // This needs a field that is the derivative of an energy, without terms that
   minimize(exec, EffectiveField(Zeeman{{0, 0, 1}}, Slonczewski(1, 0, {0, 0, 1})), spins);
 #endif
-#if MISTAKE(35)
+#if MISTAKE(35)  // energy_control_under_a_torque
+  // This needs a field that is the derivative of an energy, without terms that
   { EnergyControl const control{orthogonal(torque), spins}; }
 #endif
-#if MISTAKE(36)
+#if MISTAKE(36)  // energy_projection_under_a_torque
+  // This needs a field that is the derivative of an energy, without terms that
   EnergyProjection(spins, LieEuler(spins)).step(exec, torque, spins, 0, 0.1);
 #endif
 }

@@ -255,10 +255,8 @@ TYPED_TEST(Magnons, OfAFerrimagnet) {
            ((1 - std::cos(angle)) * dot(e, v)) * e;
   };
   for (std::int64_t site = 0; site < lattice.sites(); ++site) {
-    auto const expected = turned(m[site / 36 % 2]), found = at(numbers, site);
-    EXPECT_NEAR(found.x, expected.x, allowed) << site;
-    EXPECT_NEAR(found.y, expected.y, allowed) << site;
-    EXPECT_NEAR(found.z, expected.z, allowed) << site;
+    SCOPED_TRACE(site);
+    expect_near(at(numbers, site), turned(m[site / 36 % 2]), allowed);
   }
 }
 

@@ -11,7 +11,6 @@ namespace cayspin::test {
 
 using Exec = Kokkos::DefaultExecutionSpace;
 using MemorySpace = Exec::memory_space;
-static_assert(!detail::is_host_execution<Exec>);
 
 /// A step of each of the steppers.
 template <class Generator, class Spins, class... Steppers>

@@ -4,23 +4,12 @@
 than for the host: then kernels find nothing in its place. nvcc 12.9 and 13 do so to structs with
 [[no_unique_address]] members."""
 
-import argparse
 import pathlib
 import re
-import shlex
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
-from device_kernels import compile_entry, device_command  # noqa: E402
-
-
-def output_of(command, directory):
-    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT)
-    if done.returncode != 0:
-        sys.exit(f"{done.stdout}\n{shlex.join(command)} ended with {done.returncode}")
-    return done.stdout
+from device_kernels import compile_entry, device_command, output_of, parser_of
 
 
 def sizes_on_host(words, directory, output):
@@ -43,12 +32,8 @@ def sizes_on_device(words, directory, output):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
-    parser.add_argument("source")
-    parser.add_argument("output", metavar="FILE", help="without its ending")
-    arguments = parser.parse_args()
-    directory, words = compile_entry(arguments.commands, arguments.source)
+    arguments = parser_of(__doc__).parse_args()  # the output without its ending
+    directory, words = compile_entry(arguments)
     host = sizes_on_host(words, directory, f"{arguments.output}.o")
     device = sizes_on_device(words, directory, f"{arguments.output}.ptx")
     if not host or host.keys() != device.keys():

@@ -3,30 +3,19 @@
 """Compiles the device code of a source and prints the registers that its kernels take; fails when
 a kernel of cayspin spills any, or keeps arrays in a stack frame, both of which is memory."""
 
-import argparse
-import pathlib
-import shlex
-import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
-from device_kernels import (  # noqa: E402
-    compile_entry, device_command, kernels_of_log, short_names)
+from device_kernels import (
+    compile_entry, device_command, kernels_of_log, output_of, parser_of, short_names)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
-    parser.add_argument("source")
-    parser.add_argument("output", metavar="CUBIN")
-    arguments = parser.parse_args()
-    directory, words = compile_entry(arguments.commands, arguments.source)
-    command = device_command(words, arguments.output)
-    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT)
-    found = list(kernels_of_log(done.stdout))
-    if done.returncode != 0 or not found:
-        sys.exit(f"{done.stdout}\nno kernels: {shlex.join(command)} ended with {done.returncode}")
+    arguments = parser_of(__doc__).parse_args()
+    directory, words = compile_entry(arguments)
+    log = output_of(device_command(words, arguments.output), directory)
+    found = list(kernels_of_log(log))
+    if not found:
+        sys.exit(f"{log}\nno kernels")
 
     spilled = 0
     print("registers  stack  spilled  (bytes)")

@@ -8,16 +8,14 @@ the rest of a kernel runs once for each thread. No instruction of the loop is le
 what is no arithmetic of the method, no load, no store and no load of a constant: addresses, ends of
 the lattice, branches. In double precision it may not exceed the arithmetic."""
 
-import argparse
 import collections
 import pathlib
 import re
-import shlex
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
-from device_kernels import compile_entry, device_command, kernels_of_log  # noqa: E402
+from device_kernels import (
+    compile_entry, device_command, kernels_of_log, output_of, parser_of)
 
 MARGIN = 0.02
 NVCC = "release 13.0"
@@ -122,15 +120,12 @@ def wrong_counts(found, expected):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
-    parser.add_argument("source")
-    parser.add_argument("output", metavar="CUBIN")
+    parser = parser_of(__doc__.split("\n\n")[0])
     parser.add_argument("expected", type=pathlib.Path)
     parser.add_argument("--nvdisasm", required=True)
     parser.add_argument("--record", action="store_true", help="write what is found")
     arguments = parser.parse_args()
-    directory, words = compile_entry(arguments.commands, arguments.source)
+    directory, words = compile_entry(arguments)
     version = subprocess.run([words[0], "--version"], text=True, stdout=subprocess.PIPE).stdout
     if NVCC not in version or "-arch=sm_90" not in words:
         print(f"skipped: the numbers are those of nvcc, {NVCC}, for sm_90")
@@ -138,14 +133,9 @@ def main():
     if not pathlib.Path(arguments.nvdisasm).is_file():
         print("skipped: there is no nvdisasm")
         return 0
-    command = device_command(words, arguments.output)
-    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT)
-    if done.returncode != 0:
-        sys.exit(f"{done.stdout}\n{shlex.join(command)} ended with {done.returncode}")
-    registers = {row.symbol: row.registers for row in kernels_of_log(done.stdout)}
-    listing = subprocess.run([arguments.nvdisasm, "-c", arguments.output], check=True, text=True,
-                             stdout=subprocess.PIPE).stdout
+    log = output_of(device_command(words, arguments.output), directory)
+    registers = {row.symbol: row.registers for row in kernels_of_log(log)}
+    listing = output_of([arguments.nvdisasm, "-c", arguments.output], directory)
     found = counts_of_kernels(listing, registers)
     lines = [" ".join(map(str, [name, *row])) for name, row in found.items()]
     text = "\n".join(["# kernel " + " ".join(COLUMNS), *lines])

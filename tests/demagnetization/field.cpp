@@ -1,50 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The demagnetising field by FFTs against the sum over all pairs of cells, in both precisions.
-#include "../support/backends.hpp"
-
-#include <cayspin/cayspin.hpp>
-#include <cayspin/demagnetization/demagnetizing_field.hpp>
+#include "films.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <limits>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 namespace cayspin::test {
 namespace {
 
 template <class Real>
 using HostSpins = SpinField<Real, Kokkos::HostSpace>;
-
-struct Film {
-  std::array<std::int64_t, 3> shape;
-  std::array<int, 3> images;
-  std::array<double, 3> spacing;
-
-  Lattice lattice() const { return {.shape = shape, .spacing = spacing}; }
-};
-
-Film const films[] = {
-    {{7, 5, 3}, {}, {1, 1.3, 0.4}},
-    {{6, 4, 4}, {}, {1, 1, 1}},
-    {{9, 17, 1}, {}, {2, 1.5, 0.02}},
-    {{11, 1, 1}, {}, {1, 2, 3}},
-    {{1, 9, 1}, {}, {3, 1, 2}},
-    {{1, 1, 8}, {}, {2, 3, 1}},
-    {{1, 1, 1}, {}, {1, 1, 2}},
-    {{1, 12, 5}, {}, {1, 1, 1}},
-    {{6, 5, 4}, {2, 0, 0}, {1, 1.3, 0.4}},
-    {{5, 6, 2}, {0, 1, 3}, {1, 1, 1}},
-    {{4, 5, 1}, {3, 2, 0}, {1, 1, 0.1}},
-    {{2, 3, 1}, {1, 1, 1}, {1, 2, 1}},
-};
 
 /// Distances along an axis at which a cell sees another one, and the weight of each.
 std::vector<std::pair<double, double>> seen(Film const& film, std::size_t axis,
@@ -99,11 +70,9 @@ TYPED_TEST(DemagnetizingFields, AreSumsOverAllCells) {
   using Real = TypeParam;
   for (auto const& film : films) {
     auto const lattice = film.lattice();
-    auto const spins = spins_of<HostSpins<Real>>(lattice, random_directions(lattice.sites(), 3));
-    HostSpins<Real> const field("field", lattice);
-    DemagnetizingField<Real> const demag(lattice, {2, film.images});
-    // Work memory is as the first call left it in the second one.
-    for (int again = 0; again < 2; ++again) demag(spins, field, 0);
+    auto const directions = random_directions(lattice.sites(), 3);
+    auto const spins = spins_of<HostSpins<Real>>(lattice, directions);
+    auto const field = field_on_host<Real>(lattice, directions, {2, film.images});
     double const limit = 80 * std::numeric_limits<Real>::epsilon();
     for (std::int64_t site = 0; site < lattice.sites(); ++site) {
       auto const expected = 2 * summed(film, spins, site);
@@ -115,17 +84,18 @@ TYPED_TEST(DemagnetizingFields, AreSumsOverAllCells) {
   }
 }
 
+std::vector<double> along_z(Lattice const& lattice) {
+  std::vector<double> directions;
+  for (std::int64_t site = 0; site < lattice.sites(); ++site)
+    directions.insert(directions.end(), {0, 0, 1});
+  return directions;
+}
+
 // A third of each cell's own field and all others' is that of the whole cube.
 TYPED_TEST(DemagnetizingFields, OfAUniformCubeHaveItsMean) {
   using Real = TypeParam;
   auto const lattice = Lattice::cubic(20, 20, 20);
-  std::vector<double> along_z;
-  for (std::int64_t site = 0; site < lattice.sites(); ++site)
-    along_z.insert(along_z.end(), {0, 0, 1});
-  auto const spins = spins_of<HostSpins<Real>>(lattice, along_z);
-  HostSpins<Real> const field("field", lattice);
-  DemagnetizingField<Real> const demag(lattice);
-  demag(spins, field, 0);
+  auto const field = field_on_host<Real>(lattice, along_z(lattice));
   double mean = 0;
   for (std::int64_t site = 0; site < lattice.sites(); ++site) mean += field.get(site).z;
   EXPECT_NEAR(mean / static_cast<double>(lattice.sites()), -1. / 3,
@@ -137,13 +107,7 @@ TYPED_TEST(DemagnetizingFields, OfAUniformCubeHaveItsMean) {
 TEST(DemagnetizingField, OfAPeriodicFilmIsThatOfASheet) {
   Film const film{{4, 4, 1}, {30, 30, 0}, {1, 1, 1}};
   auto const lattice = film.lattice();
-  std::vector<double> along_z;
-  for (std::int64_t site = 0; site < lattice.sites(); ++site)
-    along_z.insert(along_z.end(), {0, 0, 1});
-  auto const spins = spins_of<HostSpins<double>>(lattice, along_z);
-  HostSpins<double> const field("field", lattice);
-  DemagnetizingField<double> const demag(lattice, {1, film.images});
-  demag(spins, field, 0);
+  auto const field = field_on_host<double>(lattice, along_z(lattice), {1, film.images});
   double const edge = 61 * 4, beyond = 2 * std::sqrt(2.) / (std::numbers::pi * edge);
   for (std::int64_t site = 0; site < lattice.sites(); ++site)
     EXPECT_NEAR(field.get(site).z, beyond - 1, 1e-5);
@@ -165,10 +129,7 @@ TYPED_TEST(DemagnetizingFields, HaveBitsToCompare) {
   using Real = TypeParam;
   std::uint64_t hash = 0;
   for (auto const& lattice : {Lattice::cubic(13, 11, 9), Lattice::square(70, 53)}) {
-    auto const spins = spins_of<HostSpins<Real>>(lattice, random_directions(lattice.sites(), 5));
-    HostSpins<Real> const field("field", lattice);
-    DemagnetizingField<Real> const demag(lattice);
-    demag(spins, field, 0);
+    auto const field = field_on_host<Real>(lattice, random_directions(lattice.sites(), 5));
     for (Real const number : copy_to_host(field)) {
       std::uint64_t bits = 0;
       std::memcpy(&bits, &number, sizeof number);

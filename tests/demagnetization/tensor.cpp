@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The demagnetising tensor against a table of 70 digits, and what any such tensor obeys.
-#include "tensor_table.hpp"
-
+// The demagnetising tensor against a table from 160 digits, and what any such tensor obeys.
 #include <cayspin/demagnetization/tensor.hpp>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,12 +11,28 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <vector>
 
 namespace {
 
 using cayspin::demagnetizing_tensor;
 using Lengths = std::array<double, 3>;
-using Entries = std::array<double, 6>;
+using Entries = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
+
+struct TensorEntry {
+  Lengths position, cell;
+  Entries tensor;
+};
+
+/// Written by tensor_table.py.
+std::vector<TensorEntry> const tensor_table = [] {
+  std::ifstream file(CAYSPIN_TEST_DATA "/demagnetizing_tensors.json");
+  std::vector<TensorEntry> table;
+  for (auto const& row : nlohmann::json::parse(file))
+    table.push_back({row.at("position"), row.at("cell"), row.at("tensor")});
+  return table;
+}();
 
 Entries entries(Lengths const& position, Lengths const& cell) {
   auto const n = demagnetizing_tensor(position, cell);

@@ -1,26 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Writes tensor_table.hpp: python3 tensor_table.py > tensor_table.hpp (needs mpmath).
+"""Writes demagnetizing_tensors.json: python3 tensor_table.py > ../data/demagnetizing_tensors.json
 
 Each entry is a second difference of the functions of Newell, Williams and Dunlop, J. Geophys. Res.
-98, 9551 (1993), eqs. 27 and 32, at 160 digits, of which 70 are written.
+98, 9551 (1993), eqs. 27 and 32, at 160 digits, rounded to a double. Needs mpmath.
 """
 
 import itertools
+import json
 
 from mpmath import asinh, atan, mp, mpf, pi, sqrt
 
 mp.dps = 160
 
-CELLS = [
-    ("cube", (1.0, 1.0, 1.0)),
-    ("film", (1.0, 1.0, 0.1)),
-    ("film", (1.0, 1.0, 0.01)),
-    ("film", (1.0, 0.001, 1.0)),
-    ("needle", (10.0, 1.0, 1.0)),
-    ("needle", (1.0, 1.0, 1000.0)),
-    ("three edges", (3.90625, 2.5, 3.0)),
-    ("three edges", (1.0, 0.3, 0.007)),
-]
+# A cube, films, needles, and cells of three edges.
+CELLS = [(1.0, 1.0, 1.0), (1.0, 1.0, 0.1), (1.0, 1.0, 0.01), (1.0, 0.001, 1.0), (10.0, 1.0, 1.0),
+         (1.0, 1.0, 1000.0), (3.90625, 2.5, 3.0), (1.0, 0.3, 0.007)]
 
 # In cells along each axis.
 STEPS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1), (1, 1, 1),
@@ -92,27 +86,10 @@ def positions(cell):
 
 
 def main():
-    print("""// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Written by tensor_table.py.
-#pragma once
-
-#include <array>
-
-struct TensorEntry {
-  std::array<double, 3> position, cell;
-  std::array<double, 6> tensor;  // xx, yy, zz, xy, xz, yz
-};
-
-// clang-format off
-inline constexpr TensorEntry tensor_table[] = {""")
-    for name, cell in CELLS:
-        print(f"    // {name}")
-        for position in positions(cell):
-            triple = ["{" + ", ".join(map(repr, a)) + "}" for a in (position, cell)]
-            print("    {" + triple[0] + ",\n     " + triple[1] + ",\n     {" + ",\n      ".join(
-                "0" if e == 0 else mp.nstr(e, 70, strip_zeros=False)
-                for e in tensor(position, cell)) + "}},")
-    print("};\n// clang-format on")
+    rows = [json.dumps({"position": position, "cell": cell,
+                        "tensor": [float(entry) for entry in tensor(position, cell)]})
+            for cell in CELLS for position in positions(cell)]
+    print("[\n" + ",\n".join(rows) + "\n]")
 
 
 if __name__ == "__main__":

@@ -23,10 +23,10 @@ Slab const slab{.lattice = Lattice::chain(8),
                 .demag = 0.7,
                 .applied = {0.5, -0.7, 0.9}};
 
-Generator heisenberg() {
+Lattice periodic_cube() {
   Lattice cube = Lattice::cubic(6, 6, 6);
   cube.boundary = {Boundary::periodic, Boundary::periodic, Boundary::periodic};
-  return Slab{.lattice = cube, .exchange = 1}.natural();
+  return cube;
 }
 
 /// Largest |E - E_0| per spin and | |m| - 1 | at the ends of steps, before the control's turn.
@@ -48,9 +48,8 @@ struct Drift {
 template <class Stepper>
 Drift<Generator> drift(std::int64_t period, double time = 200) {
   using Field = typename Stepper::spins_type;
-  Generator const generator = heisenberg();
-  Lattice lattice = Lattice::cubic(6, 6, 6);
-  lattice.boundary = {Boundary::periodic, Boundary::periodic, Boundary::periodic};
+  Lattice const lattice = periodic_cube();
+  Generator const generator = Slab{.lattice = lattice, .exchange = 1}.natural();
   auto spins = random_spins<Field>(lattice, 3);
   Stepper stepper(spins);
   Drift<Generator> seen{generator};

@@ -73,9 +73,7 @@ Section states_of_rest() {
                   R"(
 `cayspin relax` of random spins in a field of 1 with exchange 1, to the bound 1e-6 on the torque.
 Exact: all stay to the bit. Bounded: all end along the field.)",
-                  {exact, bounded, refused, detected},
-                  {},
-                  {}};
+                  {exact, bounded, refused, detected}};
   auto const add = [&](char const* name, Setting setting, Against against) {
     setting.steps = 1;
     if (setting.shape == std::array<std::int64_t, 3>{1, 1, 1} && setting.initial.empty() &&
@@ -83,7 +81,7 @@ Exact: all stay to the bit. Bounded: all end along the field.)",
       setting.shape = {7, 5, 3};
       setting.initial = "random = { seed = 4 }";
     }
-    section.situations.push_back({name, setting, setting, against, 100'000});
+    section.add(name, setting, against, 100'000);
   };
   std::string const against_field = "uniform = [0, 0, -1]", at_angle = "uniform = [0.6, 0, 0.8]";
   add("no field", {.field = 0, .exchange = 0}, Against::start);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cayspin::extremes {
@@ -55,9 +56,17 @@ struct Situation {
 /// What a table says together.
 struct Section {
   std::string title;
-  std::string promise;             // an empty line and one paragraph
-  std::vector<Fate> kept, broken;  // fates of methods that keep |m|, and of classical_*
-  std::vector<Situation> situations;
+  std::string promise;                  // an empty line and one paragraph
+  std::vector<Fate> kept, broken = {};  // fates of methods that keep |m|, and of classical_*
+  std::vector<Situation> situations = {};
+
+  /// One of the same setting in both precisions.
+  void add(std::string name, Setting const& setting, Against against = Against::nothing,
+           std::int64_t detected_by = 6) {
+    situations.push_back({std::move(name), setting, setting, against, detected_by});
+  }
+  /// Spins without a field that a precision holds as a normal number.
+  void add_denormal();
 };
 
 std::vector<Section> sections();

@@ -15,10 +15,14 @@ template <class Backend>
 class Pairs : public GradientTest<Backend> {};
 TYPED_TEST_SUITE(Pairs, Backends, BackendName);
 
-/// Every bond from its first end.
-template <class Work>
-void for_each_bond(Lattice const& lattice, std::vector<Coupling> const& couplings,
-                   Work const& work) {
+/// A bond of a crystal in a lattice.
+struct Pair {
+  std::int64_t from, to;
+  Coupling coupling;
+};
+
+std::vector<Pair> pairs(Lattice const& lattice, std::vector<Coupling> const& couplings) {
+  std::vector<Pair> all;
   auto const& shape = lattice.shape;
   std::int64_t const cells[3] = {shape[0], shape[1], shape[2] / lattice.cell_sites};
   auto const number = [&](std::int64_t const* cell, int site) {
@@ -37,8 +41,10 @@ void for_each_bond(Lattice const& lattice, std::vector<Coupling> const& coupling
               there[axis] = (there[axis] % cells[axis] + cells[axis]) % cells[axis];
             is_there = is_there && there[axis] >= 0 && there[axis] < cells[axis];
           }
-          if (is_there) work(bond, number(here, bond.between[0]), number(there, bond.between[1]));
+          if (is_there)
+            all.push_back({number(here, bond.between[0]), number(there, bond.between[1]), bond});
         }
+  return all;
 }
 
 Vec3<double> times(std::array<double, 9> const& t, Vec3<double> const& m, bool transposed) {
@@ -50,24 +56,16 @@ Vec3<double> times(std::array<double, 9> const& t, Vec3<double> const& m, bool t
 }
 
 ByHand pairs_by_hand(Lattice const& lattice, std::vector<Coupling> const& couplings) {
-  return {[=](std::vector<double> const& m, std::int64_t site) {
-            Vec3<double> h{0, 0, 0};
-            for_each_bond(lattice, couplings, [&](Coupling const& bond, auto a, auto b) {
-              double const twice = 2 * bond.biquadratic * dot(at(m, a), at(m, b));
-              if (a == site) h += times(bond.tensor, at(m, b), false) + twice * at(m, b);
-              if (b == site) h += times(bond.tensor, at(m, a), true) + twice * at(m, a);
-            });
-            return h;
-          },
-          [=](std::vector<double> const& m) {
-            double sum = 0;
-            for_each_bond(lattice, couplings, [&](Coupling const& bond, auto a, auto b) {
-              double const along = dot(at(m, a), at(m, b));
-              sum -= dot(at(m, a), times(bond.tensor, at(m, b), false)) +
-                     bond.biquadratic * along * along;
-            });
-            return sum;
-          }};
+  return each_bond(
+      pairs(lattice, couplings),
+      [](Pair const& pair, auto const& m, auto const& other, double sign) {
+        return times(pair.coupling.tensor, other, sign < 0) +
+               2 * pair.coupling.biquadratic * dot(m, other) * other;
+      },
+      [](Pair const& pair, auto const& a, auto const& b) {
+        return -dot(a, times(pair.coupling.tensor, b, false)) -
+               pair.coupling.biquadratic * std::pow(dot(a, b), 2);
+      });
 }
 
 using Cells = std::array<std::int64_t, 3>;
@@ -84,11 +82,14 @@ std::vector<Coupling> shell_of_bcc() {
   return bonds;
 }
 
+void add_along_axes(std::vector<Coupling>& bonds, int site, double exchange) {
+  for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+    bonds.push_back(Coupling::of({site, site}, offset, exchange));
+}
+
 TYPED_TEST(Pairs, ShellsOfACubicCrystal) {
   auto bonds = shell_of_bcc();
-  for (int site : {0, 1})
-    for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
-      bonds.push_back(Coupling::of({site, site}, offset, -0.5));
+  for (int site : {0, 1}) add_along_axes(bonds, site, -0.5);
   for (Cells const& cells : {Cells{35, 3, 3}, {4, 1, 2}, {16, 2, 1}, {1, 5, 4}, {24, 3, 4}})
     for (auto const& boundary : ends) {
       auto const lattice = Crystal::bcc().lattice(cells, boundary);
@@ -115,8 +116,7 @@ TYPED_TEST(Pairs, OfNeighboursAreTheExchange) {
   using Spins = typename TypeParam::Spins;
   auto const lattice = Lattice::cubic(19, 4, 3);
   std::vector<Coupling> bonds;
-  for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
-    bonds.push_back(Coupling::of({0, 0}, offset, 1.5));
+  add_along_axes(bonds, 0, 1.5);
   typename TypeParam::Exec const exec;
   auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
   // Up to a multiple of the spin.
@@ -177,9 +177,7 @@ std::vector<double> after_steps(Lattice const& lattice, auto const& field) {
 TYPED_TEST(Pairs, AlongRowsAreThoseSiteBySite) {
   using Term = PairCouplings<typename TypeParam::MemorySpace>;
   auto shells = shell_of_bcc(), tensors = shells, many = shells;
-  for (int site : {0, 1})
-    for (auto const& offset : {std::array{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
-      shells.push_back(Coupling::of({site, site}, offset, -0.5));
+  for (int site : {0, 1}) add_along_axes(shells, site, -0.5);
   tensors.push_back(Coupling::of({0, 1}, {-3, 0, 1}, 0.5, {0.1, -0.2, 0.3}));
   tensors.push_back({{1, 1}, {2, 1, 0}, {0.3, 0.1, -0.4, 0.7, -0.2, 0.5, 0.6, 0.9, 1.1}, 0.25});
   for (int i = -3; i <= 3; ++i)

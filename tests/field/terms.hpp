@@ -53,27 +53,37 @@ inline ByHand each_site(std::function<Vec3<double>(Vec3<double> const&)> field,
           }};
 }
 
-/// `constant`: of each bond.
-inline ByHand exchange_by_hand(Lattice const& lattice,
-                               std::function<double(Bond const&)> constant) {
-  return {[=, all = bonds(lattice)](auto const& m, std::int64_t site) {
+/// Terms that are sums over bonds from one site to another. A bond adds field(bond, m, other, sign)
+/// to H at its end with the spin m, with sign = 1 where it begins and -1 where it ends, and
+/// energy(bond, first, second) to E.
+template <class AnyBond, class Field, class Energy>
+ByHand each_bond(std::vector<AnyBond> const& bonds, Field const& field, Energy const& energy) {
+  return {[=](std::vector<double> const& m, std::int64_t site) {
             Vec3<double> h{0, 0, 0};
-            for (auto const& bond : all) {
-              if (bond.from != site && bond.to != site) continue;
-              double const c = constant(bond) / (bond.spacing * bond.spacing);
-              if (bond.from == site) h = h + c * (at(m, bond.to) - at(m, site));
-              if (bond.to == site) h = h + c * (at(m, bond.from) - at(m, site));
+            for (auto const& bond : bonds) {
+              if (bond.from == site) h += field(bond, at(m, site), at(m, bond.to), 1.0);
+              if (bond.to == site) h += field(bond, at(m, site), at(m, bond.from), -1.0);
             }
             return h;
           },
-          [=, all = bonds(lattice)](auto const& m) {
+          [=](std::vector<double> const& m) {
             double sum = 0;
-            for (auto const& bond : all) {
-              auto const d = at(m, bond.to) - at(m, bond.from);
-              sum += 0.5 * constant(bond) * dot(d, d) / (bond.spacing * bond.spacing);
-            }
+            for (auto const& bond : bonds) sum += energy(bond, at(m, bond.from), at(m, bond.to));
             return sum;
           }};
+}
+
+/// `constant`: of each bond.
+inline ByHand exchange_by_hand(Lattice const& lattice,
+                               std::function<double(Bond const&)> const& constant) {
+  return each_bond(
+      bonds(lattice),
+      [=](auto const& bond, auto const& m, auto const& other, double) {
+        return constant(bond) / (bond.spacing * bond.spacing) * (other - m);
+      },
+      [=](auto const& bond, auto const& a, auto const& b) {
+        return 0.5 * constant(bond) * dot(b - a, b - a) / (bond.spacing * bond.spacing);
+      });
 }
 
 inline ByHand exchange_by_hand(Lattice const& lattice, double constant) {
@@ -81,39 +91,27 @@ inline ByHand exchange_by_hand(Lattice const& lattice, double constant) {
 }
 
 /// E = sum over bonds of (m x m').vector.
-inline ByHand dmi_by_hand(Lattice const& lattice, std::function<Vec3<double>(Bond const&)> vector) {
-  return {[=, all = bonds(lattice)](auto const& m, std::int64_t site) {
-            Vec3<double> h{0, 0, 0};
-            for (auto const& bond : all) {
-              if (bond.from == site) h = h + cross(vector(bond), at(m, bond.to));
-              if (bond.to == site) h = h - cross(vector(bond), at(m, bond.from));
-            }
-            return h;
-          },
-          [=, all = bonds(lattice)](auto const& m) {
-            double sum = 0;
-            for (auto const& bond : all)
-              sum += dot(cross(at(m, bond.from), at(m, bond.to)), vector(bond));
-            return sum;
-          }};
+inline ByHand dmi_by_hand(Lattice const& lattice,
+                          std::function<Vec3<double>(Bond const&)> const& vector) {
+  return each_bond(
+      bonds(lattice),
+      [=](auto const& bond, auto const&, auto const& other, double sign) {
+        return sign * cross(vector(bond), other);
+      },
+      [=](auto const& bond, auto const& a, auto const& b) {
+        return dot(cross(a, b), vector(bond));
+      });
 }
 
 inline ByHand biquadratic_by_hand(Lattice const& lattice, double constant) {
-  return {[=, all = bonds(lattice)](auto const& m, std::int64_t site) {
-            Vec3<double> h{0, 0, 0};
-            for (auto const& bond : all) {
-              auto const along = 2 * constant * dot(at(m, bond.from), at(m, bond.to));
-              if (bond.from == site) h = h + along * at(m, bond.to);
-              if (bond.to == site) h = h + along * at(m, bond.from);
-            }
-            return h;
-          },
-          [=, all = bonds(lattice)](auto const& m) {
-            double sum = 0;
-            for (auto const& bond : all)
-              sum -= constant * std::pow(dot(at(m, bond.from), at(m, bond.to)), 2);
-            return sum;
-          }};
+  return each_bond(
+      bonds(lattice),
+      [=](auto const&, auto const& m, auto const& other, double) {
+        return 2 * constant * dot(m, other) * other;
+      },
+      [=](auto const&, auto const& a, auto const& b) {
+        return -constant * std::pow(dot(a, b), 2);
+      });
 }
 
 inline ByHand cubic_by_hand(double k, Vec3<double> const& axis1, Vec3<double> const& axis2) {

@@ -16,12 +16,6 @@ class Torques : public ::testing::Test {
   using Method = Rkmk4<Spins, isotropy::Zero, Exponential>;
   typename Backend::Exec exec;
 
-  static void expect_near(Vec3<double> const& found, Vec3<double> const& expected, double bound) {
-    EXPECT_NEAR(found.x, expected.x, bound);
-    EXPECT_NEAR(found.y, expected.y, bound);
-    EXPECT_NEAR(found.z, expected.z, bound);
-  }
-
   /// m' is t + damping m x t at every site.
   template <class Term, class Torque>
   void check(Lattice const& lattice, Term const& term, Torque const& torque) const {
@@ -91,7 +85,7 @@ TYPED_TEST(Torques, OneSpinUnderSlonczewski) {
                         0);
       double const along = std::tanh((a + damping * b) * time + std::atanh(0.6));
       double const across = std::sqrt(1 - along * along), angle = (b - damping * a) * time;
-      this->expect_near(m, {across * std::cos(angle), across * std::sin(angle), along}, bound);
+      expect_near(m, {across * std::cos(angle), across * std::sin(angle), along}, bound);
     }
 }
 
@@ -129,8 +123,7 @@ TYPED_TEST(Torques, AHelixUnderZhangLi) {
                                        helix(n, q, 0, 0), time, steps);
         auto const expected =
             helix(n, q, -w * (1 + damping * xi) * time, std::tanh((xi - damping) * w * time));
-        for (std::int64_t i = 0; i < n; ++i)
-          this->expect_near(at(found, i), at(expected, i), bound);
+        for (std::int64_t i = 0; i < n; ++i) expect_near(at(found, i), at(expected, i), bound);
       }
   }
 }

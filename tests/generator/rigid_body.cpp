@@ -33,7 +33,6 @@ class RigidBodies : public ::testing::Test {
  protected:
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
-  using Tensors = SiteField<Real, 6, typename Backend::MemorySpace>;
 
   Spins spins = spins_of<Spins>(Lattice::chain(bodies), random_directions(bodies, 41));
   std::vector<double> m = numbers_of(spins);
@@ -47,15 +46,11 @@ class RigidBodies : public ::testing::Test {
     for (std::int64_t body = 0; body < bodies; ++body) {
       auto const spin = at(m, body), expected = times(tensor_of(body), spin);
       auto const found = at(a, body);
-      EXPECT_NEAR(found.x, -expected.x, 8 * epsilon<Real>) << body;
-      EXPECT_NEAR(found.y, -expected.y, 8 * epsilon<Real>) << body;
-      EXPECT_NEAR(found.z, -expected.z, 8 * epsilon<Real>) << body;
-      EXPECT_NEAR(dot(at(across, body), spin), 0, 16 * epsilon<Real>) << body;
+      SCOPED_TRACE(body);
+      expect_near(found, -1 * expected, 8 * epsilon<Real>);
+      EXPECT_NEAR(dot(at(across, body), spin), 0, 16 * epsilon<Real>);
       // m' = m x I^-1 m
-      auto const rate = cross(found, spin), euler = cross(spin, expected);
-      EXPECT_NEAR(rate.x, euler.x, 16 * epsilon<Real>) << body;
-      EXPECT_NEAR(rate.y, euler.y, 16 * epsilon<Real>) << body;
-      EXPECT_NEAR(rate.z, euler.z, 16 * epsilon<Real>) << body;
+      expect_near(cross(found, spin), cross(spin, expected), 16 * epsilon<Real>);
       sum += 0.5 * dot(spin, expected);
     }
     EXPECT_NEAR(energy(exec, generator, spins).value, sum, 64 * epsilon<double> * bodies);
@@ -63,13 +58,29 @@ class RigidBodies : public ::testing::Test {
                 64 * epsilon<double> * bodies);
   }
 
-  static Tensors tensors(Lattice const& lattice) {
+  /// The first numbers of each body's tensor: all six, or the three of a diagonal.
+  template <int Components = 6, class TensorOf>
+  static auto ensemble(TensorOf const& tensor_of, std::int64_t count = bodies) {
     std::vector<double> numbers;
-    for (std::int64_t body = 0; body < lattice.sites(); ++body)
-      for (double const entry : body_tensor(body)) numbers.push_back(entry);
-    Tensors const field("tensors", lattice);
+    for (std::int64_t body = 0; body < count; ++body) {
+      auto const tensor = tensor_of(body);
+      numbers.insert(numbers.end(), tensor.begin(), tensor.begin() + Components);
+    }
+    SiteField<Real, Components, typename Backend::MemorySpace> const field("tensors",
+                                                                           Lattice::chain(count));
     copy_from_host(numbers, field);
-    return field;
+    return RigidBodyEnsemble(field);
+  }
+
+  /// Both turn the bodies alike, to the bit.
+  template <class One, class Other>
+  void expect_same_step(One const& one, Other const& other) const {
+    auto const after = [&](auto const& generator) {
+      auto turned = spins_of<Spins>(spins.lattice(), m);
+      Rkmk4(turned).step(exec, generator, turned, 0, 0.25);
+      return copy_to_host(turned);
+    };
+    EXPECT_EQ(after(one), after(other));
   }
 };
 TYPED_TEST_SUITE(RigidBodies, Backends, BackendName);
@@ -84,58 +95,31 @@ TYPED_TEST(RigidBodies, FullTensor) {
 }
 
 TYPED_TEST(RigidBodies, EachBodyItsOwnTensor) {
-  this->check(RigidBodyEnsemble(this->tensors(Lattice::chain(bodies))), body_tensor);
+  this->check(this->ensemble(body_tensor), body_tensor);
 }
 
 // Three numbers per body in place of six, three of them zero: the same motion.
 TYPED_TEST(RigidBodies, EachBodyItsOwnMoments) {
-  using Real = typename TypeParam::Real;
-  using Spins = typename TypeParam::Spins;
-  auto const lattice = Lattice::chain(bodies);
   auto const diagonal_part = [](std::int64_t body) {
     auto const b = body_tensor(body);
     return SymmetricTensor{b[0], b[1], b[2], 0, 0, 0};
   };
-  SiteField<Real, 3, typename TypeParam::MemorySpace> const moments("moments", lattice);
-  typename TestFixture::Tensors const tensors("tensors", lattice);
-  std::vector<double> three, six;
-  for (std::int64_t body = 0; body < bodies; ++body) {
-    auto const b = diagonal_part(body);
-    three.insert(three.end(), b.begin(), b.begin() + 3);
-    six.insert(six.end(), b.begin(), b.end());
-  }
-  copy_from_host(three, moments);
-  copy_from_host(six, tensors);
-  RigidBodyEnsemble const ensemble(moments);
-  this->check(ensemble, diagonal_part);
-  auto one = spins_of<Spins>(lattice, this->m), other = spins_of<Spins>(lattice, this->m);
-  Rkmk4 stepper(one);
-  stepper.step(this->exec, ensemble, one, 0, 0.25);
-  stepper.step(this->exec, RigidBodyEnsemble(tensors), other, 0, 0.25);
-  EXPECT_EQ(copy_to_host(one), copy_to_host(other));
+  auto const of_moments = this->template ensemble<3>(diagonal_part);
+  this->check(of_moments, diagonal_part);
+  this->expect_same_step(of_moments, this->ensemble(diagonal_part));
 }
 
 // An ensemble of equal bodies steps as the uniform generator does.
 TYPED_TEST(RigidBodies, EqualBodiesStepAlike) {
-  using Spins = typename TypeParam::Spins;
-  auto const lattice = Lattice::chain(bodies);
-  typename TestFixture::Tensors const same("same", lattice);
-  std::vector<double> numbers;
-  for (std::int64_t body = 0; body < bodies; ++body)
-    for (double const entry : body_tensor(3)) numbers.push_back(entry);
-  copy_from_host(numbers, same);
-  auto one = spins_of<Spins>(lattice, this->m), other = spins_of<Spins>(lattice, this->m);
-  Rkmk4 stepper(one);
-  stepper.step(this->exec, RigidBody(body_tensor(3)), one, 0, 0.25);
-  stepper.step(this->exec, RigidBodyEnsemble(same), other, 0, 0.25);
-  EXPECT_EQ(copy_to_host(one), copy_to_host(other));
+  this->expect_same_step(RigidBody(body_tensor(3)),
+                         this->ensemble([](std::int64_t) { return body_tensor(3); }));
 }
 
 TYPED_TEST(RigidBodies, WhatIsRefused) {
   double const infinity = std::numeric_limits<double>::infinity();
   EXPECT_THROW(RigidBody({1, 1, 1, 0, infinity, 0}), std::invalid_argument);
   EXPECT_THROW(RigidBody::principal(1, 0, 1), std::invalid_argument);
-  RigidBodyEnsemble const fewer(this->tensors(Lattice::chain(bodies - 1)));
+  auto const fewer = this->ensemble(body_tensor, bodies - 1);
   EXPECT_THROW(energy(this->exec, fewer, this->spins), std::invalid_argument);
 }
 

@@ -4,15 +4,12 @@
 fails when a kernel spills vector registers to memory that is not known to. Scalar registers spill
 into lanes of vector registers."""
 
-import argparse
 import pathlib
 import re
-import shlex
-import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "support"))
-from device_kernels import compile_entry, short_names  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "cuda"))
+from device_kernels import compile_entry, output_of, parser_of, short_names  # noqa: E402
 
 REMARK = re.compile(r"remark:\s+(Function Name|VGPRs|AGPRs|ScratchSize|SGPRs Spill|VGPRs Spill)"
                     r"(?: \[[^\]]*\])?: (\S+)")
@@ -30,20 +27,16 @@ def kernels(output):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
-    parser.add_argument("source")
-    parser.add_argument("output", metavar="OBJECT")
+    parser = parser_of(__doc__)
     parser.add_argument("--may-spill", metavar="PATTERN", default="(?!)")
     arguments = parser.parse_args()
-    directory, words = compile_entry(arguments.commands, arguments.source)
+    directory, words = compile_entry(arguments)
     words[words.index("-o") + 1] = arguments.output
-    command = [*words, "--cuda-device-only", "-Rpass-analysis=kernel-resource-usage"]
-    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT)
-    found = kernels(done.stdout)
-    if done.returncode != 0 or not found:
-        sys.exit(f"{done.stdout}\nno kernels: {shlex.join(command)} ended with {done.returncode}")
+    log = output_of([*words, "--cuda-device-only", "-Rpass-analysis=kernel-resource-usage"],
+                    directory)
+    found = kernels(log)
+    if not found:
+        sys.exit(f"{log}\nno kernels")
 
     spilled, refused = 0, 0
     print("VGPRs  AGPRs  scratch (bytes)  spilled VGPRs  spilled SGPRs")

@@ -6,13 +6,12 @@ callgrind, not guessed from the code. The program is test_instructions."""
 
 import argparse
 import collections
-import pathlib
 import re
 import subprocess
 import sys
-import tempfile
 
-SITES = 1024
+from callgrind import SITES, dumps_of
+
 LANES = {"f64": 4, "f32": 8}
 
 # The first kind whose pattern matches the instruction.
@@ -121,18 +120,10 @@ def main():
     parser.add_argument("names", nargs="*", help="of kernels, for instance f64_Rkmk4 (default: all)")
     arguments = parser.parse_args()
     texts, functions = disassembly(arguments.program)
-    with tempfile.TemporaryDirectory() as folder:
-        subprocess.run(["valgrind", "--tool=callgrind", "--collect-atstart=no", "--dump-instr=yes",
-                        f"--callgrind-out-file={folder}/counts", arguments.program], check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        found = {}
-        for path in pathlib.Path(folder).glob("counts.*"):
-            text = path.read_text(encoding="utf-8")
-            if match := re.search(r"^desc: Trigger: Client Request: (\w+)$", text, re.MULTILINE):
-                found[match[1]] = text
+    found = dumps_of(arguments.program, "--dump-instr=yes")
     if missing := [name for name in arguments.names if name not in found]:
         sys.exit(f"no kernel {missing[0]}; there are {', '.join(sorted(found))}")
-    counted = {name: counts_of_dump(text) for name, text in sorted(found.items())}
+    counted = {name: counts_of_dump(text) for name, text in found.items()}
     offset = load_offset(counted.values(), functions)
     for name in arguments.names or counted:
         table(name, counted[name][0], texts, offset)

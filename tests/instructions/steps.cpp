@@ -14,7 +14,7 @@
 namespace cayspin::instructions {
 namespace {
 
-Lattice const lattice = Lattice::cubic(64, 4, 4);  // its sites are known to compare.cmake
+Lattice const lattice = Lattice::cubic(64, 4, 4);  // its sites are known to callgrind.py
 LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1),
                                               UniaxialAnisotropy(0.5, {0, 0, 1}),
                                               Zeeman{{0, 0, 0.3}}),

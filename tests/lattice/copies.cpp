@@ -3,7 +3,6 @@
 #include "../support/backends.hpp"
 
 #include <cstdint>
-#include <stdexcept>
 
 namespace cayspin::test {
 namespace {
@@ -92,24 +91,6 @@ TYPED_TEST(Copies, ViewsOfEitherLayoutAndPrecision) {
   round_trip<TypeParam, Kokkos::LayoutLeft, double>();
   round_trip<TypeParam, Kokkos::LayoutRight, double>();
   round_trip<TypeParam, Kokkos::LayoutRight, float>();
-}
-
-TYPED_TEST(Copies, WrongExtentsAreRefused) {
-  using MemorySpace = typename TypeParam::MemorySpace;
-  typename TypeParam::Exec const exec;
-  typename TypeParam::Spins const spins("spins", Lattice::chain(5));
-  Kokkos::View<double**, MemorySpace> const longer("longer", 6, 3), wider("wider", 5, 4);
-  EXPECT_THROW(copy(exec, longer, spins), std::invalid_argument);
-  EXPECT_THROW(copy(exec, wider, spins), std::invalid_argument);
-  EXPECT_THROW(copy(exec, spins, longer), std::invalid_argument);
-  EXPECT_THROW(copy(exec, spins, wider), std::invalid_argument);
-  EXPECT_THROW(copy_from_host(std::vector<double>(14), spins), std::invalid_argument);
-  EXPECT_THROW(copy_from_host(std::vector<double>(5), spins), std::invalid_argument);
-  try {
-    copy(exec, longer, spins);
-  } catch (std::invalid_argument const& error) {
-    EXPECT_STREQ(error.what(), "cayspin::copy: the View is 6 x 3, the field 5 x 3");
-  }
 }
 
 // Handles share memory; swap exchanges lattices too.

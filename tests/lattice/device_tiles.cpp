@@ -3,6 +3,7 @@
 #include <cayspin/detail/device_site.hpp>
 #include <cayspin/detail/device_tiles.hpp>
 #include <cayspin/detail/quotient.hpp>
+#include <cayspin/detail/unrolled.hpp>
 
 #include <gtest/gtest.h>
 
@@ -118,12 +119,10 @@ void expect_neighbor(detail::RowLayout const& layout, std::array<std::int32_t, 3
 template <class Index>
 void expect_neighbors(detail::RowLayout const& layout, detail::SiteArray<double, 1> const& numbers,
                       std::array<std::int32_t, 3> const& at) {
-  expect_neighbor<Index, 0, 0>(layout, at, numbers),
-      expect_neighbor<Index, 0, 1>(layout, at, numbers);
-  expect_neighbor<Index, 1, 0>(layout, at, numbers),
-      expect_neighbor<Index, 1, 1>(layout, at, numbers);
-  expect_neighbor<Index, 2, 0>(layout, at, numbers),
-      expect_neighbor<Index, 2, 1>(layout, at, numbers);
+  detail::unrolled<3>([&](auto axis) {
+    expect_neighbor<Index, axis(), 0>(layout, at, numbers);
+    expect_neighbor<Index, axis(), 1>(layout, at, numbers);
+  });
 }
 
 TEST(DeviceSites, NeighborsAtAllEnds) {

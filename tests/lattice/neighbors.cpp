@@ -2,6 +2,8 @@
 // What a stencil sees, against an index calculation, for every row length around whole packs.
 #include "../support/evaluate.hpp"
 
+#include <cayspin/detail/unrolled.hpp>
+
 namespace cayspin::test {
 
 /// A generator that returns one neighbour.
@@ -88,12 +90,10 @@ class Neighbors : public ::testing::Test {
     std::string const what = "shape " + std::to_string(lattice.shape[0]) + " " +
                              std::to_string(lattice.shape[1]) + " " +
                              std::to_string(lattice.shape[2]);
-    EXPECT_EQ((wrong<0, false>(spins, numbers)), 0) << what << ", previous along x";
-    EXPECT_EQ((wrong<0, true>(spins, numbers)), 0) << what << ", next along x";
-    EXPECT_EQ((wrong<1, false>(spins, numbers)), 0) << what << ", previous along y";
-    EXPECT_EQ((wrong<1, true>(spins, numbers)), 0) << what << ", next along y";
-    EXPECT_EQ((wrong<2, false>(spins, numbers)), 0) << what << ", previous along z";
-    EXPECT_EQ((wrong<2, true>(spins, numbers)), 0) << what << ", next along z";
+    detail::unrolled<3>([&](auto axis) {
+      EXPECT_EQ((wrong<axis(), false>(spins, numbers)), 0) << what << ", previous along " << axis();
+      EXPECT_EQ((wrong<axis(), true>(spins, numbers)), 0) << what << ", next along " << axis();
+    });
   }
 
   template <int Axis>
@@ -143,9 +143,7 @@ TYPED_TEST(Neighbors, OfFieldsOfNumbers) {
   for (std::int64_t nx = 1; nx <= 34; ++nx)
     for (int const bits : {0, 7}) {
       Lattice const lattice{{nx, 3, 2}, {1, 1, 1}, this->boundaries(bits)};
-      this->template expect_numbers<0>(lattice);
-      this->template expect_numbers<1>(lattice);
-      this->template expect_numbers<2>(lattice);
+      detail::unrolled<3>([&](auto axis) { this->template expect_numbers<axis()>(lattice); });
     }
 }
 

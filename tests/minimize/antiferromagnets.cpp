@@ -8,11 +8,7 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Antiferromagnets : public ::testing::Test {
- protected:
-  using Spins = typename Backend::Spins;
-  typename Backend::Exec exec;
-};
+class Antiferromagnets : public MinimizerTest<Backend> {};
 TYPED_TEST_SUITE(Antiferromagnets, Backends, BackendName);
 
 Lattice with(std::array<std::int64_t, 3> const& shape, Boundary boundary) {
@@ -34,9 +30,8 @@ TYPED_TEST(Antiferromagnets, TakeAsFewEvaluations) {
       EffectiveField const field(Exchange(lattice, -exchange), UniaxialAnisotropy(easy, {1, 0, 0}));
       Minimum found[2];
       for (bool const preconditioned : {false, true}) {
-        auto spins =
-            spins_of<typename TestFixture::Spins>(lattice, random_directions(lattice.sites(), 1));
-        double const bound = std::is_same_v<typename TypeParam::Real, double> ? 1e-6 : 1e-3;
+        auto spins = this->random_spins(lattice, 1);
+        double const bound = TestFixture::is_double ? 1e-6 : 1e-3;
         found[preconditioned] =
             minimize(this->exec, field, spins, {.torque = bound, .preconditioned = preconditioned});
         EXPECT_EQ(found[preconditioned].end, MinimizeEnd::converged);
@@ -79,9 +74,8 @@ TYPED_TEST(Antiferromagnets, OfSomeAxes) {
       for (Boundary const boundary : {Boundary::open, Boundary::periodic}) {
         bool const is_frustrated = between < 0 && layers % 2 == 1 && boundary == Boundary::periodic;
         auto const lattice = with({12, 14, layers}, boundary);
-        auto spins =
-            spins_of<typename TestFixture::Spins>(lattice, random_directions(lattice.sites(), 2));
-        double const bound = std::is_same_v<typename TypeParam::Real, double> ? 1e-6 : 2e-3;
+        auto spins = this->random_spins(lattice, 2);
+        double const bound = TestFixture::is_double ? 1e-6 : 2e-3;
         auto const found =
             minimize(this->exec, Layers{in_plane, between}, spins, {.torque = bound});
         EXPECT_EQ(found.end, MinimizeEnd::converged);

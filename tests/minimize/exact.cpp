@@ -9,20 +9,16 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Exact : public ::testing::Test {
+class Exact : public MinimizerTest<Backend> {
  protected:
-  using Real = typename Backend::Real;
-  using Spins = typename Backend::Spins;
-  typename Backend::Exec exec;
-
   /// A free spiral turns about an axis by d with tan d = D dx / A from site to site.
   template <class Dmi>
   void expect_spiral(Lattice const& lattice, Dmi const& dmi, double angle, double a,
                      Vec3<double> const& about) const {
-    auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+    auto spins = this->random_spins(lattice, 3);
     EffectiveField const field(Exchange(lattice, a), dmi);
-    double const bound = std::is_same_v<Real, float> ? 5e-5 : 1e-8;
-    auto const found = minimize(exec, field, spins, {.torque = bound});
+    double const bound = this->is_double ? 1e-8 : 5e-5;
+    auto const found = minimize(this->exec, field, spins, {.torque = bound});
     ASSERT_EQ(found.end, MinimizeEnd::converged);
     auto const m = numbers_of(spins);
     for (std::int64_t i = 0; i + 1 < lattice.sites(); ++i) {

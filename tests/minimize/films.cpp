@@ -8,17 +8,16 @@ namespace {
 constexpr std::int64_t n = 32;
 
 template <class Backend>
-class Films : public ::testing::Test {
+class Films : public MinimizerTest<Backend> {
  protected:
-  using Spins = typename Backend::Spins;
+  using typename MinimizerTest<Backend>::Spins;
 
   Minimum relax(double exchange, std::vector<double> const& start,
                 MinimizeOptions const& options = {}) {
     auto const lattice = Lattice::square(n, n);
     spins = spins_of<Spins>(lattice, start);
-    return minimize(exec, film(lattice, exchange), spins, options);
+    return minimize(this->exec, film(lattice, exchange), spins, options);
   }
-  typename Backend::Exec exec;
   Spins spins;
 };
 TYPED_TEST_SUITE(Films, Backends, BackendName);
@@ -26,7 +25,7 @@ TYPED_TEST_SUITE(Films, Backends, BackendName);
 TYPED_TEST(Films, TakeSeventyEvaluations) {
   double const easy = -0.05 * n * n;  // along the easy axis
   // Round-off leaves saddles slowly in single precision.
-  int const most = std::is_same_v<typename TypeParam::Real, double> ? 70 : 105;
+  int const most = TestFixture::is_double ? 70 : 105;
   for (double const exchange : {2.0, 50.0, 1000.0}) {
     std::vector<std::vector<double>> starts{vortex(n)};
     for (unsigned const seed : {1U, 2U, 3U}) starts.push_back(random_directions(n * n, seed));
@@ -52,8 +51,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
 TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
   auto const lattice = Lattice::square(96, 96);
   for (unsigned const seed : {1U, 2U, 3U, 4U, 5U}) {
-    this->spins =
-        spins_of<typename TestFixture::Spins>(lattice, random_directions(lattice.sites(), seed));
+    this->spins = this->random_spins(lattice, seed);
     auto const found = minimize(this->exec, film(lattice, 2), this->spins, {.torque = 1e-3});
     EXPECT_EQ(found.end, MinimizeEnd::converged) << seed;
     EXPECT_LE(found.evaluations, 150) << seed;

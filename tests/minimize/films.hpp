@@ -7,9 +7,23 @@
 #include <cayspin/minimize.hpp>
 
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 namespace cayspin::test {
+
+template <class Backend>
+class MinimizerTest : public ::testing::Test {
+ protected:
+  using Real = typename Backend::Real;
+  using Spins = typename Backend::Spins;
+  static constexpr bool is_double = std::is_same_v<Real, double>;
+
+  static Spins random_spins(Lattice const& lattice, unsigned seed) {
+    return spins_of<Spins>(lattice, random_directions(lattice.sites(), seed));
+  }
+  typename Backend::Exec exec;
+};
 
 /// A film with an easy axis in its plane and its own demagnetising field, spin by spin.
 inline auto film(Lattice const& lattice, double exchange) {

@@ -2,8 +2,7 @@
 // Of random fields on small lattices: the energy falls from iteration to iteration, and what is
 // called converged has no torque and no direction to go down, by the eigenvalues of the Hessian.
 #include "films.hpp"
-
-#include <Eigen/Dense>
+#include "least_curvature.hpp"
 
 namespace cayspin::test {
 namespace {
@@ -49,46 +48,6 @@ struct RandomScene {
 
 using Host = SpinField<double, Kokkos::HostSpace>;
 
-/// The Hessian on the tangent planes, from differences of the field, which is affine.
-double least_eigenvalue(RandomScene const& scene, std::vector<double> const& m) {
-  Kokkos::DefaultHostExecutionSpace const exec;
-  auto const sites = scene.lattice.sites();
-  auto const field_at = [&](std::vector<double> const& at_spins) {
-    auto const spins = spins_of<Host>(scene.lattice, at_spins);
-    SiteField<double, 3, Kokkos::HostSpace> const h("h", scene.lattice);
-    evaluate_field(exec, scene.field(), spins, 0, h);
-    return numbers_of(h);
-  };
-  auto const h = field_at(m);
-  auto const tangents = [&](std::int64_t site) {
-    auto const spin = at(m, site);
-    Vec3<double> const other =
-        std::abs(spin.x) < 0.6 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0};
-    auto const a = cross(spin, other);
-    auto const u = (1 / std::sqrt(dot(a, a))) * a;
-    return std::array{u, cross(spin, u)};
-  };
-  auto const size = static_cast<Eigen::Index>(2 * sites);
-  Eigen::MatrixXd hessian(size, size);
-  for (std::int64_t q = 0; q < sites; ++q)
-    for (int k = 0; k < 2; ++k) {
-      auto moved = m;
-      auto const v = tangents(q)[static_cast<std::size_t>(k)];
-      for (int c = 0; c < 3; ++c) moved[3 * q + c] += c == 0 ? v.x : c == 1 ? v.y : v.z;
-      auto const there = field_at(moved);
-      for (std::int64_t n = 0; n < sites; ++n)
-        for (int l = 0; l < 2; ++l) {
-          auto const u = tangents(n)[static_cast<std::size_t>(l)];
-          double entry = -dot(u, at(there, n) - at(h, n));
-          if (n == q && k == l) entry += dot(at(h, n), at(m, n));
-          hessian(2 * n + l, 2 * q + k) = entry;
-        }
-    }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> const solver(0.5 *
-                                                              (hessian + hessian.transpose()));
-  return solver.eigenvalues()(0);
-}
-
 TEST(RandomScenes, EndInMinima) {
   Kokkos::DefaultHostExecutionSpace const exec;
   int converged = 0;
@@ -113,7 +72,7 @@ TEST(RandomScenes, EndInMinima) {
     LandauLifshitz const generator(scene.field(), 0);
     EXPECT_LT(largest_rate(exec, generator, spins), 1.1e-9 * field) << seed;
     if (seed % 5 == 0) {
-      double const least = least_eigenvalue(scene, m);
+      double const least = least_curvature(scene.field(), scene.lattice, m);
       EXPECT_GT(least, -1e-6 * field) << seed;
       EXPECT_GE(found.curvature, least - 1e-9 * field) << seed;
     }

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A state without torque that is no minimum is left again.
 #include "films.hpp"
-
-#include <Eigen/Eigenvalues>
+#include "least_curvature.hpp"
 
 namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Saddles : public ::testing::Test {
- protected:
-  using Spins = typename Backend::Spins;
-  typename Backend::Exec exec;
-};
+class Saddles : public MinimizerTest<Backend> {};
 TYPED_TEST_SUITE(Saddles, Backends, BackendName);
 
 std::vector<double> uniform(std::int64_t sites, Vec3<double> const& m) {
@@ -59,8 +54,7 @@ TYPED_TEST(Saddles, TheTopOfTheEnergy) {
 TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   auto const lattice = Lattice::cubic(7, 6, 5);
   for (double const exchange : {1.0, 1000.0}) {
-    auto spins =
-        spins_of<typename TestFixture::Spins>(lattice, random_directions(lattice.sites(), 4));
+    auto spins = this->random_spins(lattice, 4);
     double const bound = 100 * epsilon<typename TypeParam::Real> * exchange;
     auto const found = minimize(this->exec, Exchange(lattice, exchange), spins, {.torque = bound});
     EXPECT_EQ(found.end, MinimizeEnd::converged) << exchange;
@@ -100,43 +94,6 @@ TYPED_TEST(Saddles, OfATermThatIsNotQuadratic) {
   }
 }
 
-/// The least eigenvalue of the Hessian on the tangent planes, for a field that is affine in m.
-template <class Field>
-double least_curvature(Field const& field, Lattice const& lattice, std::vector<double> const& m) {
-  using Doubles = SpinField<double, Kokkos::HostSpace>;
-  auto const spins = spins_of<Doubles>(lattice, m);
-  Doubles const result("field", lattice);
-  auto const field_of = [&](std::vector<double> const& numbers) {
-    copy_from_host(numbers, spins);
-    evaluate_field(Kokkos::DefaultHostExecutionSpace(), field, spins, 0, result);
-    return numbers_of(result);
-  };
-  auto const sites = static_cast<Eigen::Index>(lattice.sites());
-  auto const before = field_of(m);
-  auto const vector = [](std::vector<double> const& numbers, Eigen::Index site) {
-    return Eigen::Map<Eigen::Vector3d const>(numbers.data() + 3 * site);
-  };
-  auto const tangent = [&](Eigen::Index site, int which) {
-    Eigen::Vector3d const spin = vector(m, site);
-    Eigen::Vector3d const other =
-        std::abs(spin.x()) < 0.6 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
-    Eigen::Vector3d const first = spin.cross(other).normalized();
-    return which == 0 ? first : Eigen::Vector3d(spin.cross(first));
-  };
-  Eigen::MatrixXd hessian(2 * sites, 2 * sites);
-  for (Eigen::Index i = 0; i < 2 * sites; ++i) {
-    auto moved = m;
-    Eigen::Map<Eigen::Vector3d>(moved.data() + 3 * (i / 2)) += tangent(i / 2, i % 2);
-    auto const after = field_of(moved);
-    for (Eigen::Index j = 0; j < 2 * sites; ++j)
-      hessian(j, i) = tangent(j / 2, j % 2).dot(vector(before, j / 2) - vector(after, j / 2));
-    hessian(i, i) += vector(before, i / 2).dot(vector(m, i / 2));
-  }
-  Eigen::MatrixXd const symmetric = 0.5 * (hessian + hessian.transpose());
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
-      .eigenvalues()[0];
-}
-
 std::vector<double> alternating(Lattice const& lattice, bool alternates, double tilt) {
   std::vector<double> numbers;
   for (std::int64_t site = 0; site < lattice.sites(); ++site) {
@@ -153,10 +110,9 @@ TYPED_TEST(Saddles, WhereTheTorqueStaysAboveTheBound) {
   Lattice const ring{{8, 1, 1}, {1, 1, 1}, {Boundary::periodic, Boundary::open, Boundary::open}};
   EffectiveField const field(Exchange(ring, -1), UniaxialAnisotropy(0.1, {0, 0, 1}),
                              Zeeman{{0, 0, 0.66}});
-  constexpr bool is_double = std::is_same_v<typename TypeParam::Real, double>;
   for (double const tilt : {0.0, 1e-12, 1e-9, 1e-6, 1e-3})
     for (double const torque : {1e-5, 1e-9, 1e-12}) {
-      if (!is_double && torque < 1e-5) continue;
+      if (!TestFixture::is_double && torque < 1e-5) continue;
       auto spins = spins_of<typename TestFixture::Spins>(ring, alternating(ring, true, tilt));
       auto const found = minimize(this->exec, field, spins, {.torque = torque});
       EXPECT_EQ(found.end, MinimizeEnd::converged) << tilt << ' ' << torque;
@@ -172,7 +128,6 @@ TYPED_TEST(Saddles, NearInstabilities) {
     return low + (high - low) * engine() * 0x1p-32;
   };
   auto const below = [&](unsigned count) { return engine() % count; };
-  constexpr bool is_double = std::is_same_v<typename TypeParam::Real, double>;
   int ended[4] = {};
   for (int scene = 0; scene < 1000; ++scene) {
     bool const is_film = below(2) == 0;
@@ -191,10 +146,11 @@ TYPED_TEST(Saddles, NearInstabilities) {
                                Zeeman{{applied * skew, 0, applied}});
     auto const start = alternating(lattice, alternates, std::pow(10, -uniform(1, 9)));
     auto spins = spins_of<typename TestFixture::Spins>(lattice, start);
-    double const torque = is_double ? std::pow(10, -uniform(5, 11)) : 1e-4 * (all + applied);
+    double const torque =
+        TestFixture::is_double ? std::pow(10, -uniform(5, 11)) : 1e-4 * (all + applied);
     auto const found = minimize(this->exec, field, spins, {.torque = torque});
     ++ended[static_cast<int>(found.end)];
-    double const allowed = 2 * torque + (is_double ? 1e-6 : 1e-3) * (all + applied);
+    double const allowed = 2 * torque + (TestFixture::is_double ? 1e-6 : 1e-3) * (all + applied);
     EXPECT_GT(least_curvature(field, lattice, numbers_of(spins)), -allowed)
         << "scene " << scene << ", " << to_string(found.end);
   }

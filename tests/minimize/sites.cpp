@@ -8,25 +8,20 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Sites : public ::testing::Test {
- protected:
-  using Spins = typename Backend::Spins;
-  typename Backend::Exec exec;
-};
+class Sites : public MinimizerTest<Backend> {};
 TYPED_TEST_SUITE(Sites, Backends, BackendName);
 
 TYPED_TEST(Sites, VacantOnesStay) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::cubic(21, 9, 4);
-  auto const start = random_directions(lattice.sites(), 5);
   auto const vacant = [](std::int64_t site) { return site % 7 == 2 || site % 11 == 0; };
-  auto spins = spins_of<Spins>(lattice, start);
+  auto spins = this->random_spins(lattice, 5);
   auto const before = numbers_of(spins);
   FieldWithVacancies const field(
       EffectiveField(Exchange(lattice, 20), UniaxialAnisotropy(0.4, {1, 1, 0})),
       numbers_on<Spins>(lattice, [&](std::int64_t site) { return vacant(site) ? 0 : 1; }));
   // Round-off ends about a third of such runs in single precision between 3e-4 and 3e-3.
-  double const torque = std::is_same_v<typename Spins::value_type, float> ? 4e-3 : 1e-4;
+  double const torque = TestFixture::is_double ? 1e-4 : 4e-3;
   auto const found = minimize(this->exec, field, spins, {.torque = torque});
   EXPECT_EQ(found.end, MinimizeEnd::converged);
   auto const after = numbers_of(spins);
@@ -40,7 +35,7 @@ TYPED_TEST(Sites, VacantOnesStay) {
 TYPED_TEST(Sites, WhereAllAreVacantNothingMoves) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::cubic(7, 5, 3);
-  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 5));
+  auto spins = this->random_spins(lattice, 5);
   auto const before = numbers_of(spins);
   FieldWithVacancies const field(EffectiveField(Exchange(lattice, 20), Zeeman{{0, 0, 1}}),
                                  numbers_on<Spins>(lattice, [](std::int64_t) { return 0; }));
@@ -53,7 +48,7 @@ TYPED_TEST(Sites, WhereAllAreVacantNothingMoves) {
 TYPED_TEST(Sites, WithExchangeAndAnisotropyOfTheirOwn) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::square(30, 23);
-  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 6));
+  auto spins = this->random_spins(lattice, 6);
   EffectiveField const field(SiteDependentExchange(random_numbers_on<Spins>(lattice, 20, 200, 3)),
                              UniaxialAnisotropy(0.4, {0, 0, 1}));
   auto const found = minimize(this->exec, field, spins, {.torque = 1e-4});
@@ -65,8 +60,8 @@ TYPED_TEST(Sites, WithExchangeAndAnisotropyOfTheirOwn) {
 TYPED_TEST(Sites, WrongCalls) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::square(8, 4);
-  auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 1));
-  auto other = spins_of<Spins>(Lattice::square(4, 8), random_directions(lattice.sites(), 1));
+  auto spins = this->random_spins(lattice, 1);
+  auto other = this->random_spins(Lattice::square(4, 8), 1);
   Minimizer minimizer(spins);
   auto const field = film(lattice, 1);
   double const nan = std::numeric_limits<double>::quiet_NaN();

@@ -61,7 +61,7 @@ PROGRAM = {
     "info": program("Info*:*WrongCommand*"),
     "check": program("Checking*:RefuseUnstable*"),
     "describe": program("Checking*"),
-    "follow": program("Watching*"),
+    "watch": program("Watching*"),
     "": program("FailingRun*:EarlyEnd*:Running*:Restarting*:OutputFiles*:*WrongCommand*:Terminal*"),
 }
 

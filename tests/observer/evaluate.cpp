@@ -4,8 +4,6 @@
 
 #include <cayspin/cayspin.hpp>
 
-#include <stdexcept>
-
 namespace cayspin::test {
 namespace {
 
@@ -24,12 +22,6 @@ class Evaluations : public ::testing::Test {
   std::vector<double> m = numbers_of(spins);
   Spins output = Spins("output", lattice);
   typename Backend::Exec exec;
-
-  static void expect_near(Vec3<double> const& found, Vec3<double> const& expected) {
-    EXPECT_NEAR(found.x, expected.x, bound);
-    EXPECT_NEAR(found.y, expected.y, bound);
-    EXPECT_NEAR(found.z, expected.z, bound);
-  }
 };
 TYPED_TEST_SUITE(Evaluations, Backends, BackendName);
 
@@ -46,13 +38,13 @@ TYPED_TEST(Evaluations, FieldAndGeneratorByHand) {
   for (std::int64_t site = 0; site < this->lattice.sites(); ++site) {
     auto const m = at(this->m, site);
     auto const expected = Vec3<double>{0, 0, 0.7 * m.z} + turning(2.5);
-    this->expect_near(at(h, site), expected);
-    this->expect_near(at(a, site), expected + 0.3 * cross(m, expected));
+    expect_near(at(h, site), expected, this->bound);
+    expect_near(at(a, site), expected + 0.3 * cross(m, expected), this->bound);
   }
   // One term alone, and the generator's torque against the largest one.
   evaluate_field(this->exec, anisotropy, this->spins, 0, this->output);
   this->exec.fence();
-  this->expect_near(at(numbers_of(this->output), 5), {0, 0, 0.7 * at(this->m, 5).z});
+  expect_near(at(numbers_of(this->output), 5), {0, 0, 0.7 * at(this->m, 5).z}, this->bound);
   double largest = 0;
   for (std::int64_t site = 0; site < this->lattice.sites(); ++site) {
     auto const torque = cross(at(a, site), at(this->m, site));
@@ -107,42 +99,6 @@ TYPED_TEST(Evaluations, EnergiesOfTermsInWrappers) {
   static_assert(std::tuple_size_v<decltype(one)> == 1);
   EXPECT_EQ(one[0].value, energy(this->exec, RigidBody::principal(1, 2, 3), this->spins).value);
   EXPECT_TRUE(term_energies(this->exec, EffectiveField<>(), this->spins).empty());
-}
-
-TYPED_TEST(Evaluations, OutputIsNotTheSpins) {
-  Zeeman const field{{0, 0, 1}};
-  EXPECT_THROW(evaluate_field(this->exec, field, this->spins, 0, this->spins),
-               std::invalid_argument);
-  EXPECT_THROW(
-      evaluate_generator(this->exec, RigidBody::principal(1, 2, 3), this->spins, 0, this->spins),
-      std::invalid_argument);
-  EXPECT_EQ(numbers_of(this->spins), this->m);
-}
-
-// Every host space computes the same bits, on more sites than the calling thread takes.
-TYPED_TEST(Evaluations, HostSpacesAgreeToTheBit) {
-#if defined(KOKKOS_ENABLE_SERIAL)
-  if constexpr (detail::is_host_execution<typename TypeParam::Exec>) {
-    auto const large = Lattice::cubic(67, 33, 3, 0.8, Boundary::periodic);
-    auto const start =
-        spins_of<typename TypeParam::Spins>(large, random_directions(large.sites(), 9));
-    typename TypeParam::Spins const result("result", large);
-    EffectiveField const field(Exchange(large, 1.3), UniaxialAnisotropy(0.7, {1, 2, 2}));
-    LandauLifshitz const generator(field, 0.3);
-    auto const all = [&](auto const& exec) {
-      evaluate_field(exec, field, start, 0, result);
-      exec.fence();
-      auto numbers = numbers_of(result);
-      evaluate_generator(exec, generator, start, 0, result);
-      exec.fence();
-      for (double const number : numbers_of(result)) numbers.push_back(number);
-      for (Energy const& e : term_energies(exec, field, start))
-        numbers.insert(numbers.end(), {e.value, e.magnitude});
-      return numbers;
-    };
-    EXPECT_EQ(all(this->exec), all(Kokkos::Serial()));
-  }
-#endif
 }
 
 }  // namespace

@@ -166,13 +166,6 @@ TYPED_TEST(Integrate, WhatIsRefused) {
   EXPECT_THROW(run({0, std::numeric_limits<double>::infinity(), 1}), std::invalid_argument);
   EXPECT_THROW(run({0, 0.1, -1}), std::invalid_argument);
   EXPECT_TRUE(this->stepper.starts.empty());
-
-  LieEuler stepper(this->spins);
-  for (auto const& lattice : {Lattice::chain(4), Lattice::chain(3, 0.5)}) {
-    typename TypeParam::Spins other("other", lattice);
-    EXPECT_THROW(integrate(this->exec, stepper, this->generator, other, Times{0, 0.1, 1}),
-                 std::invalid_argument);
-  }
 }
 
 TYPED_TEST(Integrate, RecordKeepsWhatItSees) {

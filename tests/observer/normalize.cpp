@@ -8,10 +8,7 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Normalizing : public ::testing::Test {
- protected:
-  typename Backend::Exec exec;
-};
+using Normalizing = OnBackend<Backend>;
 TYPED_TEST_SUITE(Normalizing, Backends, BackendName);
 
 TYPED_TEST(Normalizing, IsNewtonsStep) {

@@ -11,10 +11,7 @@ namespace cayspin::test {
 namespace {
 
 template <class Backend>
-class Scalars : public ::testing::Test {
- protected:
-  typename Backend::Exec exec;
-};
+using Scalars = OnBackend<Backend>;
 TYPED_TEST_SUITE(Scalars, Backends, BackendName);
 
 // Lengths from 0.5 to 1.5, signs of all kinds.
@@ -42,10 +39,7 @@ TYPED_TEST(Scalars, AgainstPlainLoops) {
       rate = std::max(rate, std::sqrt(dot(torque, torque)));
     }
     auto const sites = static_cast<double>(lattice.sites());
-    auto const mean = magnetization(this->exec, spins);
-    EXPECT_NEAR(mean.x, sum.x / sites, 1e-14);
-    EXPECT_NEAR(mean.y, sum.y / sites, 1e-14);
-    EXPECT_NEAR(mean.z, sum.z / sites, 1e-14);
+    expect_near(magnetization(this->exec, spins), (1 / sites) * sum, 1e-14);
     EXPECT_NEAR(norm_defect(this->exec, spins), defect, 1e-15);
     LandauLifshitz const generator(EffectiveField(Zeeman{applied}), 0);
     EXPECT_NEAR(largest_rate(this->exec, generator, spins), rate, 1e-14);

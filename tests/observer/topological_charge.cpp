@@ -14,30 +14,36 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 template <class Backend>
-class TopologicalCharge : public ::testing::Test {
- protected:
-  typename Backend::Exec exec;
-};
+using TopologicalCharge = OnBackend<Backend>;
 TYPED_TEST_SUITE(TopologicalCharge, Backends, BackendName);
 
 Lattice film(std::int64_t nx, std::int64_t ny, Boundary boundary, std::int64_t nz = 1) {
   return Lattice::cubic(nx, ny, nz, 1, boundary);
 }
 
-/// m = (sin t cos p, sin t sin p, cos t) in each plane; about its centre, t(r) goes from pi to 0 at
-/// r = radius, and p = winding * azimuth + helicity.
-std::vector<double> texture(Lattice const& lattice, double radius, double winding,
-                            double helicity) {
+/// m = (sin t cos p, sin t sin p, cos t) in each plane, with [t, p] = angles(x, y).
+template <class Angles>
+std::vector<double> by_angles(Lattice const& lattice, Angles const& angles) {
   std::vector<double> m;
   for (std::int64_t site = 0; site < lattice.sites(); ++site) {
-    auto const nx = lattice.shape[0], ny = lattice.shape[1];
-    double const x = static_cast<double>(site % nx) - 0.5 * static_cast<double>(nx) + 0.3;
-    double const y = static_cast<double>(site / nx % ny) - 0.5 * static_cast<double>(ny) + 0.4;
-    double const t = pi * std::max(0.0, 1 - std::hypot(x, y) / radius);
-    double const p = winding * std::atan2(y, x) + helicity;
+    auto const [t, p] = angles(static_cast<double>(site % lattice.shape[0]),
+                               static_cast<double>(site / lattice.shape[0] % lattice.shape[1]));
     m.insert(m.end(), {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)});
   }
   return m;
+}
+
+/// About the centre, t(r) goes from pi to 0 at r = radius, and p = winding * azimuth + helicity.
+std::vector<double> texture(Lattice const& lattice, double radius, double winding,
+                            double helicity) {
+  auto const half = [&](std::size_t axis) {
+    return 0.5 * static_cast<double>(lattice.shape[axis]);
+  };
+  return by_angles(lattice, [&](double i, double j) {
+    double const x = i - half(0) + 0.3, y = j - half(1) + 0.4;
+    return std::pair(pi * std::max(0.0, 1 - std::hypot(x, y) / radius),
+                     winding * std::atan2(y, x) + helicity);
+  });
 }
 
 std::vector<double> negative(std::vector<double> m) {
@@ -109,16 +115,12 @@ TYPED_TEST(TopologicalCharge, AVortexHasHalf) {
   auto const lattice = film(33, 30, Boundary::open);
   for (double const core : {1.0, -1.0})
     for (double const winding : {1.0, -1.0}) {
-      std::vector<double> m;
-      for (std::int64_t site = 0; site < lattice.sites(); ++site) {
-        double const x = static_cast<double>(site % 33) - 15.8;
-        double const y = static_cast<double>(site / 33) - 14.7;
-        double const t = pi / 2 * std::min(1.0, std::hypot(x, y) / 12);
-        double const p = winding * std::atan2(y, x) + pi / 2;
-        bool const inside = t < pi / 2;
-        m.insert(m.end(), {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p),
-                           inside ? core * std::cos(t) : 0.0});
-      }
+      auto const m = by_angles(lattice, [&](double i, double j) {
+        double const x = i - 15.8, y = j - 14.7;
+        double const from_core = pi / 2 * std::min(1.0, std::hypot(x, y) / 12);
+        return std::pair(core > 0 ? from_core : pi - from_core,
+                         winding * std::atan2(y, x) + pi / 2);
+      });
       EXPECT_NEAR(topological_charge(this->exec, spins_of<Spins>(lattice, m)), core * winding / 2,
                   1e-12);
     }
@@ -164,12 +166,9 @@ TYPED_TEST(TopologicalCharge, TheNumbersOfThePackage) {
   auto const charge = [&](Boundary along_x, Boundary along_y) {
     auto lattice = film(7, 5, along_x);
     lattice.boundary[1] = along_y;
-    std::vector<double> m;
-    for (int y = 0; y < 5; ++y)
-      for (int x = 0; x < 7; ++x) {
-        double const t = 1.1 * x - 0.9 * y, p = 0.7 * x + 0.3 * y * y;
-        m.insert(m.end(), {std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)});
-      }
+    auto const m = by_angles(lattice, [](double x, double y) {
+      return std::pair(1.1 * x - 0.9 * y, 0.7 * x + 0.3 * y * y);
+    });
     return topological_charge(this->exec, spins_of<Spins>(lattice, m));
   };
   double const bound = std::max(1e-12, 30 * epsilon<typename TypeParam::Real>);
@@ -224,16 +223,6 @@ TYPED_TEST(TopologicalCharge, WrongCalls) {
   EXPECT_THROW(topological_charge(this->exec, Spins()), std::invalid_argument);
   EXPECT_THROW(topological_charge(this->exec, Spins(), 0), std::invalid_argument);
 }
-
-#if defined(KOKKOS_ENABLE_SERIAL) && !defined(CAYSPIN_HOST_DEVICE)
-TEST(TopologicalChargeBits, AreThoseOfOneThread) {
-  auto const lattice = film(131, 97, Boundary::periodic, 3);
-  auto const spins = spins_of<SpinField<double, Kokkos::HostSpace>>(
-      lattice, random_directions(lattice.sites(), 5));
-  EXPECT_EQ(topological_charge(Kokkos::DefaultHostExecutionSpace(), spins),
-            topological_charge(Kokkos::Serial(), spins));
-}
-#endif
 
 }  // namespace
 }  // namespace cayspin::test

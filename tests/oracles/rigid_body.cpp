@@ -35,14 +35,10 @@ TYPED_TEST_SUITE(RigidBodyOracles, OracleBackends, BackendName);
 constexpr std::int64_t bodies = 19;
 
 /// The methods that rigid bodies alone have, and those of all generators.
-template <class Exec, class Spins>
-std::vector<double> body_step(std::string const& method, RigidBody const& body, double constant,
-                              Start const& start) {
-  Spins const like("like", start.lattice);
+template <class Spins, class With>
+auto with_body_method(std::string const& method, RigidBody const& body, double constant,
+                      Spins const& like, With const& with) {
   isotropy::Energy const energy;
-  auto const with = [&](auto const& stepper, auto const& of) {
-    return step_once<Exec>(stepper, of, start);
-  };
   auto const w = orthogonal(body);
   if (method == "heun_dcor") return with(LieHeun(like, energy), body);
   if (method == "heun_ocor") return with(LieHeun(like, energy), w);
@@ -51,7 +47,7 @@ std::vector<double> body_step(std::string const& method, RigidBody const& body, 
   if (method == "sy4_dcor") return with(Series4(like, energy), body);
   if (method == "sy4_ocor") return with(Series4(like, energy), w);
   if (method == "sy4_ocor_paper") return with(Series4Paper(like, energy), body);
-  return one_step<Exec, Spins>(method, body, constant, start);
+  return with_method(method, body, constant, like, with);
 }
 
 TYPED_TEST(RigidBodyOracles, Steps) {
@@ -63,8 +59,11 @@ TYPED_TEST(RigidBodyOracles, Steps) {
     Start const start{lattice, repeated(decimals(entry.at("m")), bodies),
                       repeated(decimals(entry.at("m_prev")), bodies), entry.at("h")};
     auto const expect = [&](std::string const& method, std::vector<double> const& expected) {
-      auto const found = body_step<typename TypeParam::Exec, typename TypeParam::Spins>(
-          method, body, entry.at("sigma_const"), start);
+      auto const found = with_body_method(
+          method, body, entry.at("sigma_const"), typename TypeParam::Spins("like", lattice),
+          [&](auto const& stepper, auto const& of) {
+            return step_once<typename TypeParam::Exec>(stepper, of, start);
+          });
       for (std::size_t i = 0; i < found.size(); ++i)
         EXPECT_NEAR(found[i], expected[i % 3], step_tolerance<Real>)
             << entry.at("tag") << ", " << method << ", number " << i;
@@ -113,21 +112,10 @@ TYPED_TEST(RigidBodyOracles, Trajectories) {
     RigidBody const body(inverse(decimals(entry.at("inertia"))));
     auto spins = spins_of<Spins>(Lattice::chain(1), decimals(entry.at("m0")));
     std::vector<Sample> samples;
-    auto const run = [&](auto stepper, auto const& generator) {
+    with_body_method(method, body, 0, spins, [&](auto stepper, auto const& generator) {
       integrate(exec, stepper, generator, spins, Times{0, entry.at("h"), entry.at("n")},
                 Record(body, samples));
-    };
-    if (method == "euler_def") run(LieEuler(spins), body);
-    if (method == "euler_orth") run(LieEuler(spins), orthogonal(body));
-    if (method == "euler_cor_analytic") run(LieEuler(spins, isotropy::Analytic{}), body);
-    if (method == "heun_def") run(LieHeun(spins), body);
-    if (method == "heun_ocor") run(LieHeun(spins, isotropy::Energy{}), orthogonal(body));
-    if (method == "rkmk4_def") run(Rkmk4(spins), body);
-    if (method == "rkmk4_orth") run(Rkmk4(spins), orthogonal(body));
-    if (method == "sy4_def") run(Series4(spins), body);
-    if (method == "sy4_ocor") run(Series4(spins, isotropy::Energy{}), orthogonal(body));
-    if (method == "implicit_def") run(ImplicitLieEuler(spins), body);
-    if (method == "midpoint") run(ImplicitMidpoint(spins), body);
+    });
     ASSERT_EQ(samples.size(), entry.at("n").get<std::size_t>() + 1) << method;
 
     auto const expected = decimals(entry.at("m_n")), found = numbers_of(spins);

@@ -49,16 +49,12 @@ std::vector<double> step_once(Stepper stepper, Generator const& generator, Start
   return numbers_of(spins);
 }
 
-/// One step of the method that the oracles call `method`; `constant` is its sigma.
-template <class Exec, class Spins, class Generator>
-std::vector<double> one_step(std::string const& method, Generator const& generator, double constant,
-                             Start const& start) {
+/// with(stepper, generator) of the method that the oracles call `method`; `constant` is its sigma.
+template <class Spins, class Generator, class With>
+auto with_method(std::string const& method, Generator const& generator, double constant,
+                 Spins const& like, With const& with) {
   using namespace isotropy;
-  Spins const like("like", start.lattice);
   Constant const sigma{constant};
-  auto const with = [&](auto const& stepper, auto const& of) {
-    return step_once<Exec>(stepper, of, start);
-  };
   auto const w = orthogonal(generator);
 
   if (method == "euler_def") return with(LieEuler(like), generator);
@@ -94,6 +90,15 @@ std::vector<double> one_step(std::string const& method, Generator const& generat
   if (method == "sy4_orth") return with(Series4(like), w);
   if (method == "sy4_orth_paper") return with(Series4Paper(like), generator);
   throw std::invalid_argument("no stepper for " + method);
+}
+
+/// One step of it.
+template <class Exec, class Spins, class Generator>
+std::vector<double> one_step(std::string const& method, Generator const& generator, double constant,
+                             Start const& start) {
+  return with_method(
+      method, generator, constant, Spins("like", start.lattice),
+      [&](auto const& stepper, auto const& of) { return step_once<Exec>(stepper, of, start); });
 }
 
 }  // namespace cayspin::test

@@ -5,6 +5,8 @@
 #include "../support/landau_lifshitz.hpp"
 
 #include <array>
+#include <utility>
+#include <vector>
 
 namespace cayspin::test {
 
@@ -38,17 +40,31 @@ class ChainOrder : public ::testing::TestWithParam<double> {
   template <class Stepper, class Generator, class... Options>
   void expect(char const* what, int order, Generator const& generator,
               Options const&... options) const {
-    std::vector<double> dts, errors;
-    for (int const steps : ladder) {
-      dts.push_back(end_time / steps);
-      auto const end = run<Stepper>(generator, chain_start(), dts.back(), steps, options...);
-      errors.push_back(largest_distance(end, reference));
-    }
-    std::printf("    %-30s errors %.2e .. %.2e\n", what, errors.front(), errors.back());
-    expect_order(what, fitted_order(dts, errors), order, order_tolerance);
+    expect_convergence(what, end_time, ladder, order, order_tolerance, [&](int steps, double dt) {
+      return largest_distance(run<Stepper>(generator, chain_start(), dt, steps, options...),
+                              reference);
+    });
     EXPECT_EQ(Stepper::order, order);
   }
+
+  template <class Tableau, class Generator>
+  void expect_on_group_chart_and_sphere(Generator const& generator) const {
+    SCOPED_TRACE(Tableau::stages);
+    expect<Rkmk<Spins, Tableau>>("group", Tableau::order, generator);
+    expect<StereographicRungeKutta<Spins, Tableau>>("chart", Tableau::order, generator);
+    expect<ProjectedRungeKutta<Spins, Tableau>>("projected", Tableau::order, generator);
+  }
 };
+
+/// The largest stable dt of a mode of rate 1 over the number of stages, at each damping.
+template <class Stepper>
+void expect_stable_per_stage(std::vector<std::pair<double, double>> const& limits,
+                             double tolerance) {
+  for (auto const& [damping, limit] : limits)
+    EXPECT_NEAR(largest_stable_step<Stepper>(1, damping) / Stepper::tableau_type::stages, limit,
+                tolerance)
+        << "damping " << damping;
+}
 
 inline auto const chain_dampings = ::testing::Values(0.05, 1.0, 10.0);
 

@@ -16,21 +16,16 @@ Slab const slab = coupled_chain(0);
 template <class Stepper, class Generator>
 void expect_energy(char const* what, Generator const& generator, std::vector<int> const& ladder,
                    double order, double tolerance = 0.15) {
-  std::vector<double> dts, errors;
-  for (int const steps : ladder) {
+  expect_convergence(what, end_time, ladder, order, tolerance, [&](int steps, double dt) {
     auto spins = chain_start();
     Stepper stepper(spins);
     std::vector<Sample> samples;
-    integrate(Space{}, stepper, generator, spins, Times{0, end_time / steps, steps},
-              Record(generator, samples));
-    dts.push_back(end_time / steps);
-    errors.push_back(0);
+    integrate(Space{}, stepper, generator, spins, Times{0, dt, steps}, Record(generator, samples));
+    double largest = 0;
     for (auto const& sample : samples)
-      errors.back() =
-          std::max(errors.back(), std::abs(sample.energy.value - samples[0].energy.value));
-  }
-  std::printf("    %-30s errors %.2e .. %.2e\n", what, errors.front(), errors.back());
-  expect_order(what, fitted_order(dts, errors), order, tolerance);
+      largest = std::max(largest, std::abs(sample.energy.value - samples[0].energy.value));
+    return largest;
+  });
 }
 
 // Steps in all: those of order 4 are near round-off where the others begin to follow their order.

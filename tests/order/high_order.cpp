@@ -50,13 +50,8 @@ TEST_P(HighOrder, EightStagesOfOrder6) {
 
 // Longer steps per evaluation than Dormand-Prince 5 up to a damping of 0.2.
 TEST(Oscillatory86, IsStableOnTheImaginaryAxis) {
-  auto const per_stage = [](double damping) {
-    return largest_stable_step<ProjectedRungeKutta<Spins, tableau::Oscillatory86>>(1, damping) / 8;
-  };
-  EXPECT_NEAR(per_stage(0), 0.4602, 0.0005);
-  EXPECT_NEAR(per_stage(0.02), 0.4766, 0.0005);
-  EXPECT_NEAR(per_stage(0.1), 0.5056, 0.0005);
-  EXPECT_NEAR(per_stage(0.3), 0.4772, 0.0005);
+  expect_stable_per_stage<ProjectedRungeKutta<Spins, tableau::Oscillatory86>>(
+      {{0, 0.4602}, {0.02, 0.4766}, {0.1, 0.5056}, {0.3, 0.4772}}, 0.0005);
 }
 
 TEST(Damped86, TakesLongStepsOfDecay) {
@@ -65,19 +60,11 @@ TEST(Damped86, TakesLongStepsOfDecay) {
   EXPECT_NEAR(largest_stable_step<Stepper>(1, 1) / 8, 0.439, 0.001);
 }
 
-template <class Tableau>
-double largest_defect() {
-  double largest = 0;
-  for (int order = 1; order <= 6; ++order)
-    largest = std::max(largest, defect<Tableau>(order, 1, [](int i) { return Tableau::b[i]; }));
-  return largest;
-}
-
 TEST(EightStages, SatisfyTheConditionsToRoundOff) {
-  EXPECT_LT(largest_defect<DormandPrince8>(), 0x1p-40);
-  EXPECT_GT(largest_defect<tableau::DormandPrince5>(), 1e-4);
-  EXPECT_LT(largest_defect<tableau::Oscillatory86>(), 0x1p-50);
-  EXPECT_LT(largest_defect<tableau::Damped86>(), 0x1p-50);
+  expect_conditions<DormandPrince8>("Dormand and Prince, order 8", 0x1p-40);
+  expect_conditions<tableau::DormandPrince5>("Dormand and Prince, order 5", 0x1p-40, 1e-4);
+  expect_conditions<tableau::Oscillatory86>("oscillatory", 0x1p-50);
+  expect_conditions<tableau::Damped86>("damped", 0x1p-50);
 }
 
 TEST_P(HighOrder, InSinglePrecisionErrorsAreRoundOff) {

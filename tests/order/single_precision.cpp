@@ -7,6 +7,8 @@
 
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
+#include <array>
+
 using namespace cayspin;
 using namespace cayspin::test;
 
@@ -34,14 +36,9 @@ template <class Stepper>
 void expect_slope(char const* what, int order, std::vector<int> const& ladder) {
   using Field = typename Stepper::spins_type;
   auto const reference = run<Rkmk4<Spins>>(generator(), start<Spins>(), end_time / 4000, 4000);
-  std::vector<double> dts, errors;
-  for (int const steps : ladder) {
-    dts.push_back(end_time / steps);
-    errors.push_back(
-        largest_distance(run<Stepper>(generator(), start<Field>(), dts.back(), steps), reference));
-  }
-  std::printf("    %-30s errors %.2e .. %.2e\n", what, errors.front(), errors.back());
-  expect_order(what, fitted_order(dts, errors), order, tolerance);
+  expect_convergence(what, end_time, ladder, order, tolerance, [&](int steps, double dt) {
+    return largest_distance(run<Stepper>(generator(), start<Field>(), dt, steps), reference);
+  });
 }
 
 TEST(TimeDependentField, KeepsTheOrder) {
@@ -85,19 +82,16 @@ double local_error_along_generator(double dt) {
 }
 
 TEST(TimeDependentField, SigmaTakesTheLocalErrorAlongTheGenerator) {
-  auto const order = [](auto error) {
-    std::vector<double> const dts{0.02, 0.01, 0.005, 0.0025};
-    std::vector<double> errors;
-    for (double const dt : dts) errors.push_back(error(dt));
-    return fitted_order(dts, errors);
+  auto const expect = [&]<class Isotropy>(char const* what, Isotropy, int order) {
+    expect_convergence(what, 1, std::array{50, 100, 200, 400}, order, tolerance,
+                       [](int, double dt) { return local_error_along_generator<Isotropy>(dt); });
   };
   using namespace isotropy;
-  expect_order("sigma 0", order(local_error_along_generator<Zero>), 0, tolerance);
-  expect_order("analytic", order(local_error_along_generator<Analytic>), 1, tolerance);
-  expect_order("connection", order(local_error_along_generator<Connection>), 1, tolerance);
-  expect_order("forward", order(local_error_along_generator<FiniteDifference>), 1, tolerance);
-  expect_order("backward", order(local_error_along_generator<FiniteDifferenceBackward>), 1,
-               tolerance);
+  expect("sigma 0", Zero{}, 0);
+  expect("analytic", Analytic{}, 1);
+  expect("connection", Connection{}, 1);
+  expect("forward", FiniteDifference{}, 1);
+  expect("backward", FiniteDifferenceBackward{}, 1);
 }
 
 TEST(SinglePrecision, OrderAboveRoundOff) {

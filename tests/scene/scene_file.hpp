@@ -8,8 +8,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <optional>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -88,6 +86,20 @@ dt = 0.1
 steps = 10
 )toml";
 
+/// Short, for tests that type into it what they are about.
+inline constexpr std::string_view plain_scene = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [4, 3, 2]
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "rkmk4"
+dt = 0.01
+steps = 10
+)toml";
+
 /// `text` with its one occurrence of `from` replaced.
 inline std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
   std::string result(text);
@@ -96,45 +108,37 @@ inline std::string replaced(std::string_view text, std::string_view from, std::s
   return result.replace(at, from.size(), to);
 }
 
-/// The message with which a scene is refused, or nothing.
-inline std::optional<std::string> refusal(std::filesystem::path const& path,
-                                          std::vector<std::string> const& overrides = {}) {
-  try {
-    read_scene(path, overrides);
-    return std::nullopt;
-  } catch (SceneError const& error) {
-    return error.what();
-  }
+/// A text as a scene, without files or with a folder for them.
+inline Scene scene_of(std::string_view text, std::vector<std::string> const& overrides = {}) {
+  return parse_scene(std::string(text), "scene.toml", overrides);
 }
-
 inline Scene read_text(Folder const& folder, std::string_view text,
                        std::vector<std::string> const& overrides = {}) {
   return read_scene(folder.write(text), overrides);
 }
 
-/// A scene made wrong by one replacement, and what its message must hold after the file's name.
-struct WrongScene {
-  char const* name;
-  char const* from;
-  char const* to;
-  char const* begins;    ///< ":LINE: key: ..."
-  char const* contains;  ///< what is wrong or accepted
-};
+inline SiteBox whole(Scene const& scene) { return {{0, 0, 0}, scene.lattice.shape}; }
 
-inline void PrintTo(WrongScene const& wrong, std::ostream* stream) { *stream << wrong.to; }
-
-inline std::string name_of(testing::TestParamInfo<WrongScene> const& info) {
-  return info.param.name;
+/// What a SceneError of `work` says, in one line; "accepted" without one.
+template <class Work>
+std::string refusal(Work const& work) {
+  try {
+    work();
+    return "accepted";
+  } catch (SceneError const& error) {
+    std::string const message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    return message;
+  }
+}
+/// The same of reading a scene.
+inline std::string refusal_of(std::string_view text,
+                              std::vector<std::string> const& overrides = {}) {
+  return refusal([&] { scene_of(text, overrides); });
 }
 
-inline void expect_refused(std::string_view scene, WrongScene const& wrong) {
-  Folder const folder;
-  auto const path = folder.write(replaced(scene, wrong.from, wrong.to));
-  auto const message = refusal(path);
-  ASSERT_TRUE(message) << "the scene was accepted";
-  EXPECT_TRUE(message->starts_with(path.string() + wrong.begins)) << *message;
-  EXPECT_NE(message->find(wrong.contains), std::string::npos) << *message;
-  EXPECT_EQ(message->find('\n'), std::string::npos) << *message;
+inline void expect_holds(std::string const& message, std::string_view part) {
+  EXPECT_NE(message.find(part), std::string::npos) << message << "\nexpected: " << part;
 }
 
 }  // namespace cayspin::inline v0_1::io::test

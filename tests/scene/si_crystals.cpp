@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // units = "SI": crystals, sublattices, currents and constants of sites.
 #include "hdf5_file.hpp"
-#include "scene_file.hpp"
+#include "wrong_scenes.hpp"
 
 #include <cayspin/io/expression.hpp>
 
@@ -54,11 +54,9 @@ dt = 1e-14
 steps = 10
 )toml";
 
-Scene iron_with(std::vector<std::string> const& overrides) {
-  return parse_scene(std::string(iron), "iron.toml", overrides);
-}
+Scene iron_with(std::vector<std::string> const& overrides) { return scene_of(iron, overrides); }
 Scene permalloy_with(std::vector<std::string> const& overrides) {
-  return parse_scene(std::string(permalloy), "permalloy.toml", overrides);
+  return scene_of(permalloy, overrides);
 }
 
 void expect_close(double value, double expected) {
@@ -68,8 +66,6 @@ void expect_close(std::vector<double> const& values, std::vector<double> const& 
   ASSERT_EQ(values.size(), expected.size());
   for (std::size_t i = 0; i < values.size(); ++i) expect_close(values[i], expected[i]);
 }
-
-SiteBox whole(Scene const& scene) { return {{0, 0, 0}, scene.lattice.shape}; }
 
 TEST(SiCrystals, IronHasItsUnits) {
   auto const scene = iron_with({"thermal={temperature=300}", "material.alpha=0.1",
@@ -282,131 +278,84 @@ TEST(SiScenes, ShapesAreOfEitherMaterial) {
   }
 }
 
-struct Wrong {
-  char const *override, *expected, *accepted;
-};
-
-void expect_refused(std::string_view text, Wrong const& wrong) {
-  SCOPED_TRACE(wrong.override);
-  try {
-    parse_scene(std::string(text), "si.toml", {wrong.override});
-    ADD_FAILURE() << "accepted";
-  } catch (SceneError const& error) {
-    std::string const message = error.what();
-    EXPECT_NE(message.find(wrong.expected), std::string::npos) << message;
-    auto const at = message.find("; accepted: ");
-    ASSERT_NE(at, std::string::npos) << message;
-    EXPECT_NE(message.find(wrong.accepted, at), std::string::npos) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-  }
-}
-
 TEST(WrongSiCrystal, IsRefusedInOneLine) {
-  for (auto const& wrong : std::vector<Wrong>{
-           {"lattice.moments=1", ": lattice.moments: belongs to reduced units", "material.mu_s"},
-           {"material.mu_s=[1e-23]", ": material.mu_s: has 1 entries", "2 of these, one for each"},
-           {"material.mu_s=[1e-23,0]", ": material.mu_s[1]: 0 is not positive", "> 0"},
-           {"material.mu_s=[1e-23,'x']", ": material.mu_s[1]: 'x' is a string", "J/T"},
-           {"material.mu_s={bohr_magnetons=[1,{bohr_magnetons=1}]}",
-            ": material.mu_s.bohr_magnetons[1]: is a table", "J/T"},
-           {"material.mu_s={bohr_magneton=1}", ": material.mu_s.bohr_magneton: unknown key",
-            "bohr_magnetons"},
-           {"material.J=1e-21", ": material.J: needs one site in a cell", "field.couplings with J"},
-           {"material.D_bulk=1e-21", ": material.D_bulk: needs one site in a cell",
-            "field.couplings with D"},
-           {"material={mu_s=1e-23,D=1e-21,normal=[0,0,1],alpha=0}",
-            ": material.D: needs one site in a cell", "field.couplings with D"},
-           {"field.exchange=1", ": field.exchange: belongs to reduced units", "material.A"},
-           {"field.dmi={bulk=1}", ": field.dmi: belongs to reduced units", "material.D_bulk"},
-           {"field.couplings={shells={meW=[1]}}", ": field.couplings.shells.meW: unknown key",
-            "meV, eV, mRy"},
-           {"field.couplings={shells={meV=1}}", ": field.couplings.shells.meV: 1 is an integer",
-            "the J of pairs"},
-           {"field.couplings=[{between=[0,1],J={meV=1,eV=1}}]",
-            ": field.couplings[0].J: is not one number with its unit", "{ eV = number }"},
-           {"field.anisotropy={constant={K=1},axis=[0,0,1]}",
-            ": field.anisotropy.constant.K: unknown key", "meV, eV, mRy"},
-           {"field.anisotropy={constant=true,axis=[0,0,1]}",
-            ": field.anisotropy.constant: true is a boolean", "an expression"},
-           {"field.anisotropy={cubic='x',axes=[[1,0,0],[0,1,0]]}",
-            ": field.anisotropy.cubic: 'x' is a string", "a finite number"},
-           {"torque={slonczewski={current_density=1e12,efficiency=0.4,thickness=1e-9,polarization="
-            "[0,0,1]}}",
-            ": torque.slonczewski.current_density: needs the magnetization of a continuum",
-            "damping_like, or material.Ms"}})
-    expect_refused(iron, wrong);
-  expect_refused(
-      replaced(iron, "bohr_magnetons = 2.22", "bohr_magnetons = [1, 2]"),
-      {"field.slab_demag={normal=[0,0,1]}", ": field.slab_demag: needs moments that are all alike",
-       "one number in material.mu_s"});
+  expect_refused(iron, R"(
+lattice.moments = 1 | : belongs to reduced units | material.mu_s
+material.mu_s = [1e-23] | : has 1 entries | 2 of these, one for each
+material.mu_s = [1e-23,0] | [1]: 0 is not positive | > 0
+material.mu_s = [1e-23,'x'] | [1]: 'x' is a string | J/T
+material.mu_s = {bohr_magnetons=[1,{bohr_magnetons=1}]} | .bohr_magnetons[1]: is a table | J/T
+material.mu_s = {bohr_magneton=1} | .bohr_magneton: unknown key | bohr_magnetons
+material.J = 1e-21 | : needs one site in a cell | field.couplings with J
+material.D_bulk = 1e-21 | : needs one site in a cell | field.couplings with D
+material = {mu_s=1e-23,D=1e-21,normal=[0,0,1],alpha=0} | .D: needs one site in a cell
+  | field.couplings with D
+field.exchange = 1 | : belongs to reduced units | material.A
+field.dmi = {bulk=1} | : belongs to reduced units | material.D_bulk
+field.couplings = {shells={meW=[1]}} | .shells.meW: unknown key | meV, eV, mRy
+field.couplings = {shells={meV=1}} | .shells.meV: 1 is an integer | the J of pairs
+field.couplings = [{between=[0,1],J={meV=1,eV=1}}] | [0].J: is not one number with its unit
+  | { eV = number }
+field.anisotropy = {constant={K=1},axis=[0,0,1]} | .constant.K: unknown key | meV, eV, mRy
+field.anisotropy = {constant=true,axis=[0,0,1]} | .constant: true is a boolean | an expression
+field.anisotropy = {cubic='x',axes=[[1,0,0],[0,1,0]]} | .cubic: 'x' is a string | a finite number
+torque = {slonczewski={current_density=1e12,efficiency=0.4,thickness=1e-9,polarization=[0,0,1]}}
+  | .slonczewski.current_density: needs the magnetization of a continuum
+  | damping_like, or material.Ms
+material.mu_s = { bohr_magnetons = [1, 2] }; field.slab_demag = { normal = [0, 0, 1] }
+  | : needs moments that are all alike | one number in material.mu_s
+)");
 }
 
 TEST(WrongSiContinuum, IsRefusedInOneLine) {
-  for (auto const& wrong : std::vector<Wrong>{
-           {"lattice.moments=1", ": lattice.moments: belongs to reduced units", "material.Ms"},
-           {"lattice.crystal='bcc'", ": lattice.crystal: is of atoms", "material.mu_s"},
-           {"lattice.cell=[[1,0,0],[0,1,0],[0,0,1]]", ": lattice.cell: is of atoms", "mu_s"},
-           {"lattice.basis=[[0,0,0]]", ": lattice.basis: is of atoms", "material.mu_s"},
-           {"field.couplings=[{offset=[1,0,0],J=1e-21}]", ": field.couplings: is of atoms",
-            "material.mu_s, or no such key"},
-           {"material.A='q'", ": material.A: expression \"q\"", ""},
-           {"material.A={meV=1}", ": material.A.meV: unknown key", "file"},
-           {"material.alpha='q'", ": material.alpha: expression \"q\"", ""},
-           {"torque={zhang_li={current_density=[1e12,0,0]}}",
-            ": torque.zhang_li.polarization: is missing", "a number"},
-           {"torque={zhang_li={current_density=1e12,polarization=0.4}}",
-            ": torque.zhang_li.current_density: 1000000000000.0 is a number", "three numbers"},
-           {"torque={zhang_li={current_density=[1e12,0,0],velocity=[1,0,0],polarization=0.4}}",
-            ": torque.zhang_li.current_density: stands beside velocity", "one of the two"},
-           {"torque={zhang_li={velocity=[1,0,0],polarization=0.4}}",
-            ": torque.zhang_li.polarization: stands without current_density", "both or neither"},
-           {"torque={slonczewski={current_density=1e12,thickness=1e-9,polarization=[0,0,1]}}",
-            ": torque.slonczewski.efficiency: is missing", "a number"},
-           {"torque={slonczewski={current_density=1e12,efficiency=0.4,polarization=[0,0,1]}}",
-            ": torque.slonczewski.thickness: is missing", "in m"},
-           {"torque={slonczewski={current_density=1e12,efficiency=0.4,thickness=0,polarization=[0,"
-            "0,1]}}",
-            ": torque.slonczewski.thickness: 0 is not positive", "> 0"},
-           {"torque={slonczewski={current_density=1e12,damping_like=1,efficiency=0.4,thickness=1e-"
-            "9,polarization=[0,0,1]}}",
-            ": torque.slonczewski.current_density: stands beside damping_like", "one of the two"},
-           {"torque={slonczewski={field_like=1,efficiency=0.4,polarization=[0,0,1]}}",
-            ": torque.slonczewski.efficiency: stands without current_density", "both or neither"}})
-    expect_refused(permalloy, wrong);
-  expect_refused(replaced(permalloy, "A = 1.3e-11", "D = 1e-3\nnormal = [0, 0, 1]"),
-                 {"material.D_bulk=1e-3", ": material.D_bulk: stands beside material.D",
-                  "D with normal, of an interface, or D_bulk"});
-  expect_refused(
-      replaced(permalloy, "alpha = 0.5", "alpha = '0.5'"),
-      {"material.damping_form=1", ": material.damping_form: 1 is an integer", "gilbert"});
-  expect_refused(llg_scene,
-                 {"torque={zhang_li={current_density=[1e12,0,0],polarization=0.4}}",
-                  ": torque.zhang_li.current_density: is in A/m^2", "velocity, or units = \"SI\""});
+  expect_refused(permalloy, R"(
+lattice.moments = 1 | : belongs to reduced units | material.Ms
+lattice.crystal = 'bcc' | : is of atoms | material.mu_s
+lattice.cell = [[1,0,0],[0,1,0],[0,0,1]] | : is of atoms | mu_s
+lattice.basis = [[0,0,0]] | : is of atoms | material.mu_s
+field.couplings = [{offset=[1,0,0],J=1e-21}] | : is of atoms | material.mu_s, or no such key
+material.A = 'q' | : expression "q"
+material.A = {meV=1} | .meV: unknown key | file
+material.alpha = 'q' | : expression "q"
+torque = {zhang_li={current_density=[1e12,0,0]}} | .zhang_li.polarization: is missing | a number
+torque = {zhang_li={current_density=1e12,polarization=0.4}}
+  | .zhang_li.current_density: 1000000000000.0 is a number | three numbers
+torque = {zhang_li={current_density=[1e12,0,0],velocity=[1,0,0],polarization=0.4}}
+  | .zhang_li.current_density: stands beside velocity | one of the two
+torque = {zhang_li={velocity=[1,0,0],polarization=0.4}}
+  | .zhang_li.polarization: stands without current_density | both or neither
+torque = {slonczewski={current_density=1e12,thickness=1e-9,polarization=[0,0,1]}}
+  | .slonczewski.efficiency: is missing | a number
+torque = {slonczewski={current_density=1e12,efficiency=0.4,polarization=[0,0,1]}}
+  | .slonczewski.thickness: is missing | in m
+torque = {slonczewski={current_density=1e12,efficiency=0.4,thickness=0,polarization=[0,0,1]}}
+  | .slonczewski.thickness: 0 is not positive | > 0
+torque = {slonczewski={current_density=1e12,damping_like=1,efficiency=0.4,thickness=1e-9,
+ polarization=[0,0,1]}}
+  | .slonczewski.current_density: stands beside damping_like | one of the two
+torque = {slonczewski={field_like=1,efficiency=0.4,polarization=[0,0,1]}}
+  | .slonczewski.efficiency: stands without current_density | both or neither
+material.A =; material.D = 1e-3; material.normal = [0, 0, 1]; material.D_bulk = 1e-3
+  | : stands beside material.D | D with normal, of an interface, or D_bulk
+material.alpha = '0.5'; material.damping_form = 1 | : 1 is an integer | gilbert
+material.alpha = '0.5'; material.damping_form = | : is missing | gilbert
+)");
 }
 
-TEST(WrongSiContinuum, AFormOfDampingIsNeededForNumbersOfSites) {
-  auto const text = replaced(replaced(permalloy, "alpha = 0.5", "alpha = '0.5'"),
-                             "damping_form = \"gilbert\"\n", "");
-  expect_refused(text, {"lattice.frozen='0'", ": material.damping_form: is missing", "gilbert"});
+TEST(WrongReducedScene, HasNoCurrentInSi) {
+  expect_refused(llg_scene, R"(
+torque.zhang_li = { current_density = [1e12, 0, 0], polarization = 0.4 }
+  | .current_density: is in A/m^2 | velocity, or units = "SI"
+)");
 }
 
 TEST(WrongSiContinuum, MessagesOfSitesNameTheMaterial) {
   auto const scene = permalloy_with({"material.A={file='/none.h5'}"});
-  try {
-    check_files(scene);
-    ADD_FAILURE() << "accepted";
-  } catch (SceneError const& error) {
-    EXPECT_NE(std::string(error.what()).find(": material.A: /none.h5"), std::string::npos)
-        << error.what();
-  }
+  expect_holds(refusal([&] { check_files(scene); }), ": material.A: /none.h5");
   auto const pole = permalloy_with({"material.alpha='1/(i-2)'"});
-  try {
-    numbers_of_sites(pole, pole.system.dampings, "system.damping", whole(pole));
-    ADD_FAILURE() << "accepted";
-  } catch (SceneError const& error) {
-    EXPECT_NE(std::string(error.what()).find(": material.alpha: "), std::string::npos)
-        << error.what();
-  }
+  expect_holds(
+      refusal([&] { numbers_of_sites(pole, pole.system.dampings, "system.damping", whole(pole)); }),
+      ": material.alpha: ");
 }
 
 }  // namespace

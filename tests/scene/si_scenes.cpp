@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // units = "SI": what a material comes to in reduced units, and what is refused.
-#include "scene_file.hpp"
+#include "wrong_scenes.hpp"
 
 #include <cayspin/io/expression.hpp>
 
@@ -85,8 +85,7 @@ void expect_close(double value, double expected) {
 }
 
 TEST(SiScene, MicromagneticsComesToReducedUnits) {
-  Folder const folder;
-  auto const scene = read_text(folder, film);
+  auto const scene = scene_of(film);
   double const pressure = mu0 * 8e5 * 8e5, second = gamma * mu0 * 8e5 / 1.25;
   EXPECT_TRUE(scene.units.si);
   expect_close(scene.units.time, 1 / second);
@@ -119,16 +118,14 @@ TEST(SiScene, MicromagneticsComesToReducedUnits) {
 }
 
 TEST(SiScene, LandauLifshitzDampingLeavesTheUnitOfTime) {
-  Folder const folder;
   auto const text = replaced(film, "\"gilbert\"", "\"landau_lifshitz\"");
-  expect_close(read_text(folder, text).units.time, 1 / (gamma * mu0 * 8e5));
+  expect_close(scene_of(text).units.time, 1 / (gamma * mu0 * 8e5));
   auto const slower = replaced(text, "Ms = 8e5", "Ms = 8e5\ngamma = 2e11");
-  expect_close(read_text(folder, slower).units.time, 1 / (2e11 * mu0 * 8e5));
+  expect_close(scene_of(slower).units.time, 1 / (2e11 * mu0 * 8e5));
 }
 
 TEST(SiScene, AnExpressionTakesSeconds) {
-  Folder const folder;
-  auto const scene = read_text(folder, film);
+  auto const scene = scene_of(film);
   EXPECT_TRUE(depends_on_time(scene.field));
   Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
   for (double const seconds : {0.0, 1e-10, 3.3e-10}) {
@@ -139,10 +136,9 @@ TEST(SiScene, AnExpressionTakesSeconds) {
 }
 
 TEST(SiScene, OnlyTheVariableOfAnExpressionIsScaled) {
-  Folder const folder;
   constexpr std::string_view typed = "tan(1e-3*t)+0.5e9*t*0+(t>1.e-10?1:2e+0)+.5*exp(-t/1E-9)";
   auto const text = replaced(film, "0.025*sin(2*pi*1e9*t)", typed);
-  auto const scene = read_text(folder, text);
+  auto const scene = scene_of(text);
   Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
   Expression const in_seconds(std::string(typed), {"t"});
   for (double const seconds : {0.0, 0.9e-10, 1.1e-10, 2e-9}) {
@@ -152,8 +148,7 @@ TEST(SiScene, OnlyTheVariableOfAnExpressionIsScaled) {
 }
 
 TEST(SiScene, AtomisticSpinsComeToReducedUnits) {
-  Folder const folder;
-  auto const scene = read_text(folder, chain);
+  auto const scene = scene_of(chain);
   constexpr double moment = 2 * 9.2740100657e-24, bond = 10e-3 * 1.602176634e-19;
   expect_close(scene.units.energy, bond);
   expect_close(scene.units.field, bond / moment);
@@ -170,142 +165,96 @@ TEST(SiScene, AtomisticSpinsComeToReducedUnits) {
 }
 
 TEST(SiScene, TheUnitOfEnergyIsThatOfWhatThereIs) {
-  Folder const folder;
   auto const without_bonds = replaced(chain, "J = { meV = 10 }", "J = 0");
-  expect_close(read_text(folder, without_bonds).units.energy, 1e-22);
-  auto const antiferromagnet = read_text(folder, replaced(chain, "meV = 10", "mRy = -1"));
+  expect_close(scene_of(without_bonds).units.energy, 1e-22);
+  auto const antiferromagnet = scene_of(replaced(chain, "meV = 10", "mRy = -1"));
   expect_close(antiferromagnet.units.energy, 2.1798723611030e-21);
   EXPECT_EQ(antiferromagnet.field.exchange.value().constant, -1);
   auto const free = replaced(replaced(without_bonds, "K = 1e-22\naxis = [0, 0, 1]", ""),
                              "D = { meV = 1 }\nnormal = [0, 0, 1]", "");
-  auto const scene = read_text(folder, free);
+  auto const scene = scene_of(free);
   EXPECT_EQ(scene.units.field, 1);
   expect_close(scene.units.time, 1 / gamma);
 }
 
 TEST(SiScene, ReducedIsAWordAsWell) {
-  Folder const folder;
-  auto const scene = read_text(folder, "units = \"reduced\"\n" + std::string(llg_scene));
+  auto const scene = scene_of("units = \"reduced\"\n" + std::string(llg_scene));
   EXPECT_EQ(scene.units, Units{});
   EXPECT_EQ(scene.integrator.dt, 0.01);
   EXPECT_FALSE(scene.material);
 }
 
 TEST(SiScene, OverridesAreInSi) {
-  Folder const folder;
-  auto const scene = read_text(folder, film, {"material.alpha=0.0", "integrator.dt=5e-13"});
+  auto const scene = scene_of(film, {"material.alpha=0.0", "integrator.dt=5e-13"});
   expect_close(scene.integrator.dt, 5e-13 * gamma * mu0 * 8e5);
   auto const again = with_overrides(scene, {"integrator.dt=2.5e-13"});
   expect_close(again.integrator.dt, 2.5e-13 * gamma * mu0 * 8e5);
   EXPECT_EQ(again.integrator.steps, 200);
 }
 
-class WrongSiScene : public testing::TestWithParam<WrongScene> {};
-TEST_P(WrongSiScene, IsRefusedInOneLine) { expect_refused(film, GetParam()); }
+TEST(WrongSiScene, OfUnits) {
+  expect_refused(film, R"(
+units = 'si' | : "si" is not known | "reduced", "SI"
+units = 1 | : 1 is an integer | "reduced", "SI"
+units = 'reduced' | material: belongs to units = "SI" | no such table
+system.damping = 0.1 | : belongs to reduced units | material.alpha
+field.exchange = 1 | : belongs to reduced units | material.A
+field.dmi = { interfacial = 1, normal = [0, 0, 1] } | : belongs to reduced units | material.D
+field.mu0 = 1 | : belongs to reduced | applied is in T
+lattice.spacing = | : is missing | one number, or three
+lattice.spacing = [4e-9, 4e-9] | : has 2 entries | one number, or three
+integrator.end = 1.5e-12 | : 1.5e-12 is 1.5 steps of dt = 1e-12 | dt = 1.5e-12 or 7.5e-13
+integrator.end =; integrator.steps = 1; integrator.dt = 1e-320 | : comes to | a time in s
+)");
+}
 
-INSTANTIATE_TEST_SUITE_P(
-    Units, WrongSiScene,
-    testing::Values(
-        WrongScene{"word", "\"SI\"", "\"si\"", ":1: units: \"si\" is not known",
-                   "\"reduced\", \"SI\""},
-        WrongScene{"type", "\"SI\"", "1", ":1: units: 1 is an integer", "\"reduced\", \"SI\""},
-        WrongScene{"reduced_with_material", "\"SI\"", "\"reduced\"",
-                   ":3: material: belongs to units = \"SI\"", "no such table"},
-        WrongScene{"damping", "kind = \"llg\"", "kind = \"llg\"\ndamping = 0.1",
-                   ":15: system.damping: belongs to reduced units", "material.alpha"},
-        WrongScene{"exchange", "[field]", "[field]\nexchange = 1",
-                   ":21: field.exchange: belongs to reduced units", "material.A"},
-        WrongScene{"dmi", "[field]", "[field]\ndmi = { interfacial = 1, normal = [0, 0, 1] }",
-                   ":21: field.dmi: belongs to reduced units", "material.D"},
-        WrongScene{"mu0", "[field]", "[field]\nmu0 = 1", ":21: field.mu0: belongs to reduced",
-                   "applied is in T"},
-        WrongScene{"spacing_missing", "spacing = [4e-9, 4e-9, 3e-9]", "",
-                   ":16: lattice.spacing: is missing", "one number, or three"},
-        WrongScene{"spacing_of_two", "4e-9, 3e-9]", "4e-9]", ":18: lattice.spacing: has 2 entries",
-                   "one number, or three"},
-        WrongScene{"not_whole_dt", "end = 5e-11", "end = 1.5e-12",
-                   ":31: integrator.end: 1.5e-12 is 1.5 steps of dt = 1e-12",
-                   "dt = 1.5e-12 or 7.5e-13"},
-        WrongScene{"dt_beyond_double", "dt = 1e-12\nend = 5e-11", "dt = 1e-320\nsteps = 1",
-                   ":30: integrator.dt: comes to", "a time in s"}),
-    name_of);
+TEST(WrongSiScene, OfMaterial) {
+  expect_refused(film, R"(
+material.Ms = | : is missing | mu_s (J/T)
+material.mu_s = 1e-23 | : stands beside material.Ms | exactly one
+material.Ms = -8e5 | : -800000 is not positive | > 0
+material.Ms = 8e-300 | material: a unit of the reduced
+material.A =; material.J = 1.3e-11 | : does not go with material.Ms | material.A
+material.A = { meV = 1 } | .meV: unknown key | file
+material.axis = | : is missing | three numbers
+material.Ku = | material.axis: stands without material.Ku | both or neither
+material.D = | material.normal: stands without material.D | both or neither
+material.alpha = | : is missing | >= 0
+material.alpha = -0.5 | : -0.5 is negative | >= 0
+material.damping_form = | : is missing: the two forms | "gilbert", "landau_lifshitz"
+material.damping_form = 'Gilbert' | : "Gilbert" is not known | did you mean
+material.gamma = 0 | : 0 is not positive | > 0
+material.alpha =; material.alfa = 0.5 | : unknown key | did you mean "alpha"?
+)");
+}
 
-INSTANTIATE_TEST_SUITE_P(
-    Material, WrongSiScene,
-    testing::Values(
-        WrongScene{"no_moment", "Ms = 8e5", "", ":3: material.Ms: is missing", "mu_s (J/T)"},
-        WrongScene{"two_moments", "Ms = 8e5", "Ms = 8e5\nmu_s = 1e-23",
-                   ":5: material.mu_s: stands beside material.Ms", "exactly one"},
-        WrongScene{"Ms_negative", "8e5", "-8e5", ":4: material.Ms: -800000 is not positive", "> 0"},
-        WrongScene{"Ms_beyond_double", "8e5", "8e-300", ":3: material: a unit of the reduced", ""},
-        WrongScene{"J_of_continuum", "A = ", "J = ", ":5: material.J: does not go with material.Ms",
-                   "material.A"},
-        WrongScene{"unit_of_continuum", "1.3e-11", "{ meV = 1 }", ":5: material.A.meV: unknown key",
-                   "file"},
-        WrongScene{"axis_missing", "axis = [0, 2, 0]", "", ":3: material.axis: is missing",
-                   "three numbers"},
-        WrongScene{"axis_alone", "Ku = 500", "", ":7: material.axis: stands without material.Ku",
-                   "both or neither"},
-        WrongScene{"normal_alone", "D = 3e-3", "", ":9: material.normal: stands without material.D",
-                   "both or neither"},
-        WrongScene{"alpha_missing", "alpha = 0.5", "", ":3: material.alpha: is missing", ">= 0"},
-        WrongScene{"alpha_negative", "alpha = 0.5", "alpha = -0.5",
-                   ":10: material.alpha: -0.5 is negative", ">= 0"},
-        WrongScene{"form_missing", "damping_form = \"gilbert\"", "",
-                   ":3: material.damping_form: is missing: the two forms",
-                   "\"gilbert\", \"landau_lifshitz\""},
-        WrongScene{"form", "\"gilbert\"", "\"Gilbert\"",
-                   ":11: material.damping_form: \"Gilbert\" is not known", "did you mean"},
-        WrongScene{"gamma", "alpha = 0.5", "alpha = 0.5\ngamma = 0",
-                   ":11: material.gamma: 0 is not positive", "> 0"},
-        WrongScene{"unknown", "alpha = 0.5", "alfa = 0.5", ":10: material.alfa: unknown key",
-                   "did you mean \"alpha\"?"}),
-    name_of);
-
-class WrongAtomisticScene : public testing::TestWithParam<WrongScene> {};
-TEST_P(WrongAtomisticScene, IsRefusedInOneLine) { expect_refused(chain, GetParam()); }
-
-INSTANTIATE_TEST_SUITE_P(
-    Material, WrongAtomisticScene,
-    testing::Values(WrongScene{"A_of_atoms", "J = {", "A = {",
-                               ":5: material.A: does not go with material.mu_s", "material.J"},
-                    WrongScene{"unit", "meV = 10", "meW = 10", ":5: material.J.meW: unknown key",
-                               "did you mean \"meV\"?"},
-                    WrongScene{"two_units", "meV = 10", "meV = 10, eV = 1",
-                               ":5: material.J: is not one number with its unit",
-                               "{ eV = number }"},
-                    WrongScene{"moment", "= 2.0", "= 0",
-                               ":4: material.mu_s.bohr_magnetons: 0 is not positive", "> 0"},
-                    WrongScene{"spacings", "2.5e-10", "[2e-10, 2e-10, 3e-10]",
-                               ":18: lattice.spacing: differs from axis to axis",
-                               "one lattice constant"}),
-    name_of);
+TEST(WrongSiScene, OfAtoms) {
+  expect_refused(chain, R"(
+material.J =; material.A = { meV = 10 } | : does not go with material.mu_s | material.J
+material.J = { meW = 10 } | .meW: unknown key | did you mean "meV"?
+material.J = { meV = 10, eV = 1 } | : is not one number with its unit | { eV = number }
+material.mu_s = { bohr_magnetons = 0 } | .bohr_magnetons: 0 is not positive | > 0
+lattice.spacing = [2e-10, 2e-10, 3e-10] | : differs from axis to axis | one lattice constant
+)");
+}
 
 TEST(SiScene, IsForSpinsAlone) {
-  Folder const folder;
-  auto const path =
-      folder.write("units = \"SI\"\n[material]\nMs = 8e5\nalpha = 0\n" + std::string(body_scene));
-  EXPECT_EQ(refusal(path), path.string() +
-                               ":1: units: \"SI\" has no meaning for kind = "
-                               "\"rigid_body\"; accepted: \"reduced\"");
+  EXPECT_EQ(
+      refusal_of("units = \"SI\"\n[material]\nMs = 8e5\nalpha = 0\n" + std::string(body_scene)),
+      "scene.toml:1: units: \"SI\" has no meaning for kind = \"rigid_body\"; "
+      "accepted: \"reduced\"");
 }
 
 TEST(SiScene, NeedsAMaterial) {
-  Folder const folder;
-  auto const path =
-      folder.write("units = \"SI\"\n" + replaced(llg_scene, "damping = 0.05\n", ""), "bare.toml");
-  auto const message = refusal(path, {"field={}", "lattice.spacing=1e-9"});
-  ASSERT_TRUE(message);
-  EXPECT_NE(message->find(":1: material: is missing; accepted: a table [material] with Ms"),
-            std::string::npos)
-      << *message;
+  auto const text = "units = \"SI\"\n" + replaced(plain_scene, "damping = 0.1\n", "");
+  expect_holds(refusal_of(text, {"lattice.spacing=1e-9"}),
+               ":1: material: is missing; accepted: a table [material] with Ms");
 }
 
 TEST(SiScene, UndampedMotionNeedsNoFormOfDamping) {
-  Folder const folder;
   auto const text =
       replaced(replaced(film, "alpha = 0.5", "alpha = 0"), "damping_form = \"gilbert\"", "");
-  expect_close(read_text(folder, text).units.time, 1 / (gamma * mu0 * 8e5));
+  expect_close(scene_of(text).units.time, 1 / (gamma * mu0 * 8e5));
 }
 
 }  // namespace

@@ -16,17 +16,15 @@ std::string text_of(std::string const& name) {
   return text.str();
 }
 
-std::string scene_of(std::string const& lattice, std::string const& couplings) {
-  return "[system]\nkind = \"llg\"\ndamping = 0.1\n[lattice]\nshape = [4, 3, 2]\n" + lattice +
-         "\n[field]\ncouplings = { " + couplings +
-         " }\n[initial]\nuniform = [0, 0, 1]\n[integrator]\nmethod = \"rkmk4\"\ndt = 0.01\nsteps = "
-         "10\n";
+std::string scene_with(std::string const& lattice, std::string const& couplings) {
+  return replaced(plain_scene, "[4, 3, 2]", "[4, 3, 2]\n" + lattice) + "[field]\ncouplings = { " +
+         couplings + " }\n";
 }
 
 Scene read_with(Folder const& folder, std::string const& unit_cell, std::string const& lattice = {},
                 std::string const& more = {}) {
   folder.write(unit_cell, "cell.ucf");
-  return read_text(folder, scene_of(lattice, "file = \"cell.ucf\"" + more));
+  return read_text(folder, scene_with(lattice, "file = \"cell.ucf\"" + more));
 }
 
 TEST(UnitCellFile, IronHasEightNeighbours) {
@@ -125,19 +123,14 @@ TEST(UnitCellFile, MayHaveBiquadraticBonds) {
 }
 
 /// What check_files or the reader says after the scene's place and the file's name.
-std::string refusal_of(Folder const& folder, std::string const& unit_cell,
+std::string refusal_in(Folder const& folder, std::string const& unit_cell,
                        std::string const& lattice = {}) {
-  try {
-    check_files(read_with(folder, unit_cell, lattice));
-    return "accepted";
-  } catch (SceneError const& error) {
-    std::string const message = error.what();
-    auto const begin = (folder / "scene.toml").string() + ":8" +
-                       ": field.couplings.file: " + (folder / "cell.ucf").string() + ':';
-    EXPECT_TRUE(message.starts_with(begin)) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    return message.substr(std::min(begin.size(), message.size()));
-  }
+  auto const message = refusal([&] { check_files(read_with(folder, unit_cell, lattice)); });
+  if (message == "accepted") return message;
+  auto const begin = (folder / "scene.toml").string() +
+                     ":14: field.couplings.file: " + (folder / "cell.ucf").string() + ':';
+  EXPECT_TRUE(message.starts_with(begin)) << message;
+  return message.substr(std::min(begin.size(), message.size()));
 }
 
 // A trajectory has this text, and may lie elsewhere than the file.
@@ -202,34 +195,33 @@ TEST(UnitCellFile, WrongLinesAreNamed) {
            {"-1 0 0 2.5", "-1 0 0 2.5\n2 tensorial", "11: biquadratic interactions that are not "},
            {"-1 0 0 2.5", "-1 0 0 2.5\n0 isotropic\nmore", "12: is more than the 0 interactions"},
            {"# a chain", std::string(5000, 'x'), "1: is longer than 4096 characters"}}) {
-    auto const refused = refusal_of(folder, replaced(chain, from, to));
+    auto const refused = refusal_in(folder, replaced(chain, from, to));
     EXPECT_TRUE(refused.starts_with(message)) << to << '\n' << refused << '\n' << message;
   }
-  EXPECT_TRUE(refusal_of(folder, "").starts_with(" ends before the three lengths"));
+  EXPECT_TRUE(refusal_in(folder, "").starts_with(" ends before the three lengths"));
 }
 
 TEST(UnitCellFile, SitesAreThoseOfTheScene) {
   Folder const folder;
   auto const iron = text_of("bcc_iron.ucf");
-  EXPECT_EQ(refusal_of(folder, iron, "crystal = \"fcc\""),
+  EXPECT_EQ(refusal_in(folder, iron, "crystal = \"fcc\""),
             "10: has 2 atoms in a cell; accepted: 4, as lattice.basis");
-  EXPECT_EQ(refusal_of(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.5002]]"),
+  EXPECT_EQ(refusal_in(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.5002]]"),
             "10: atom 1 is at (0.5, 0.5, 0.5); accepted: (0.5, 0.5, 0.5002), as in lattice.basis");
-  EXPECT_EQ(refusal_of(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.50009]]"), "accepted");
+  EXPECT_EQ(refusal_in(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.50009]]"), "accepted");
   // Another cell of the same crystal has other offsets.
-  EXPECT_NE(refusal_of(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, -0.5]]"), "accepted");
+  EXPECT_NE(refusal_in(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, -0.5]]"), "accepted");
 }
 
 TEST(UnitCellFile, ThatIsNotThereIsNamed) {
   Folder const folder;
   for (std::string const name : {"none.ucf", "."}) {
-    auto const text = scene_of("", "file = \"" + name + "\"");
-    auto const message = refusal(folder.write(text));
-    ASSERT_TRUE(message);
-    EXPECT_TRUE(message->ends_with(": field.couplings.file: " + (folder / name).string() +
-                                   ": cannot be read"))
-        << *message;
-    auto const scene = read_text(folder, scene_of("crystal = \"bcc\"", "file = \"" + name + "\""));
+    auto const file = "file = \"" + name + "\"";
+    auto const message = refusal([&] { read_text(folder, scene_with("", file)); });
+    EXPECT_TRUE(message.ends_with(": field.couplings.file: " + (folder / name).string() +
+                                  ": cannot be read"))
+        << message;
+    auto const scene = read_text(folder, scene_with("crystal = \"bcc\"", file));
     EXPECT_THROW(check_files(scene), SceneError);
     EXPECT_THROW(couplings(scene), SceneError);
   }
@@ -264,7 +256,7 @@ TEST(UnitCellFile, DamagedFilesAreReadOrRefused) {
             text[at] = "0123456789.-+e \n#"[below(17)];
         }
       }
-      refused += refusal_of(folder, text) != "accepted";
+      refused += refusal_in(folder, text) != "accepted";
     }
   EXPECT_GT(refused, 150);
 }

@@ -6,19 +6,6 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-constexpr std::string_view least_scene = R"toml([system]
-kind = "llg"
-damping = 0
-[lattice]
-shape = [100]
-[initial]
-uniform = [0, 0, 1]
-[integrator]
-method = "euler"
-dt = 0.01
-steps = 6000
-)toml";
-
 TEST(Scene, EveryKeyArrives) {
   Folder const folder;
   auto const scene = read_text(folder, llg_scene);
@@ -75,10 +62,9 @@ TEST(Scene, GivenStartIsNormalised) {
 }
 
 TEST(Scene, DefaultsAreTheDocumentedOnes) {
-  Folder const folder;
-  auto const scene = read_text(folder, least_scene);
+  auto const scene = scene_of(plain_scene);
   EXPECT_TRUE(scene.system.precession);
-  EXPECT_EQ(scene.lattice.shape, (std::array<std::int64_t, 3>{100, 1, 1}));
+  EXPECT_EQ(scene.lattice.shape, (std::array<std::int64_t, 3>{4, 3, 2}));
   EXPECT_EQ(scene.lattice.spacing, (Triple{1, 1, 1}));
   for (auto const boundary : scene.lattice.boundary) EXPECT_EQ(boundary, BoundaryKind::open);
   EXPECT_FALSE(scene.field.exchange);
@@ -93,8 +79,8 @@ TEST(Scene, DefaultsAreTheDocumentedOnes) {
   EXPECT_TRUE(scene.integrator.energy_guard);
   EXPECT_FALSE(scene.integrator.until_torque);
   EXPECT_FALSE(scene.output.file);
-  EXPECT_EQ(scene.output.every, 6000);
-  EXPECT_EQ(scene.output.scalars_every, 6000);
+  EXPECT_EQ(scene.output.every, 10);
+  EXPECT_EQ(scene.output.scalars_every, 10);
   EXPECT_EQ(scene.output.compression, 0);
   EXPECT_EQ(scene.output.chunk, 0);
   EXPECT_FALSE(scene.output.xdmf);
@@ -103,9 +89,8 @@ TEST(Scene, DefaultsAreTheDocumentedOnes) {
 }
 
 TEST(Scene, DemagnetizationStrengthDefaultsToOne) {
-  Folder const folder;
   auto const text = replaced(llg_scene, "strength = 2", "average = \"layer\", where = \"host\"");
-  auto const slab = read_text(folder, text).field.slab_demag;
+  auto const slab = scene_of(text).field.slab_demag;
   EXPECT_EQ(slab->strength, 1);
   EXPECT_TRUE(slab->average_layer);
   EXPECT_TRUE(slab->on_host);
@@ -113,20 +98,18 @@ TEST(Scene, DemagnetizationStrengthDefaultsToOne) {
 }
 
 TEST(Scene, DearFieldsAndSubsteps) {
-  Folder const folder;
   auto const text = replaced(llg_scene, "strength = 2", "where = \"host\", dear = true");
-  auto const scene = read_text(folder, text, {"integrator.substeps=4"});
+  auto const scene = scene_of(text, {"integrator.substeps=4"});
   EXPECT_TRUE(scene.field.slab_demag->dear);
   EXPECT_EQ(scene.integrator.substeps, 4);
-  EXPECT_EQ(read_text(folder, text).integrator.substeps, 1);
+  EXPECT_EQ(scene_of(text).integrator.substeps, 1);
 }
 
 TEST(Scene, TheWholeDemagnetizingField) {
-  Folder const folder;
   auto const with = [&](std::string const& typed) {
     auto const text =
         replaced(llg_scene, "slab_demag = { normal = [1, 0, 0], strength = 2 }", typed);
-    return read_text(folder, text).field.demag;
+    return scene_of(text).field.demag;
   };
   auto const demag = with("demag = true").value();
   EXPECT_EQ(demag.strength, 1);
@@ -141,10 +124,9 @@ TEST(Scene, TheWholeDemagnetizingField) {
 }
 
 TEST(Scene, WholeNumbersServeAsNumbers) {
-  Folder const folder;
-  auto const scene = read_text(folder, llg_scene,
-                               {"system.damping=1", "field.exchange=2", "field.mu0=3",
-                                "lattice.spacing=2", "integrator.dt=1", "integrator.end=60"});
+  auto const scene =
+      scene_of(llg_scene, {"system.damping=1", "field.exchange=2", "field.mu0=3",
+                           "lattice.spacing=2", "integrator.dt=1", "integrator.end=60"});
   EXPECT_EQ(scene.system.damping, 1);
   EXPECT_EQ(scene.field.exchange.value().constant, 2.0);
   EXPECT_EQ(scene.lattice.spacing, (Triple{2, 2, 2}));
@@ -152,11 +134,9 @@ TEST(Scene, WholeNumbersServeAsNumbers) {
 }
 
 TEST(Scene, SeveralAnisotropiesAndOneBoundaryForAllAxes) {
-  Folder const folder;
-  auto const scene =
-      read_text(folder, llg_scene,
-                {"lattice.boundary=\"periodic\"",
-                 "field.anisotropy=[{constant=1,axis=[1,1,0]},{constant=-2,axis=[0,-3,0]}]"});
+  auto const scene = scene_of(
+      llg_scene, {"lattice.boundary=\"periodic\"",
+                  "field.anisotropy=[{constant=1,axis=[1,1,0]},{constant=-2,axis=[0,-3,0]}]"});
   for (auto const boundary : scene.lattice.boundary) EXPECT_EQ(boundary, BoundaryKind::periodic);
   ASSERT_EQ(scene.field.anisotropies.size(), 2U);
   EXPECT_DOUBLE_EQ(scene.field.anisotropies[0].axis[1], std::sqrt(0.5));
@@ -165,15 +145,11 @@ TEST(Scene, SeveralAnisotropiesAndOneBoundaryForAllAxes) {
 }
 
 TEST(Scene, AFormulaWithoutTDoesNotDependOnTime) {
-  Folder const folder;
-  EXPECT_FALSE(
-      depends_on_time(read_text(folder, llg_scene, {"field.applied=[\"2*pi\",0,1]"}).field));
+  EXPECT_FALSE(depends_on_time(scene_of(llg_scene, {"field.applied=[\"2*pi\",0,1]"}).field));
 }
 
 TEST(Scene, IsotropyConstantCarriesSigma) {
-  Folder const folder;
-  auto const integrator =
-      read_text(folder, llg_scene, {"integrator.isotropy={constant=0.7}"}).integrator;
+  auto const integrator = scene_of(llg_scene, {"integrator.isotropy={constant=0.7}"}).integrator;
   EXPECT_EQ(integrator.isotropy, Isotropy::constant);
   EXPECT_EQ(integrator.sigma, 0.7);
 }
@@ -181,7 +157,7 @@ TEST(Scene, IsotropyConstantCarriesSigma) {
 TEST(Scene, EveryMethodIsAccepted) {
   Folder const folder;
   for (auto const* const method : methods()) {
-    auto const path = folder.write(replaced(least_scene, "euler", method->word));
+    auto const path = folder.write(replaced(plain_scene, "rkmk4", method->word));
     std::vector<std::string> more;
     if (method->adaptive) more = {"integrator.tolerance=1e-3"};
     if (method->automatic) more = {"integrator.error=1e-3"};
@@ -190,10 +166,8 @@ TEST(Scene, EveryMethodIsAccepted) {
 }
 
 TEST(Scene, EndIsAWholeNumberOfSteps) {
-  Folder const folder;
   auto const steps = [&](std::string const& dt, std::string const& end) {
-    return read_text(folder, llg_scene, {"integrator.dt=" + dt, "integrator.end=" + end})
-        .integrator.steps;
+    return scene_of(llg_scene, {"integrator.dt=" + dt, "integrator.end=" + end}).integrator.steps;
   };
   EXPECT_EQ(steps("0.01", "60.0"), 6000);
   EXPECT_EQ(steps("0.1", "0.3"), 3);
@@ -207,12 +181,11 @@ TEST(Scene, EndIsAWholeNumberOfSteps) {
 
 // By default the end is kept to the last bit, where 100 looks would not: 7 is not 100 times 0.07.
 TEST(Scene, AMethodThatChoosesItsStepsLooksAt128EqualTimes) {
-  Folder const folder;
   for (std::string const method : {"method='tsit5',tolerance=1e-5", "method='auto',error=1e-3"})
     for (std::string const typed : {"7.0", "60.0", "0.3", "1e-9", "1e300"}) {
       double const end = std::stod(typed);
-      auto const scene = read_text(folder, replaced(llg_scene, "every = 100", ""),
-                                   {"integrator={" + method + ",end=" + typed + "}"});
+      auto const scene = scene_of(replaced(llg_scene, "every = 100", ""),
+                                  {"integrator={" + method + ",end=" + typed + "}"});
       EXPECT_EQ(scene.integrator.steps, 128);
       EXPECT_EQ(128 * scene.integrator.dt, end);
       EXPECT_EQ(scene.output.every, 128) << "first and last frame alone";
@@ -221,19 +194,18 @@ TEST(Scene, AMethodThatChoosesItsStepsLooksAt128EqualTimes) {
 }
 
 TEST(Scene, ProposedStepsAreAccepted) {
-  Folder const folder;
-  auto const path = folder.write(llg_scene);
-  auto const message = *refusal(path, {"integrator.dt=0.013", "integrator.end=7.1"});
+  auto const with = [](std::string const& dt) {
+    return refusal_of(llg_scene, {"integrator.dt=" + dt, "integrator.end=7.1"});
+  };
+  auto const message = with("0.013");
   auto const at = message.find("accepted: dt = ") + 15;
   auto const between = message.find(" or ", at);
-  for (auto const& dt : {message.substr(at, between - at), message.substr(between + 4)}) {
-    EXPECT_FALSE(refusal(path, {"integrator.dt=" + dt, "integrator.end=7.1"})) << dt;
-  }
+  EXPECT_EQ(with(message.substr(at, between - at)), "accepted");
+  EXPECT_EQ(with(message.substr(between + 4)), "accepted");
 }
 
 TEST(Scene, NoStepsStillHaveAPeriod) {
-  Folder const folder;
-  auto const scene = read_text(folder, body_scene, {"integrator.steps=0"});
+  auto const scene = scene_of(body_scene, {"integrator.steps=0"});
   EXPECT_EQ(scene.integrator.steps, 0);
   EXPECT_EQ(scene.output.every, 1);
   EXPECT_EQ(scene.output.scalars_every, 1);

@@ -1,54 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps that end on the energy they began with: the order of the stepper inside, the energy to
 // round-off, for coupled spins and for rigid bodies.
-#include "../support/figures.hpp"
-#include "../support/landau_lifshitz.hpp"
+#include "../order/chain.hpp"
+
+#include <array>
 
 using namespace cayspin;
 using namespace cayspin::test;
 
 namespace {
 
-Slab const slab{.lattice = Lattice::chain(8),
-                .exchange = 1,
-                .anisotropy = 0.8,
-                .axis = {1, 2, 3},
-                .demag = 0.7,
-                .applied = {0.5, -0.7, 0.9}};
+Slab const slab = coupled_chain(0);
 RigidBody const body({1.1, 1.9, 2.0, 0.1, -0.6, 0.4});
 constexpr double end_time = 1;
+constexpr std::array ladder{40, 80, 160, 320};
 
 template <class Stepper, class Generator>
-void expect_order_and_energy(char const* what, Generator const& generator, int order,
-                             std::vector<int> const& ladder) {
+void expect_order_and_energy(char const* what, Generator const& generator, int order) {
   auto const start = random_spins(slab.lattice, 3);
   auto const exact = run<Rkmk4<Spins>>(generator, start, end_time / 4000, 4000);
   double const before = energy(Space{}, generator, start).value;
-  std::vector<double> dts, errors;
   double worst = 0;
-  for (int const steps : ladder) {
-    dts.push_back(end_time / steps);
+  expect_convergence(what, end_time, ladder, order, 0.15, [&](int steps, double dt) {
     Spins spins = copy_of(start);
     EnergyProjection stepper(spins, Stepper(spins), 12);
-    advance(stepper, generator, spins, dts.back(), steps);
-    errors.push_back(largest_distance(spins, exact));
+    advance(stepper, generator, spins, dt, steps);
     worst = std::max(worst, std::abs(energy(Space{}, generator, spins).value - before));
     EXPECT_LT(norm_defect(Space{}, spins), 1e-13);
-  }
-  expect_order(what, fitted_order(dts, errors), order, 0.15);
+    return largest_distance(spins, exact);
+  });
   expect_below(what + std::string(", energy"), worst, 2e-13);
   EXPECT_EQ(EnergyProjection<Stepper>::order, order);
 }
 
 TEST(EnergyProjection, KeepsOrderAndEnergy) {
-  std::vector<int> const ladder{40, 80, 160, 320};
   auto const natural = slab.natural();
-  expect_order_and_energy<LieEuler<Spins>>("Euler", natural, 1, ladder);
-  expect_order_and_energy<LieHeun<Spins>>("Heun", natural, 2, ladder);
-  expect_order_and_energy<LieAdamsBashforth2<Spins>>("ab2", natural, 2, ladder);
-  expect_order_and_energy<Rkmk4<Spins>>("rkmk4", natural, 4, ladder);
-  expect_order_and_energy<LieHeun<Spins>>("Heun, orthogonal", slab.orthogonal(), 2, ladder);
-  expect_order_and_energy<LieHeun<Spins>>("bodies, Heun", body, 2, ladder);
+  expect_order_and_energy<LieEuler<Spins>>("Euler", natural, 1);
+  expect_order_and_energy<LieHeun<Spins>>("Heun", natural, 2);
+  expect_order_and_energy<LieAdamsBashforth2<Spins>>("ab2", natural, 2);
+  expect_order_and_energy<Rkmk4<Spins>>("rkmk4", natural, 4);
+  expect_order_and_energy<LieHeun<Spins>>("Heun, orthogonal", slab.orthogonal(), 2);
+  expect_order_and_energy<LieHeun<Spins>>("bodies, Heun", body, 2);
 }
 
 // Euler's steps are so rough that each of the corrections still changes the energy.

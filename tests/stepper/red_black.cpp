@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The red-black splitting: orders, one spin exactly, energy, reversal in time, what it refuses.
+// The red-black splitting: orders, one spin exactly, energy, what it refuses.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
@@ -35,18 +35,15 @@ template <class Generator>
 void expect_orders(std::string const& what, Generator const& generator) {
   Spins const start = random_spins(block, 3);
   Spins const reference = run<Rkmk4<Spins>>(generator, start, 1. / 4000, 4000);
-  std::vector<double> dts, second, fourth;
-  for (int const steps : {10, 20, 40, 80}) {
-    dts.push_back(1. / steps);
-    second.push_back(
-        largest_distance(run<RedBlack2<Spins>>(generator, start, dts.back(), steps), reference));
-    fourth.push_back(
-        largest_distance(run<RedBlack4<Spins>>(generator, start, dts.back(), steps), reference));
-  }
-  std::printf("    %-34s errors %.2e .. %.2e, %.2e .. %.2e\n", what.c_str(), second.front(),
-              second.back(), fourth.front(), fourth.back());
-  expect_order(what + ", order 2", fitted_order(dts, second), 2, 0.1);
-  expect_order(what + ", order 4", fitted_order(dts, fourth), 4, 0.15);
+  auto const expect = [&]<class Stepper>(Stepper const&, double tolerance) {
+    expect_convergence(
+        what + ", order " + std::to_string(Stepper::order), 1, std::array{10, 20, 40, 80},
+        Stepper::order, tolerance, [&](int steps, double dt) {
+          return largest_distance(run<Stepper>(generator, start, dt, steps), reference);
+        });
+  };
+  expect(RedBlack2(start), 0.1);
+  expect(RedBlack4(start), 0.15);
 }
 
 TEST(RedBlackOrder, OfCoupledSpins) {
@@ -241,27 +238,6 @@ TEST(RedBlackEnergy, NeverRisesWithDamping) {
     }
     EXPECT_LT(last, first - 10);
   }
-}
-
-template <class Stepper>
-void expect_reversal() {
-  using Field = typename Stepper::spins_type;
-  auto const start = random_spins<Field>(block, 4);
-  auto spins = copy_of(start);
-  Stepper stepper(spins);
-  auto const generator = slab_of(0).natural();
-  for (int n = 0; n < 40; ++n) stepper.step(Space{}, generator, spins, n * 0.1, 0.1);
-  EXPECT_GT(largest_distance(spins, start), 0.5);
-  for (int n = 40; n > 0; --n) stepper.step(Space{}, generator, spins, n * 0.1, -0.1);
-  double const eps = epsilon<typename Field::value_type>;
-  expect_below("order " + std::to_string(Stepper::order) + ", there and back",
-               largest_distance(spins, start) / eps, 3000);
-}
-
-TEST(RedBlackReversal, UndoesWhatWasDoneWithoutDamping) {
-  expect_reversal<RedBlack2<Spins>>();
-  expect_reversal<RedBlack4<Spins>>();
-  expect_reversal<RedBlack4<SpinField<float, Space::memory_space>>>();
 }
 
 TEST(RedBlackNorm, AfterManySteps) {

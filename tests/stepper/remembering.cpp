@@ -51,30 +51,6 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
-template <class Stepper>
-class InPieces : public ::testing::Test {};
-using AllKinds =
-    ::testing::Types<LieAdamsBashforth2<Spins>, LieEuler<Spins, FiniteDifferenceBackward>,
-                     Compensated<Rkmk4<Spins>>, FieldExtrapolation4<Spins>, AdaptiveRkmk<Spins>>;
-TYPED_TEST_SUITE(InPieces, AllKinds);
-
-TYPED_TEST(InPieces, ARunThatContinuesHasTheBitsOfOneRun) {
-  constexpr std::int64_t steps = 12;
-  Spins const start = random_spins(slab.lattice, 5);
-  auto const in_pieces_of = [&](std::int64_t length, bool continues) {
-    Spins spins = copy_of(start);
-    TypeParam stepper(start);
-    for (std::int64_t first = 0; first < steps; first += length)
-      integrate(Space{}, stepper, slab.natural(), spins,
-                Times{0, 0.05, first + length, first, continues});
-    return copy_to_host(spins);
-  };
-  auto const whole = in_pieces_of(steps, false);
-  EXPECT_EQ(in_pieces_of(4, true), whole);
-  EXPECT_EQ(in_pieces_of(1, true), whole);
-  EXPECT_NE(in_pieces_of(4, false), whole);
-}
-
 // A first step from a state that is told is the second step from it.
 TYPED_TEST(Remembering, StateBefore) {
   Spins const start = random_spins(slab.lattice, 5);
@@ -105,16 +81,14 @@ TEST(UnequalSteps, KeepTheOrder) {
   Slab undamped = slab;
   undamped.damping = 0;
   double const before = energy(Space{}, undamped.natural(), random_spins(slab.lattice, 5)).value;
-  std::vector<double> dts, errors, energies;
-  for (int const pairs : {40, 80, 160, 320}) {
-    dts.push_back(1.0 / pairs);
-    errors.push_back(
-        largest_distance(unequal_steps<LieAdamsBashforth2<Spins>>(slab, pairs, 1), exact));
+  std::array const ladder{40, 80, 160, 320};  // pairs
+  expect_convergence("ab2", 1, ladder, 2, 0.15, [&](int pairs, double) {
+    return largest_distance(unequal_steps<LieAdamsBashforth2<Spins>>(slab, pairs, 1), exact);
+  });
+  expect_convergence("backward difference, energy", 1, ladder, 2, 0.15, [&](int pairs, double) {
     auto const end = unequal_steps<LieEuler<Spins, FiniteDifferenceBackward>>(undamped, pairs, 1);
-    energies.push_back(std::abs(energy(Space{}, undamped.natural(), end).value - before));
-  }
-  expect_order("ab2", fitted_order(dts, errors), 2, 0.15);
-  expect_order("backward difference, energy", fitted_order(dts, energies), 2, 0.15);
+    return std::abs(energy(Space{}, undamped.natural(), end).value - before);
+  });
 }
 
 // F = dt w + clamp(dt sigma) m, sigma written out.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Stiff steps that follow a tolerance.
+#include "../support/field_that_jumps.hpp"
 #include "../support/figures.hpp"
-#include "thin_slab.hpp"
+#include "../support/unit_slab.hpp"
 
 #include <cayspin/stepper/adaptive_stiff_gauss.hpp>
 
@@ -39,7 +40,7 @@ std::vector<Spins> exact_spins(Slab const& slab) {
 }
 
 TEST(AdaptiveStiff, TheErrorFollowsTheTolerance) {
-  Slab const slab = slab_of(40, 0.05);
+  Slab const slab = thin_slab(40, 0.05);
   auto const exact = exact_spins(slab);
   std::vector<double> tolerances, errors;
   for (double const tolerance : {1.0, 1e-1, 1e-2, 1e-3, 1e-4}) {
@@ -55,7 +56,7 @@ TEST(AdaptiveStiff, TheErrorFollowsTheTolerance) {
 }
 
 TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
-  Slab const slab = slab_of(40, 0.5);
+  Slab const slab = thin_slab(40, 0.5);
   auto spins = smooth_start(slab.lattice);
   AdaptiveRkmk<Spins> fine(copy_of(spins), {.tolerance = 1e-10});
   Stepper stepper(spins, {.tolerance = 1e-2});
@@ -72,22 +73,11 @@ TEST(AdaptiveStiff, LooksWithinStepsAreAsGood) {
   expect_below("at any look", largest, 1e-3);  // 1.4e-3 by a constant A
 }
 
-TEST(AdaptiveStiff, AskingOftenDoesNotChangeTheSteps) {
-  Slab const slab = slab_of(40, 0.5);
-  auto seldom = smooth_start(slab.lattice), often = copy_of(seldom);
-  StepOptions const options{.tolerance = 1e-2, .end = end_time};
-  Stepper one(seldom, options), many(often, options);
-  one.step(Space(), slab.natural(), seldom, 0, end_time);
-  advance(many, slab.natural(), often, end_time / 256, 256);
-  EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
-  EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
-}
-
 // Ten times as long a run hardly takes more: spins are at rest.
 TEST(AdaptiveStiff, RestTakesFewSteps) {
   for (std::int64_t const cells : {100, 400}) {
     SCOPED_TRACE(cells);
-    Slab const slab = slab_of(cells, 0.5);
+    Slab const slab = thin_slab(cells, 0.5);
     auto spins = smooth_start(slab.lattice);
     Stepper stepper(spins, {.tolerance = 0.1});
     stepper.step(Space(), slab.natural(), spins, 0, 20);
@@ -99,20 +89,12 @@ TEST(AdaptiveStiff, RestTakesFewSteps) {
   }
 }
 
-/// A field along z from t = 5 on.
-struct Late {
-  static constexpr bool depends_on_time = true;
-  template <class Exec, class Field>
-  Zeeman prepare(Exec const&, Field const&, double t) const {
-    return Zeeman{{t < 5 ? 0.0 : 1.0, 0, 0.5}};
-  }
-};
-
 TEST(AdaptiveStiff, AFieldSwitchedOnAtRestIsFollowed) {
   auto const lattice = Lattice::chain(10, 0.1);
   auto const start = make_spins(lattice, [](auto...) { return Vector{0, 0, 1}; });
   double const tolerance = 1e-2;
-  LandauLifshitz const late(EffectiveField(Exchange(lattice, 1), Late{}), 0.5);
+  LandauLifshitz const late(
+      EffectiveField(Exchange(lattice, 1), FieldThatJumps{5, {0, 0, 0.5}, {1, 0, 0.5}}), 0.5);
   LandauLifshitz const on(EffectiveField(Exchange(lattice, 1), Zeeman{{1, 0, 0.5}}), 0.5);
   auto spins = copy_of(start);
   Stepper stepper(spins, {.tolerance = tolerance});
@@ -121,28 +103,9 @@ TEST(AdaptiveStiff, AFieldSwitchedOnAtRestIsFollowed) {
   expect_below("after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
-/// Not a number from t = 0.5 on.
-struct Failing {
-  static constexpr bool depends_on_time = true;
-  template <class Exec, class Field>
-  Zeeman prepare(Exec const&, Field const&, double t) const {
-    return Zeeman{{t < 0.5 ? 1 : std::nan(""), 0, 1}};
-  }
-};
-
-TEST(AdaptiveStiff, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
-  auto const lattice = Lattice::chain(10, 0.1);
-  auto spins = smooth_start(lattice);
-  auto const start = copy_to_host(spins);
-  LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1), Failing{}), 0.1);
-  Stepper stepper(spins, {.tolerance = 1e-3});
-  EXPECT_THROW(stepper.step(Space(), generator, spins, 0, 1), StepTooSmall);
-  EXPECT_EQ(copy_to_host(spins), start);
-}
-
 TEST(AdaptiveStiff, InSinglePrecisionIsTheSameMethod) {
   using Single = SpinField<float, Space::memory_space>;
-  Slab const slab = slab_of(40, 0.5);
+  Slab const slab = thin_slab(40, 0.5);
   auto single = smooth_start<Single>(slab.lattice);
   auto full = smooth_start(slab.lattice);
   AdaptiveStiffGauss2<Single> one(single, {.tolerance = 1e-2});
@@ -150,13 +113,6 @@ TEST(AdaptiveStiff, InSinglePrecisionIsTheSameMethod) {
   one.step(Space(), slab.natural(), single, 0, end_time);
   other.step(Space(), slab.natural(), full, 0, end_time);
   EXPECT_LT(largest_distance(single, full), 1e-3);
-}
-
-TEST(AdaptiveStiff, WhatCannotBeIsRefused) {
-  auto const spins = smooth_start(Lattice::chain(4));
-  for (StepOptions const& options :
-       {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 2}, StepOptions{.min_dt = -1}})
-    EXPECT_THROW(Stepper(spins, options), std::invalid_argument);
 }
 
 }  // namespace

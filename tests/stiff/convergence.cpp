@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // How many evaluations stiff steps take, and what happens where dt is too large for them.
 #include "../support/figures.hpp"
-#include "thin_slab.hpp"
+#include "../support/unit_slab.hpp"
 
 #include <cayspin/stepper/stiff_gauss.hpp>
 
@@ -19,7 +19,7 @@ TYPED_TEST(StiffGaussOn, FinerMeshesTakesNoMoreEvaluations) {
     constexpr bool is_single = std::is_same_v<typename TypeParam::value_type, float>;
     if (is_single && cells > 400) continue;
     SCOPED_TRACE(cells);
-    Slab const slab = slab_of(cells, 0.05);
+    Slab const slab = thin_slab(cells, 0.05);
     auto spins = smooth_start<TypeParam>(slab.lattice);
     auto const count = [&]<class Stepper>(Stepper stepper, int steps) {
       auto moved = copy_of(spins);
@@ -36,7 +36,7 @@ TEST(StiffGauss, ErrorDoesNotDependOnTheMesh) {
   // Explicit steps would have to be 1100 times shorter on the finest of these.
   double first = 0;
   for (std::int64_t const cells : {50, 200, 800}) {
-    Slab const slab = slab_of(cells, 0.05);
+    Slab const slab = thin_slab(cells, 0.05);
     auto const start = smooth_start(slab.lattice);
     auto const end = run<StiffGauss2<Spins>>(slab.natural(), start, 0.5 / 100, 100);
     auto const finer = run<StiffGauss4<Spins>>(slab.natural(), start, 0.5 / 200, 200);

@@ -73,6 +73,14 @@ struct BackendName {
   }
 };
 
+/// Typed tests on a backend.
+template <class Backend>
+struct OnBackend : ::testing::Test {
+  using Real = typename Backend::Real;
+  using Spins = typename Backend::Spins;
+  typename Backend::Exec exec;
+};
+
 using Precisions = ::testing::Types<float, double>;
 
 struct PrecisionName {
@@ -115,6 +123,12 @@ std::vector<double> numbers_of(Field const& field) {
 
 inline Vec3<double> at(std::vector<double> const& numbers, std::int64_t site) {
   return {numbers[3 * site], numbers[3 * site + 1], numbers[3 * site + 2]};
+}
+
+inline void expect_near(Vec3<double> const& found, Vec3<double> const& expected, double bound) {
+  EXPECT_NEAR(found.x, expected.x, bound);
+  EXPECT_NEAR(found.y, expected.y, bound);
+  EXPECT_NEAR(found.z, expected.z, bound);
 }
 
 }  // namespace cayspin::test

@@ -56,4 +56,17 @@ inline void expect_order(std::string const& what, double order, double expected,
   EXPECT_NEAR(order, expected, tolerance) << what;
 }
 
+/// The order of error(steps, dt) in dt = end_time / steps, over a ladder of steps.
+template <class Ladder, class Error>
+void expect_convergence(std::string const& what, double end_time, Ladder const& ladder,
+                        double expected, double tolerance, Error const& error) {
+  std::vector<double> dts, errors;
+  for (int const steps : ladder) {
+    dts.push_back(end_time / steps);
+    errors.push_back(error(steps, dts.back()));
+  }
+  std::printf("    %-30s errors %.2e .. %.2e\n", what.c_str(), errors.front(), errors.back());
+  expect_order(what, fitted_order(dts, errors), expected, tolerance);
+}
+
 }  // namespace cayspin::test

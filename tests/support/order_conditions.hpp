@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -69,6 +72,27 @@ double defect(int of_order, double s, Weight const& w) {
     largest = std::max(largest, std::abs(sum - std::pow(s, of_order) / density));
   }
   return largest;
+}
+
+/// Expects that weights satisfy the conditions up to `order` (at most 6) to `exact`, and those of
+/// the next order not even to `missed`.
+template <class Tableau, class Weight>
+void expect_conditions(char const* name, int order, double exact, double missed, Weight const& w,
+                       double s = 1) {
+  for (int of_order = 1; of_order <= std::min(order + 1, 6); ++of_order) {
+    SCOPED_TRACE(std::string(name) + ", order " + std::to_string(of_order));
+    double const largest = defect<Tableau>(of_order, s, w);
+    if (of_order <= order)
+      EXPECT_LT(largest, exact);
+    else
+      EXPECT_GT(largest, missed);
+  }
+}
+/// The same of a tableau's steps and its own order.
+template <class Tableau>
+void expect_conditions(char const* name, double exact, double missed = 1e-3) {
+  expect_conditions<Tableau>(name, Tableau::order, exact, missed,
+                             [](int i) { return Tableau::b[i]; });
 }
 
 }  // namespace cayspin::test

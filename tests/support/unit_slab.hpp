@@ -20,11 +20,21 @@ inline Slab unit_slab(Vector const& applied, double damping, bool precession = t
           .precession = precession};
 }
 
-inline Spins slab_start(double spacing = 1) {
-  return make_spins(Lattice::chain(100, spacing), [](auto i, auto, auto) {
-    double const u = std::numbers::pi * (i + 0.5) / 100;
+/// A slab of thickness 1 in so many cells: its fastest spin wave is of frequency 4 cells^2.
+inline Slab thin_slab(std::int64_t cells, double damping) {
+  Slab slab = unit_slab({0.05, 0.05, 0}, damping);
+  slab.lattice = Lattice::chain(cells, 1 / static_cast<double>(cells));
+  return slab;
+}
+
+/// Spins that turn a little across a slab.
+template <class Field = Spins>
+Field smooth_start(Lattice const& lattice) {
+  return make_spins<Field>(lattice, [&](auto i, auto, auto) {
+    double const u = std::numbers::pi * (i + 0.5) / static_cast<double>(lattice.shape[0]);
     return Vector{0.3 + 0.2 * std::cos(u), 0.5 + 0.1 * std::cos(2 * u), 0.8};
   });
 }
+inline Spins slab_start(double spacing = 1) { return smooth_start(Lattice::chain(100, spacing)); }
 
 }  // namespace cayspin::test

@@ -10,6 +10,17 @@
 
 namespace cayspin::test {
 
+/// What a call is refused with.
+template <class Error = std::invalid_argument>
+std::string refusal(std::function<void()> const& call) {
+  try {
+    call();
+    return "taken";
+  } catch (Error const& error) {
+    return error.what();
+  }
+}
+
 /// A call that has to be refused by an exception of one line.
 struct WrongCall {
   std::string name;

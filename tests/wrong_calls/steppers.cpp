@@ -73,10 +73,10 @@ TEST(WrongCallsOfSteppers, SpinsOfOthers) {
 TEST(WrongCallsOfSteppers, GeneratorsOfOthers) {
   for_each_stepper([](std::string const& name, auto const& make) {
     Lattice const own = own_lattices[0];
-    for (auto const& [kind, field] : fields_of_others<Spins>(own))
-      if (field.sites() != 0)
-        expect_refused(calls_of(name + ", generator " + kind, make, own, Spins("spins", own),
-                                generator_on(field.lattice())));
+    for (auto const& [kind, lattice] : lattices_of_others(own))
+      expect_made_for_another("Exchange", lattice, own,
+                              calls_of(name + ", generator " + kind, make, own, Spins("spins", own),
+                                       generator_on(lattice)));
   });
 }
 

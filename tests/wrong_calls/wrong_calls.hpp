@@ -22,28 +22,47 @@ Field moved_from(Lattice const& lattice) {
   return field;
 }
 
-/// Every field that is not of this lattice: another shape, as many sites in another shape, other
-/// boundaries and spacings, and none at all.
-template <class Field>
-std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& lattice) {
-  auto const on = [](Lattice const& other) { return Field("other", other); };
-  auto wider = lattice, turned = lattice, closed = lattice, coarser = lattice;
+/// Every lattice but this one: of another shape, as many sites in another shape, other boundaries
+/// and other spacings.
+inline std::vector<std::pair<std::string, Lattice>> lattices_of_others(Lattice const& own) {
+  auto wider = own, turned = own, closed = own, coarser = own;
   wider.shape[0] += 1;
   std::swap(turned.shape[0], turned.shape[1]);
   closed.boundary[1] = Boundary::periodic;
   coarser.spacing[2] = 2;
-  std::vector<std::pair<std::string, Field>> fields{{"of another shape", on(wider)},
-                                                    {"of other boundaries", on(closed)},
-                                                    {"of other spacings", on(coarser)},
-                                                    {"default-constructed", Field()},
-                                                    {"moved from", moved_from<Field>(lattice)}};
-  if (turned != lattice) fields.emplace_back("of as many sites in another shape", on(turned));
+  std::vector<std::pair<std::string, Lattice>> lattices{
+      {"of another shape", wider}, {"of other boundaries", closed}, {"of other spacings", coarser}};
+  if (turned != own) lattices.emplace_back("of as many sites in another shape", turned);
+  return lattices;
+}
+
+/// Fields on these, and fields on none.
+template <class Field>
+std::vector<std::pair<std::string, Field>> fields_of_others(Lattice const& own) {
+  std::vector<std::pair<std::string, Field>> fields{{"default-constructed", Field()},
+                                                    {"moved from", moved_from<Field>(own)}};
+  for (auto const& [kind, lattice] : lattices_of_others(own))
+    fields.emplace_back(kind, Field("other", lattice));
   return fields;
 }
 
 /// A default-constructed Lattice is a single site, so that this is the lattice of an empty field
 /// which nobody tells apart.
 inline std::vector<Lattice> const own_lattices{Lattice::square(6, 4), Lattice()};
+
+/// Each call is refused, since what `who` was made for is not the lattice of the spins.
+inline void expect_made_for_another(std::string const& who, Lattice const& made_for,
+                                    Lattice const& of_spins, std::vector<WrongCall> const& calls) {
+  auto const sites = [](Lattice const& lattice) {
+    auto const& n = lattice.shape;
+    return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
+  };
+  auto const sentence = "cayspin::" + who + ": made for a lattice of " +
+                        (made_for.shape == of_spins.shape
+                             ? "other spacings or boundaries than that of the spins"
+                             : sites(made_for) + " sites, and the spins are on " + sites(of_spins));
+  for (auto const& [name, call] : calls) EXPECT_EQ(refusal(call), sentence) << name;
+}
 
 /// Conservative, and couples sites.
 inline auto generator_on(Lattice const& lattice) {

@@ -38,10 +38,8 @@ class Convolution {
         row_(row_of(period_[1], period_[2])),
         padded_plane_(whole(std::size_t(row_) * std::size_t(period_[2]))),
         row_transforms_(period_[0], rows_at_once_),
-        y_forward_(Transforms::forward, period_[1], 1, n_[2], row_),
-        y_backward_(Transforms::backward, period_[1], 1, n_[2], row_),
-        z_forward_(Transforms::forward, period_[2], row_, period_[1], 1),
-        z_backward_(Transforms::backward, period_[2], row_, period_[1], 1),
+        along_y_(period_[1], 1, n_[2], row_),
+        along_z_(period_[2], row_, period_[1], 1),
         row_workers_("cayspin::DemagnetizingField: rows", blocks(),
                      whole(row_waves()) * 2 + std::size_t(rows_at_once_ * period_[0])),
         spectrum_("cayspin::DemagnetizingField: spectrum", parts_, octant_[0], lines_of_parts()),
@@ -101,8 +99,6 @@ class Convolution {
   }
 
  private:
-  using Transforms = ComplexTransforms<Real>;
-
   /// Neighbouring rows of a plane: place y, z among the part's own. Each is transformed in the slot
   /// that it has in the whole lattice: FFTW does not promise that bits are those of any slot.
   struct BlockOfRows {
@@ -176,14 +172,14 @@ class Convolution {
       for (int z = 0; z < n_[2]; ++z)
         std::fill(plane + z * row_ + n_[1], plane + z * row_ + period_[1], Complex(0));
       std::fill(plane + n_[2] * row_, plane + period_[2] * row_, Complex(0));
-      if (period_[1] > 1) y_forward_(plane);
-      if (period_[2] > 1) z_forward_(plane);
+      if (period_[1] > 1) along_y_.forward(plane);
+      if (period_[2] > 1) along_z_.forward(plane);
     }
     multiply(k, planes);
     for (std::size_t c = 0; c < 3; ++c) {
       Complex* const plane = planes + c * padded_plane_;
-      if (period_[2] > 1) z_backward_(plane);
-      if (period_[1] > 1) y_backward_(plane);
+      if (period_[2] > 1) along_z_.backward(plane);
+      if (period_[1] > 1) along_y_.backward(plane);
       for_each_row(k, c, plane, [](Complex const* row, Complex* to, std::int64_t count) {
         std::copy_n(row, count, to);
       });
@@ -233,7 +229,7 @@ class Convolution {
   int rows_at_once_, row_;
   std::size_t padded_plane_;
   RowTransforms<Real> row_transforms_;
-  Transforms y_forward_, y_backward_, z_forward_, z_backward_;
+  ComplexTransforms<Real> along_y_, along_z_;
   Workers<Real> row_workers_;
   SpectrumOfParts<Complex> spectrum_;  // wave number along x, component, z, y
   Workers<Complex> plane_workers_;

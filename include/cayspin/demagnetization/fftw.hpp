@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <Kokkos_Complex.hpp>
 #include <fftw3.h>
 
 #include <complex>
@@ -73,26 +74,47 @@ template <class Real>
 auto as_fftw(std::complex<Real>* data) {
   return reinterpret_cast<typename Fftw<Real>::Complex*>(data);
 }
+template <class Real>
+auto as_std(Kokkos::complex<Real>* data) {
+  return reinterpret_cast<std::complex<Real>*>(data);
+}
+
+// Members that take an execution space are those of cufft.hpp: host spaces run with them what is
+// written for devices.
 
 /// Complex transforms in place, `count` of them, `distance` from one to the next. Unscaled.
 template <class Real>
 class ComplexTransforms {
  public:
-  enum Direction { forward = FFTW_FORWARD, backward = FFTW_BACKWARD };
+  ComplexTransforms(int length, int stride, int count, int distance)
+      : forward_(plan(FFTW_FORWARD, length, stride, count, distance)),
+        backward_(plan(FFTW_BACKWARD, length, stride, count, distance)) {}
 
-  ComplexTransforms(Direction direction, int length, int stride, int count, int distance)
-      : plan_([&] {
-          alignas(64) std::complex<Real> like;
-          return Fftw<Real>::plan_complex(1, &length, count, as_fftw(&like), nullptr, stride,
-                                          distance, as_fftw(&like), nullptr, stride, distance,
-                                          direction, FFTW_ESTIMATE);
-        }) {}
-  void operator()(std::complex<Real>* data) const {
-    Fftw<Real>::run_complex(plan_.get(), as_fftw(data), as_fftw(data));
+  void forward(std::complex<Real>* data) const { run(forward_, data); }
+  void backward(std::complex<Real>* data) const { run(backward_, data); }
+  template <class Exec>
+  void forward(Exec const&, Kokkos::complex<Real>* data) const {
+    forward(as_std(data));
+  }
+  template <class Exec>
+  void backward(Exec const&, Kokkos::complex<Real>* data) const {
+    backward(as_std(data));
   }
 
  private:
-  FftwPlan<Real> plan_;
+  static FftwPlan<Real> plan(int direction, int length, int stride, int count, int distance) {
+    return FftwPlan<Real>([&] {
+      alignas(64) std::complex<Real> like;
+      return Fftw<Real>::plan_complex(1, &length, count, as_fftw(&like), nullptr, stride, distance,
+                                      as_fftw(&like), nullptr, stride, distance, direction,
+                                      FFTW_ESTIMATE);
+    });
+  }
+  static void run(FftwPlan<Real> const& plan, std::complex<Real>* data) {
+    Fftw<Real>::run_complex(plan.get(), as_fftw(data), as_fftw(data));
+  }
+
+  FftwPlan<Real> forward_, backward_;
 };
 
 /// Transforms of `count` rows of real numbers, row after row, to and from wave numbers 0 .. length
@@ -120,6 +142,14 @@ class RowTransforms {
   /// Overwrites `waves`.
   void backward(std::complex<Real>* waves, Real* rows) const {
     Fftw<Real>::run_backward(backward_.get(), as_fftw(waves), rows);
+  }
+  template <class Exec>
+  void forward(Exec const&, Real* rows, Kokkos::complex<Real>* waves) const {
+    forward(rows, as_std(waves));
+  }
+  template <class Exec>
+  void backward(Exec const&, Kokkos::complex<Real>* waves, Real* rows) const {
+    backward(as_std(waves), rows);
   }
 
  private:

@@ -4,7 +4,6 @@
 #include <cayspin/detail/exact_sum.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/unrolled.hpp>
-#include <cayspin/detail/widening_load.hpp>
 #include <cayspin/part.hpp>
 
 #include <algorithm>
@@ -22,9 +21,8 @@
 // and for any division of a lattice into parts. Devices sum with twice the digits, in their order.
 namespace cayspin::inline v0_1::detail {
 
+// How many of `Count` values are summed; of the others the maximum is found.
 struct Sum {
-  template <int>
-  using combine_at = Sum;
   template <int Count>
   static constexpr int sums = Count;
   template <class Value>
@@ -35,8 +33,6 @@ struct Sum {
 
 /// The largest value, at least 0; NaN if any value is NaN.
 struct Maximum {
-  template <int>
-  using combine_at = Maximum;
   template <int Count>
   static constexpr int sums = 0;
   template <class Value>
@@ -45,23 +41,11 @@ struct Maximum {
   }
 };
 
-/// Sums of the first `Sums` values, maxima of the others.
 template <int Sums>
 struct SumsThenMaxima {
-  template <int Index>
-  using combine_at = std::conditional_t<(Index < Sums), Sum, Maximum>;
   template <int Count>
   static constexpr int sums = Sums;
 };
-
-/// total <- total and value, combined one by one.
-template <class Combine, int Count, class Value>
-KOKKOS_FORCEINLINE_FUNCTION void combine_values(Value* total, Value const* value) {
-  unrolled<Count>([&](auto i) {
-    using One = typename Combine::template combine_at<i()>;
-    total[i()] = One::combine(total[i()], value[i()]);
-  });
-}
 
 template <class Combine, class Value>
 KOKKOS_FORCEINLINE_FUNCTION double combine_lanes(Value const& value) {
@@ -90,7 +74,10 @@ struct Collect {
       auto const is_site = site.inside();
       unrolled<Count>([&](auto i) { value[i()] = select<Value>(is_site, value[i()], Value(0.0)); });
     }
-    combine_values<Combine, Count>(total, value);
+    unrolled<Count>([&](auto i) {
+      using One = std::conditional_t<(i() < Combine::template sums<Count>), Sum, Maximum>;
+      total[i()] = One::combine(total[i()], value[i()]);
+    });
   }
 };
 

@@ -13,13 +13,12 @@ class AlongAxis {
   static constexpr bool is_local = true;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return add_field(stencil, zero<typename Stencil::value_type>());
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    return add_field(stencil, zero<ValueOf<Stencil>>());
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
-      Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Stencil const& stencil,
+                                                          VectorOf<Stencil> const& h) const {
     using Value = typename Stencil::value_type;
     Vec3<Value> const& m = stencil.center();
     auto const c = as_value<Value>(constant_);
@@ -38,8 +37,7 @@ class AlongAxis {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return constant_ != 0; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const along = dot(stencil.center(), as_value<Value>(axis_));
     return as_value<Value>(-0.5 * constant_) * along * along;

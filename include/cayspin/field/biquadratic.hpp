@@ -18,8 +18,7 @@ class UniformBiquadratic {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto sum = zero<Value>();
     if (couples_[0]) sum = bonds<0>(stencil, sum);
@@ -30,8 +29,7 @@ class UniformBiquadratic {
 
   /// Each site carries half of each of its bonds.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return Value(Value(-0.25) * dot(stencil.center(), field(stencil)));
   }
@@ -40,7 +38,7 @@ class UniformBiquadratic {
   /// sum + (m.m') m' of both neighbours along an axis
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION static Vector bonds(Stencil const& stencil, Vector const& sum) {
-    auto const none = zero<typename Stencil::value_type>();
+    auto const none = zero<ValueOf<Stencil>>();
     Vector const &m = stencil.center(), back = stencil.template previous<Axis>(none),
                  on = stencil.template next<Axis>(none);
     return multiply_add(dot(m, on), on, multiply_add(dot(m, back), back, sum));

@@ -278,11 +278,11 @@ template <class MemorySpace>
 class BondsOfSites {
  public:
   explicit BondsOfSites(BondLists const& lists)
-      : sites_(table("sites", lists.sites)),
-        shells_(table("shells", lists.shells)),
-        bonds_(table("bonds", lists.bonds)),
-        tensors_(table("tensors", lists.tensors)),
-        rounds_(table("rounds", lists.rounds)),
+      : sites_(table_of<MemorySpace>("cayspin::PairCouplings::sites", lists.sites)),
+        shells_(table_of<MemorySpace>("cayspin::PairCouplings::shells", lists.shells)),
+        bonds_(table_of<MemorySpace>("cayspin::PairCouplings::bonds", lists.bonds)),
+        tensors_(table_of<MemorySpace>("cayspin::PairCouplings::tensors", lists.tensors)),
+        rounds_(table_of<MemorySpace>("cayspin::PairCouplings::rounds", lists.rounds)),
         has_biquadratic_(lists.has_biquadratic) {}
 
   BondTable table() const {
@@ -294,16 +294,6 @@ class BondsOfSites {
  private:
   template <class Element>
   using Table = Kokkos::View<Element*, MemorySpace>;
-  template <class Element>
-  static Table<Element> table(char const* name, std::vector<Element> const& from) {
-    Table<Element> made(Kokkos::view_alloc(Kokkos::WithoutInitializing,
-                                           std::string("cayspin::PairCouplings::") + name),
-                        from.size());
-    Kokkos::deep_copy(made,
-                      Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                          from.data(), from.size()));
-    return made;
-  }
 
   Table<BondsOfSite> sites_;
   Table<Shell> shells_;

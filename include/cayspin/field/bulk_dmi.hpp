@@ -22,13 +22,12 @@ class UniformBulkDmi {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return add_field(stencil, zero<typename Stencil::value_type>());
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    return add_field(stencil, zero<ValueOf<Stencil>>());
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
-      Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Stencil const& stencil,
+                                                          VectorOf<Stencil> h) const {
     if (strength_[0] != 0) h = bonds<0>(stencil, h);
     if (strength_[1] != 0) h = bonds<1>(stencil, h);
     if (strength_[2] != 0) h = bonds<2>(stencil, h);
@@ -38,15 +37,13 @@ class UniformBulkDmi {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     return field(stencil);
   }
 
   /// Each site carries half of each of its bonds.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return Value(Value(-0.5) * dot(stencil.center(), field(stencil)));
   }

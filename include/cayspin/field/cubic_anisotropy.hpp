@@ -33,8 +33,7 @@ class CubicAnisotropy {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Vec3<Value> const m = parts(stencil.center());
     Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
@@ -43,8 +42,8 @@ class CubicAnisotropy {
   }
   /// With |m|^2 - a^2 for b^2 + c^2, and so on, and without the multiple of m.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
-      Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(
+      Stencil const& stencil, VectorOf<Stencil> const& h) const {
     using Value = typename Stencil::value_type;
     Vec3<Value> const m = parts(stencil.center());
     return multiply_add(as_value<Value>(2 * constant_),
@@ -65,8 +64,7 @@ class CubicAnisotropy {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return constant_ != 0; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Vec3<Value> const m = parts(stencil.center());
     Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/no_unique_address.hpp>
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -23,15 +23,14 @@ namespace cayspin::inline v0_1 {
 template <class... Terms>
 class EffectiveField;
 
+/// No terms. What it does not say is that of a field without the spins.
 template <>
 class EffectiveField<> : public Forwarding<EffectiveField<>> {
  public:
-  static constexpr int energy_terms = 0;
+  static constexpr int degree = 1, energy_terms = 0, row_fields = 0;
 
-  static constexpr int row_fields = 0;
   template <class Real>
   void begin_row(detail::Row const&, std::int32_t, std::int32_t, detail::RowFields<Real> const&) {}
-
   template <class Make>
   EffectiveField with_parts(Make const&) const {
     return {};
@@ -41,30 +40,12 @@ class EffectiveField<> : public Forwarding<EffectiveField<>> {
     return true;
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
-    return zero<typename Stencil::value_type>();
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const&) const {
+    return zero<ValueOf<Stencil>>();
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const&) const {
-    return zero<typename Stencil::value_type>();
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const&) const {
-    return zero<typename Stencil::value_type>();
-  }
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const&, Stencil const&) const {
-    return zero<Value>();
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
-    return typename Stencil::value_type(0);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(Stencil const&) const {
-    return typename Stencil::value_type(0);
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
+    return ValueOf<Stencil>(0);
   }
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const&, Value*) const {}
@@ -99,8 +80,7 @@ class EffectiveField<First, Rest...>
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     detail::check_field<First, Stencil>();
     detail::check_energy_density<First, Stencil>();
     if constexpr (sizeof...(Rest) == 0)
@@ -109,8 +89,7 @@ class EffectiveField<First, Rest...>
       return detail::add_field(first_, stencil, rest_.field(stencil));
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Stencil const& stencil) const {
     detail::check_field<First, Stencil>();
     detail::check_energy_density<First, Stencil>();
     if constexpr (sizeof...(Rest) == 0)
@@ -121,19 +100,18 @@ class EffectiveField<First, Rest...>
 
   /// The part of H that is not local.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     if constexpr (detail::is_local<First>)
-      return rest_.neighbor_field(stencil);
+      return detail::neighbor_field(rest_, stencil);
     else if constexpr (EffectiveField<Rest...>::is_local)
       return detail::neighbor_field(first_, stencil);
     else
-      return detail::neighbor_field(first_, stencil) + rest_.neighbor_field(stencil);
+      return detail::neighbor_field(first_, stencil) + detail::neighbor_field(rest_, stencil);
   }
 
   /// H of what prepare_local returned.
   template <class Spin>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
     if constexpr (sizeof...(Rest) == 0)
       return detail::local_field(first_, spin);
     else
@@ -149,30 +127,27 @@ class EffectiveField<First, Rest...>
 
   /// The linear part of H, applied to the stencil's array; every term has to be affine.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return detail::linear_field(first_, stencil) + rest_.linear_field(stencil);
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
+    return detail::linear_field(first_, stencil) + detail::linear_field(rest_, stencil);
   }
 
   /// The derivative of H at a spin m, along the rates of the stencil's array.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
                                                      Stencil const& rates) const {
-    return detail::field_rate(first_, m, rates) + rest_.field_rate(m, rates);
+    return detail::field_rate(first_, m, rates) + detail::field_rate(rest_, m, rates);
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     detail::check_energy_density<First, Stencil>();
     return first_.energy_density(stencil) + rest_.energy_density(stencil);
   }
 
   /// Sum of |energy density| over the terms: what round-off in the energy is proportional to.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
-    return Kokkos::abs(first_.energy_density(stencil)) + rest_.energy_magnitude(stencil);
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
+    return Kokkos::abs(first_.energy_density(stencil)) + detail::energy_magnitude(rest_, stencil);
   }
 
   /// The energy density of each term, in their order.

@@ -28,13 +28,12 @@ class UniformExchange {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return add_field(stencil, zero<typename Stencil::value_type>());
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    return add_field(stencil, zero<ValueOf<Stencil>>());
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_field(
-      Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_field(Stencil const& stencil,
+                                                          VectorOf<Stencil> h) const {
     using Value = typename Stencil::value_type;
     if constexpr (one_at_a_time<Value>)
       return second_difference<0>(stencil,
@@ -53,8 +52,8 @@ class UniformExchange {
   }
   /// H without a multiple of the spin itself; past an open end the neighbour is the spin.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> add_turning_field(
-      Stencil const& stencil, Vec3<typename Stencil::value_type> h) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Stencil const& stencil,
+                                                                  VectorOf<Stencil> h) const {
     using Value = typename Stencil::value_type;
     if constexpr (one_at_a_time<Value>)
       return pair_sum<0>(stencil, pair_sum<1>(stencil, pair_sum<2>(stencil, h)));
@@ -69,8 +68,7 @@ class UniformExchange {
 
   /// A sum of neighbours / spacing^2: H without a multiple of the spin itself.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto h = zero<Value>();
     if (couples_[0]) h = neighbor_sum<0>(stencil, h);
@@ -82,8 +80,7 @@ class UniformExchange {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value e(0);
     if (couples_[0]) e = bonds<0>(stencil, e);

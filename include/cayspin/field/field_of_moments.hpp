@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -27,7 +29,7 @@ struct NumbersOfCell {
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto at(Site const& site) const {
-    return as_value<typename Site::value_type>(numbers[site.z() % cell_sites]);
+    return as_value<ValueOf<Site>>(numbers[site.z() % cell_sites]);
   }
 };
 
@@ -37,7 +39,7 @@ class CellNumbers {
  public:
   /// Throws std::invalid_argument unless there is a positive number for each site of a cell.
   CellNumbers(char const* who, Lattice const& lattice, std::vector<double> const& numbers)
-      : view_(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(who)), numbers.size()) {
+      : view_(table_of<MemorySpace>(who, numbers)) {
     require_whole(who, lattice);
     if (static_cast<std::int64_t>(numbers.size()) != lattice.cell_sites)
       throw std::invalid_argument(std::string(who) +
@@ -45,9 +47,6 @@ class CellNumbers {
     for (double const number : numbers)
       if (!(number > 0) || !std::isfinite(number))
         throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
-    Kokkos::deep_copy(view_,
-                      Kokkos::View<double const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                          numbers.data(), numbers.size()));
   }
 
   NumbersOfCell numbers() const { return {view_.data(), static_cast<std::int32_t>(view_.size())}; }
@@ -76,13 +75,11 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return factors_.at(stencil.site()) * field_.field(stencil);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
     requires has_linear_field<Field, Stencil>
   {
     return factors_.at(stencil.site()) * detail::linear_field(field_, stencil);
@@ -106,13 +103,11 @@ struct AppliedToMoments {
   NumbersOfCell moments;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return moments.at(stencil.site()) * as_value<typename Stencil::value_type>(applied);
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    return moments.at(stencil.site()) * as_value<ValueOf<Stencil>>(applied);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return Value(-1) * dot(stencil.center(), field(stencil));
   }
@@ -175,7 +170,7 @@ FieldOfMoments(Lattice, Field, std::vector<double>, std::vector<double> = {})
 
 /// A uniform applied field on the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
-class ZeemanOfMoments {
+class ZeemanOfMoments : public detail::PreparedOnce {
  public:
   static constexpr bool is_local = true;
 
@@ -187,10 +182,6 @@ class ZeemanOfMoments {
   template <class Exec, class Spins>
   detail::AppliedToMoments prepare(Exec const&, Spins const&, double) const {
     return {applied_, moments_.numbers()};
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  private:

@@ -90,19 +90,17 @@ class FieldAmongVacancies {
       : field_(std::move(field)), occupation_(occupation) {}
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return unless_vacant(stencil, field_.field(Inner<Stencil>(stencil, occupation_)));
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     return unless_vacant(stencil,
                          detail::neighbor_field(field_, Inner<Stencil>(stencil, occupation_)));
   }
   template <class Spin>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
     return unless_vacant(spin, detail::local_field(field_, spin));
   }
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
@@ -110,8 +108,7 @@ class FieldAmongVacancies {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
     return unless_vacant(stencil,
                          detail::linear_field(field_, Inner<Stencil>(stencil, occupation_)));
   }
@@ -122,13 +119,11 @@ class FieldAmongVacancies {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return unless_vacant(stencil, field_.energy_density(Inner<Stencil>(stencil, occupation_)));
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
     return unless_vacant(stencil,
                          detail::energy_magnitude(field_, Inner<Stencil>(stencil, occupation_)));
   }

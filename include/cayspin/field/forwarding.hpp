@@ -63,15 +63,13 @@ class ForwardingEnergy {
   static constexpr int energy_terms = detail::energy_terms<Part>;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const
     requires has_energy_density<Part, Stencil>
   {
     return part().energy_density(stencil);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const
     requires has_energy_density<Part, Stencil>
   {
     return detail::energy_magnitude(part(), stencil);

@@ -18,20 +18,17 @@ struct StoredField {
   double energy_factor;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return stencil.site().load(array);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     if (energy_factor == -0.5) return field(stencil);
     return zero<Value>();
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return as_value<Value>(energy_factor) * dot(stencil.center(), stencil.site().load(array));
   }

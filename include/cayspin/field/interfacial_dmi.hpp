@@ -31,9 +31,8 @@ class UniformInterfacialDmi {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    auto h = zero<typename Stencil::value_type>();
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    auto h = zero<ValueOf<Stencil>>();
     if (acts<0>()) h = bonds<0>(stencil, h);
     if (acts<1>()) h = bonds<1>(stencil, h);
     if (acts<2>()) h = bonds<2>(stencil, h);
@@ -43,15 +42,13 @@ class UniformInterfacialDmi {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     return field(stencil);
   }
 
   /// Each site carries half of each of its bonds.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return Value(Value(-0.5) * dot(stencil.center(), field(stencil)));
   }

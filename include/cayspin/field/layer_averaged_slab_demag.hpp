@@ -107,8 +107,7 @@ struct LayerField {
   double strength;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const h = along<Value>(stencil.site());
     Value const zero(0);
@@ -116,8 +115,7 @@ struct LayerField {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto const m = stencil.center();
     Value const m_along = axis == 0 ? m.x : axis == 1 ? m.y : m.z;

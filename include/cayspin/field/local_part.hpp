@@ -16,8 +16,8 @@ namespace cayspin::inline v0_1::detail {
 struct NoField {
   static constexpr bool is_local = true;
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
-    return zero<typename Stencil::value_type>();
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const&) const {
+    return zero<ValueOf<Stencil>>();
   }
 };
 
@@ -36,10 +36,10 @@ auto prepare_local(Term const& term, Exec const& exec, Spins const& spins, doubl
 
 /// A prepared term's neighbour field at a stencil's centre.
 template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-    Term const& term, Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Term const& term,
+                                                             Stencil const& stencil) {
   if constexpr (is_local<Term>)
-    return zero<typename Stencil::value_type>();
+    return zero<ValueOf<Stencil>>();
   else if constexpr (requires { term.neighbor_field(stencil); })
     return term.neighbor_field(stencil);
   else
@@ -48,14 +48,13 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
 
 /// H of what prepare_local returned, and of a prepared term that comes in parts.
 template <class Term, class Spin>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Term const& term,
-                                                                        Spin const& spin) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Term const& term, Spin const& spin) {
   if constexpr (requires { term.local_field(spin); })
     return term.local_field(spin);
   else if constexpr (is_local<Term>)
     return term.field(spin);
   else
-    return zero<typename Spin::value_type>();
+    return zero<ValueOf<Spin>>();
 }
 
 /// Of a prepared term: does it say what its parts are, each term of a sum for itself?
@@ -95,12 +94,12 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Generator const& generator,
 
 /// The same of the neighbour field that a prepared generator is made of.
 template <class Generator, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field_of(
-    Generator const& generator, Stencil const& stencil) {
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field_of(Generator const& generator,
+                                                                Stencil const& stencil) {
   if constexpr (requires { generator.neighbor_field(stencil); })
     return generator.neighbor_field(stencil);
   else
-    return zero<typename Stencil::value_type>();  // generator_at says what is wrong
+    return zero<ValueOf<Stencil>>();  // generator_at says what is wrong
 }
 
 }  // namespace cayspin::inline v0_1::detail

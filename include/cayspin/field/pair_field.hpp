@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/distant_sites.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_fields.hpp>
-#include <cayspin/detail/shifted_load.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/bonds_of_sites.hpp>
 #include <cayspin/stencil.hpp>
@@ -37,25 +37,21 @@ class PairField {
   };
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return parts(stencil).field();
   }
   /// Of couplings without a biquadratic part, which is left out.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
     return parts(stencil).linear;
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return parts(stencil).energy(stencil.center());
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Parts<typename Stencil::value_type> parts(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION Parts<ValueOf<Stencil>> parts(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto const& site = stencil.site();
     auto const& of_site = table_.sites[table_.site_of_plane(site.z())];
@@ -295,8 +291,8 @@ class PairFieldAlongRows : public PairField<Real> {
     begin_ = begin;
   }
   template <class Stencil>
-  Vec3<typename Stencil::value_type> field(Stencil const& stencil) const {
-    return fields_.template load<typename Stencil::value_type>(stencil.site().x() - begin_);
+  VectorOf<Stencil> field(Stencil const& stencil) const {
+    return fields_.template load<ValueOf<Stencil>>(stencil.site().x() - begin_);
   }
 
  private:

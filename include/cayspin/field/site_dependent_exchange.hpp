@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/field/coefficient.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
@@ -20,8 +21,7 @@ struct ExchangeOfSites {
   double inverse_square[3];
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
     auto h = zero<Value>();
@@ -33,8 +33,7 @@ struct ExchangeOfSites {
 
   /// Sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
     auto h = zero<Value>();
@@ -47,8 +46,7 @@ struct ExchangeOfSites {
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const own = stencil.site().load(constants);
     Value e(0);
@@ -108,7 +106,7 @@ struct ExchangeOfSites {
 /// H_n = sum over neighbours of A_nq (m_q - m_n) / spacing^2,
 /// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2.
 template <class Real, class MemorySpace>
-class SiteDependentExchange {
+class SiteDependentExchange : public detail::PreparedOnce {
   using Prepared = detail::ExchangeOfSites<Real>;
 
  public:
@@ -137,11 +135,6 @@ class SiteDependentExchange {
       if (lattice.shape[axis] > 1)
         prepared.inverse_square[axis] = 1 / (lattice.spacing[axis] * lattice.spacing[axis]);
     return prepared;
-  }
-
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  private:

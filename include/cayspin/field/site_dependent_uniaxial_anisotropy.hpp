@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cayspin/field/coefficient.hpp>
-#include <cayspin/field/uniaxial_anisotropy.hpp>
+#include <cayspin/optional_members.hpp>
+#include <cayspin/stencil.hpp>
 
 #include <limits>
 #include <stdexcept>
@@ -36,16 +37,14 @@ struct UniaxialAnisotropyOfSites {
   Axis axis;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto const e = coefficient<Value>(axis, stencil.site());
     return Value(coefficient<Value>(constant, stencil.site()) * dot(stencil.center(), e)) * e;
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     Value const along = dot(stencil.center(), coefficient<Value>(axis, stencil.site()));
     return Value(-0.5) * coefficient<Value>(constant, stencil.site()) * along * along;
@@ -59,7 +58,7 @@ struct UniaxialAnisotropyOfSites {
 /// Constant is double or a ScalarField, Axis a Vec3<double> or a SiteField of three components;
 /// only what differs takes memory.
 template <class Constant, class Axis>
-class SiteDependentUniaxialAnisotropy {
+class SiteDependentUniaxialAnisotropy : public detail::PreparedOnce {
   static constexpr char const* name = "cayspin::SiteDependentUniaxialAnisotropy";
 
  public:
@@ -94,11 +93,6 @@ class SiteDependentUniaxialAnisotropy {
     auto const axis = detail::array_of(axis_);
     return detail::UniaxialAnisotropyOfSites<std::remove_const_t<decltype(constant)>,
                                              std::remove_const_t<decltype(axis)>>{constant, axis};
-  }
-
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  private:

@@ -25,14 +25,12 @@ class Slonczewski {
                     normalized(polarization, "cayspin::Slonczewski: the polarization")) {}
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    return linear_field(stencil) + as_value<typename Stencil::value_type>(field_like_);
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
+    return linear_field(stencil) + as_value<ValueOf<Stencil>>(field_like_);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const& stencil) const {
-    return cross(stencil.center(), as_value<typename Stencil::value_type>(damping_like_));
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
+    return cross(stencil.center(), as_value<ValueOf<Stencil>>(damping_like_));
   }
 
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
@@ -41,8 +39,8 @@ class Slonczewski {
 
   /// It has no energy.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
-    return typename Stencil::value_type(0);
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
+    return ValueOf<Stencil>(0);
   }
 
  private:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/lattice.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 
 namespace cayspin::inline v0_1::detail {
@@ -9,7 +10,7 @@ namespace cayspin::inline v0_1::detail {
 /// A term made for one lattice, the same at all times. Prepared: what kernels hold of it, made from
 /// the lattice and the term's numbers.
 template <class Prepared>
-class TermOnLattice : public Prepared {
+class TermOnLattice : public Prepared, public PreparedOnce {
  public:
   template <class Spins>
   void check_spins(Spins const& spins) const {
@@ -18,10 +19,6 @@ class TermOnLattice : public Prepared {
   template <class Exec, class Spins>
   Prepared prepare(Exec const&, Spins const&, double) const {
     return *this;
-  }
-  template <class Exec, class Spins>
-  bool is_stationary(Exec const&, Spins const&) const {
-    return true;
   }
 
  protected:

@@ -22,13 +22,12 @@ struct Zeeman {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const&) const {
-    return as_value<typename Stencil::value_type>(applied);
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const&) const {
+    return as_value<ValueOf<Stencil>>(applied);
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return Value(-1) * dot(stencil.center(), as_value<Value>(applied));
   }
@@ -41,9 +40,8 @@ struct AppliedRate {
   Vec3<double> rate;
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
-      Stencil const&) const {
-    return as_value<typename Stencil::value_type>(rate);
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const&) const {
+    return as_value<ValueOf<Stencil>>(rate);
   }
 };
 

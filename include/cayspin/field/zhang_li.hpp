@@ -24,8 +24,7 @@ class UniformZhangLi {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     auto d = zero<Value>();
     if (rate_[0] != 0) d = difference<0>(stencil, d);
@@ -36,8 +35,8 @@ class UniformZhangLi {
 
   /// It has no energy.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(Stencil const&) const {
-    return typename Stencil::value_type(0);
+  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
+    return ValueOf<Stencil>(0);
   }
 
  private:

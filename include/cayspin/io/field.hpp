@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,11 +31,31 @@ namespace cayspin::inline v0_1::io {
 
 using Triple = std::array<double, 3>;
 
-/// A key of a term's table: a number, or a vector that is normalised.
-template <class Term>
-struct Parameter {
+/// A number, or the text of an expression in t.
+using AppliedComponent = std::variant<double, std::string>;
+
+/// What a key accepts: in words, and of numbers from where to where.
+struct Limits {
+  std::string_view accepted = "a finite number";
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool without_least = false;  ///< the least number itself is refused
+};
+inline constexpr Limits not_negative{"a number >= 0", 0};
+inline constexpr Limits positive{"a number > 0", 0, std::numeric_limits<double>::infinity(), true};
+
+/// A key of a table. The scene reader sets the members of a section, or of a term, by the list
+/// keys() of these, and refuses any other key. A Triple is normalised.
+template <class Section>
+struct Key {
   std::string_view name;
-  std::variant<double Term::*, Triple Term::*> member;
+  /// None where a function of its own reads the key.
+  std::variant<std::monostate, bool Section::*, std::optional<bool> Section::*, int Section::*,
+               std::int64_t Section::*, double Section::*, std::optional<double> Section::*,
+               Triple Section::*, AppliedComponent Section::*>
+      member = {};
+  Limits limits = {};
+  bool required = false;
 };
 
 /// H = constant Lap(m).
@@ -42,8 +64,10 @@ struct Exchange {
 
   static constexpr std::string_view key = "exchange";
   /// One number alone is typed without a table.
-  static constexpr std::array parameters{Parameter<Exchange>{"constant", &Exchange::constant}};
-  /// For `cayspin check`: the parameters in the order above.
+  static constexpr auto keys() {
+    return std::to_array<Key<Exchange>>({{"constant", &Exchange::constant, {}, true}});
+  }
+  /// For `cayspin check`: the numbers in the order above.
   static constexpr std::string_view formula = "H = {} Lap(m)";
 
   /// The largest |H| of unit spins that alternate, or an upper bound of it.
@@ -74,9 +98,11 @@ struct InterfacialDmi {
   Triple normal = {0, 0, 1};  ///< unit vector n
 
   static constexpr std::string_view key = "dmi";
-  static constexpr std::array parameters{
-      Parameter<InterfacialDmi>{"interfacial", &InterfacialDmi::interfacial},
-      Parameter<InterfacialDmi>{"normal", &InterfacialDmi::normal}};
+  static constexpr auto keys() {
+    return std::to_array<Key<InterfacialDmi>>(
+        {{"interfacial", &InterfacialDmi::interfacial, {}, true},
+         {"normal", &InterfacialDmi::normal, {"three numbers"}, true}});
+  }
   static constexpr std::string_view formula = "E = {} (m_n div m - m.grad m_n), n = {}";
 
   /// An upper bound: both neighbours along each axis across n.
@@ -100,9 +126,6 @@ struct InterfacialDmi {
     return Term(lattice, interfacial, {normal[0], normal[1], normal[2]});
   }
 };
-
-/// A number, or the text of an expression in t.
-using AppliedComponent = std::variant<double, std::string>;
 
 /// Numbers of sites, x fastest, that a program gives beside the text of a scene.
 using GivenNumbers = std::shared_ptr<std::vector<double> const>;
@@ -129,8 +152,10 @@ struct Anisotropy {
   SiteNumbers factors = {};  ///< of the constant, which then is 1
 
   static constexpr std::string_view formula = "H = {} (m.e) e, e = {}";
-  static constexpr std::array parameters{Parameter<Anisotropy>{"constant", &Anisotropy::constant},
-                                         Parameter<Anisotropy>{"axis", &Anisotropy::axis}};
+  static constexpr auto keys() {
+    return std::to_array<Key<Anisotropy>>(
+        {{"constant", &Anisotropy::constant}, {"axis", &Anisotropy::axis}});
+  }
 };
 
 /// Of a cubic crystal: E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2), the m along its axes.
@@ -150,12 +175,29 @@ struct BulkDmi {
 struct ZhangLi {
   std::array<AppliedComponent, 3> velocity = {};  ///< u
   double nonadiabaticity = 0;                     ///< xi
+
+  static constexpr auto keys() {
+    return std::to_array<Key<ZhangLi>>({{"velocity"},
+                                        {"current_density"},
+                                        {"polarization"},
+                                        {"nonadiabaticity", &ZhangLi::nonadiabaticity}});
+  }
 };
 
 /// Slonczewski 1996: t = a m x (p x m) - b m x p.
 struct Slonczewski {
   AppliedComponent damping_like = 0.0, field_like = 0.0;  ///< a, b
   Triple polarization = {};                               ///< unit vector p
+
+  static constexpr auto keys() {
+    return std::to_array<Key<Slonczewski>>(
+        {{"damping_like", &Slonczewski::damping_like},
+         {"field_like", &Slonczewski::field_like},
+         {"polarization", &Slonczewski::polarization, {"three numbers"}, true},
+         {"current_density"},
+         {"efficiency"},
+         {"thickness"}});
+  }
 };
 
 /// The table [torque].
@@ -171,6 +213,15 @@ struct SlabDemagnetization {
   bool average_layer = false;  ///< (m.n) averaged over each plane normal to n, along an axis
   bool on_host = false;        ///< computed on the host through a mirror copy
   bool dear = false;           ///< evaluated once or twice a step, between substeps of the rest
+
+  static constexpr auto keys() {
+    using Slab = SlabDemagnetization;
+    return std::to_array<Key<Slab>>({{"normal", &Slab::normal, {"three numbers"}, true},
+                                     {"strength", &Slab::strength},
+                                     {"average"},
+                                     {"where"},
+                                     {"dear", &Slab::dear}});
+  }
 };
 
 /// The field of all cells on all cells: H = -strength sum N m.
@@ -179,6 +230,12 @@ struct Demagnetization {
   std::array<int, 3> periodic_images{};  ///< beside the nearest one, on each side
   std::optional<bool> dear;              ///< by default where the method can
   std::filesystem::path kept_in;         ///< a file for tensors that take long to compute, or none
+
+  static constexpr auto keys() {
+    return std::to_array<Key<Demagnetization>>({{"strength", &Demagnetization::strength},
+                                                {"periodic_images"},
+                                                {"dear", &Demagnetization::dear}});
+  }
 };
 
 /// Only terms that stand in the scene have a value.

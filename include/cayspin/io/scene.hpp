@@ -89,13 +89,6 @@ struct Given {
   std::map<std::string, GivenNumbers, std::less<>> numbers;  ///< for { given = true } of a key
 };
 
-/// A key that is true or false. The scene reader goes through the lists of these.
-template <class Section>
-struct Flag {
-  std::string_view key;
-  bool Section::*member;
-};
-
 /// The table [integrator]: method, coordinates and steps.
 struct Integrator {
   Method const* method = nullptr;
@@ -116,11 +109,26 @@ struct Integrator {
   bool refuse_unstable = false;  ///< a dt that `run` would warn of is an error
   std::optional<double> until_torque;
 
-  static constexpr auto flags() {
-    return std::to_array<Flag<Integrator>>({{"compensated", &Integrator::compensated},
-                                            {"energy_guard", &Integrator::energy_guard},
-                                            {"energy_control", &Integrator::energy_control},
-                                            {"refuse_unstable", &Integrator::refuse_unstable}});
+  static constexpr auto keys() {
+    return std::to_array<Key<Integrator>>(
+        {{"method"},
+         {"generator"},
+         {"isotropy"},
+         {"isotropy_cap"},
+         {"rotation"},
+         {"dt"},
+         {"end"},
+         {"steps"},
+         {"substeps", &Integrator::substeps, {"a whole number >= 1", 1}},
+         {"tolerance"},
+         {"min_dt", &Integrator::min_dt, not_negative},
+         {"max_dt", &Integrator::max_dt, positive},
+         {"error"},
+         {"compensated", &Integrator::compensated},
+         {"energy_guard", &Integrator::energy_guard},
+         {"energy_control", &Integrator::energy_control},
+         {"refuse_unstable", &Integrator::refuse_unstable},
+         {"until_torque", &Integrator::until_torque, positive}});
   }
 };
 
@@ -128,6 +136,11 @@ struct Integrator {
 struct Thermal {
   double temperature = 0;  ///< kB T over the energy of a site, >= 0
   std::int64_t seed = 0;
+
+  static constexpr auto keys() {
+    return std::to_array<Key<Thermal>>({{"temperature", &Thermal::temperature, not_negative, true},
+                                        {"seed", &Thermal::seed, {"a whole number >= 0", 0}}});
+  }
 };
 
 /// How often a run stores what it needs to go on with the same bits, in FILE.checkpoint.h5: after
@@ -151,9 +164,17 @@ struct Output {
   bool sync = false;               ///< a power cut loses at most the frame being written
   CheckpointPeriod checkpoint_every;
 
-  static constexpr auto flags() {
-    return std::to_array<Flag<Output>>(
-        {{"xdmf", &Output::xdmf}, {"table", &Output::table}, {"sync", &Output::sync}});
+  static constexpr auto keys() {
+    return std::to_array<Key<Output>>(
+        {{"file"},
+         {"every", &Output::every, {"a whole number of steps >= 1", 1}},
+         {"scalars_every", &Output::scalars_every, {"a whole number of steps >= 1", 1}},
+         {"compression", &Output::compression, {"a level from 0 (none) to 9", 0, 9}},
+         {"chunk", &Output::chunk, {"a whole number of planes along z >= 1", 1}},
+         {"checkpoint_every"},
+         {"xdmf", &Output::xdmf},
+         {"table", &Output::table},
+         {"sync", &Output::sync}});
   }
 };
 

@@ -37,19 +37,54 @@ std::span<Word<Value> const> words();
 
 /// The kinds of system.
 template <>
-std::span<Word<SystemKind> const> words();
+inline std::span<Word<SystemKind> const> words() {
+  static constexpr Word<SystemKind> all[] = {
+      {"llg", SystemKind::llg},
+      {"rigid_body", SystemKind::rigid_body},
+  };
+  return all;
+}
 /// The boundaries of an axis.
 template <>
-std::span<Word<BoundaryKind> const> words();
+inline std::span<Word<BoundaryKind> const> words() {
+  static constexpr Word<BoundaryKind> all[] = {
+      {"open", BoundaryKind::open},
+      {"periodic", BoundaryKind::periodic},
+  };
+  return all;
+}
 /// The generators.
 template <>
-std::span<Word<Generator> const> words();
+inline std::span<Word<Generator> const> words() {
+  static constexpr Word<Generator> all[] = {
+      {"default", Generator::standard},
+      {"orthogonal", Generator::orthogonal},
+      {"tangent", Generator::tangent},
+  };
+  return all;
+}
 /// The isotropies.
 template <>
-std::span<Word<Isotropy> const> words();
+inline std::span<Word<Isotropy> const> words() {
+  static constexpr Word<Isotropy> all[] = {
+      {"zero", Isotropy::zero},
+      {"constant", Isotropy::constant},
+      {"analytic", Isotropy::analytic},
+      {"finite_difference", Isotropy::finite_difference},
+      {"finite_difference_backward", Isotropy::finite_difference_backward},
+      {"energy", Isotropy::energy},
+  };
+  return all;
+}
 /// The rotations.
 template <>
-std::span<Word<Rotation> const> words();
+inline std::span<Word<Rotation> const> words() {
+  static constexpr Word<Rotation> all[] = {
+      {"cayley", Rotation::cayley},
+      {"exponential", Rotation::exponential},
+  };
+  return all;
+}
 
 /// The scene's spelling of a value.
 template <class Value>

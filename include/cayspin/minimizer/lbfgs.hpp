@@ -5,7 +5,6 @@
 #include <cayspin/minimizer/preconditioner.hpp>
 #include <cayspin/minimizer/trial.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -49,94 +48,62 @@ class Lbfgs {
                  SearchArrays<Spins> const& search, double torque) {
     using Products = ProductsOfPairs<Real>;
     int const count = static_cast<int>(pairs_.count());
-    Products products{};
-    products.spins = spins.array();
-    products.gradient = search.gradient.array();
-    products.count = count;
-    std::copy_n(preconditioner_.couplings().begin(), 3, products.couplings);
-    pairs_.arrays(products.steps, products.changes);
+    auto const m = spins.array(), gradient = search.gradient.array();
+    auto const steps = pairs_.steps(), changes = pairs_.changes();
+    auto const& [x, y, z] = preconditioner_.couplings();
     std::array<double, Products::count_of_values> p{};
-    if (count > 0)
-      p = reduce_sites<Sum, Products::count_of_values>(exec, "cayspin::minimize::products",
-                                                       spins.layout(), products);
-    auto const at = [&](int i) { return p[static_cast<std::size_t>(i)]; };
-    auto const product = [&](int i) { return pairs_.product(static_cast<std::size_t>(i)); };
-    if (count > 0)
-      preconditioner_.follow_curvature(product(count - 1), p.back(), step_square_, torque);
+    if (count > 0) {
+      p = reduce_sites<Sum, Products::count_of_values>(
+          exec, "cayspin::minimize::products", spins.layout(),
+          Products{m, gradient, steps, changes, count, {x, y, z}});
+      preconditioner_.follow_curvature(pairs_.product(count - 1), p.back(), step_square_, torque);
+    }
 
-    std::array<double, pairs_kept> alpha{}, weights{};
-    auto const index = [](int i) { return static_cast<std::size_t>(i); };
+    OfPairs<double> alpha{}, weights{};
+    OfPairs<Real> alpha_of_kernel{};
     for (int i = count; i-- > 0;) {
-      double sum = at(i);
-      for (int j = i + 1; j < count; ++j) sum -= alpha[index(j)] * at(Products::of(i, j));
-      alpha[index(i)] = sum / product(i);
+      double sum = p[i];
+      for (int j = i + 1; j < count; ++j) sum -= alpha[j] * p[Products::of(i, j)];
+      alpha[i] = sum / pairs_.product(i);
+      alpha_of_kernel[i] = static_cast<Real>(alpha[i]);
     }
-    WithoutChanges<Real> without{};
-    without.spins = spins.array();
-    without.gradient = search.gradient.array();
-    without.count = count;
-    without.output = changes_left_.output(false);
-    for (std::size_t i = 0; i < pairs_kept; ++i) {
-      without.changes[i] = products.changes[i];
-      without.weights[i] = static_cast<Real>(alpha[i]);
-    }
-    for_each_site<Real>(exec, "cayspin::minimize::without_changes", spins.layout(), without);
+    for_each_site<Real>(exec, "cayspin::minimize::without_changes", spins.layout(),
+                        WithoutChanges<Real>{m, gradient, changes, alpha_of_kernel, count,
+                                             changes_left_.output(false)});
 
-    double const scale = count > 0 ? scale_of_preconditioner(exec, spins, products) : 1;
+    double const scale = count > 0 ? scale_of_preconditioner(exec, spins) : 1;
     preconditioner_.apply(exec, changes_left_, preconditioned_);
-    std::array<double, pairs_kept> along{};
-    if (count > 0) along = products_with_changes(exec, spins, preconditioned_, products);
-    for (int i = 0; i < count; ++i) {
-      double beta = scale * along[index(i)];
-      for (int j = 0; j < i; ++j) beta += weights[index(j)] * at(Products::of(j, i));
-      weights[index(i)] = alpha[index(i)] - beta / product(i);
-    }
-    return combine(exec, spins, moves, search, scale, weights, products);
-  }
-
- private:
-  template <class Exec>
-  Direction combine(Exec const& exec, Spins const& spins, Moves const& moves,
-                    SearchArrays<Spins> const& search, double scale,
-                    std::array<double, pairs_kept> const& weights,
-                    ProductsOfPairs<Real> const& products) const {
-    DirectionWithSteps<Real> with{};
-    with.spins = spins.array();
-    with.gradient = search.gradient.array();
-    with.vectors = preconditioned_.array();
-    with.moves = moves.array();
-    with.scale = scale;
-    with.count = products.count;
-    with.direction = search.direction.array();
-    for (std::size_t i = 0; i < pairs_kept; ++i) {
-      with.steps[i] = products.steps[i];
-      with.weights[i] = weights[i];
+    if (count > 0) {
+      auto const along = products_with_changes(exec, spins);
+      for (int i = 0; i < count; ++i) {
+        double beta = scale * along[i];
+        for (int j = 0; j < i; ++j) beta += weights[j] * p[Products::of(j, i)];
+        weights[i] = alpha[i] - beta / pairs_.product(i);
+      }
     }
     auto const [slope, square] = reduce_sites<SumsThenMaxima<1>, 2>(
-        exec, "cayspin::minimize::direction", spins.layout(), with);
+        exec, "cayspin::minimize::direction", spins.layout(),
+        DirectionWithSteps<Real>{m, gradient, preconditioned_.array(), moves.array(), steps,
+                                 weights, scale, count, search.direction.array()});
     return {slope, std::sqrt(square)};
   }
 
+ private:
+  /// Of what is preconditioned.
   template <class Exec>
-  std::array<double, pairs_kept> products_with_changes(Exec const& exec, Spins const& spins,
-                                                       Spins const& vectors,
-                                                       ProductsOfPairs<Real> const& products) {
-    ProductsWithChanges<Real> kernel{};
-    kernel.spins = spins.array();
-    kernel.vectors = vectors.array();
-    kernel.count = products.count;
-    std::copy_n(products.changes, pairs_kept, kernel.changes);
+  auto products_with_changes(Exec const& exec, Spins const& spins) const {
     return reduce_sites<Sum, static_cast<int>(pairs_kept)>(
-        exec, "cayspin::minimize::products_with_changes", spins.layout(), kernel);
+        exec, "cayspin::minimize::products_with_changes", spins.layout(),
+        ProductsWithChanges<Real>{spins.array(), preconditioned_.array(), pairs_.changes(),
+                                  static_cast<int>(pairs_.count())});
   }
 
   /// s.y / y.P y of the last pair.
   template <class Exec>
-  double scale_of_preconditioner(Exec const& exec, Spins const& spins,
-                                 ProductsOfPairs<Real> const& products) {
+  double scale_of_preconditioner(Exec const& exec, Spins const& spins) {
     std::size_t const last = pairs_.count() - 1;
     preconditioner_.apply(exec, pairs_.change(last), preconditioned_);
-    double const along = products_with_changes(exec, spins, preconditioned_, products)[last];
+    double const along = products_with_changes(exec, spins)[last];
     double const scale = pairs_.product(last) / along;
     return along > 0 && std::isfinite(scale) ? scale : 1;
   }

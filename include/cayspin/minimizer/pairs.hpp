@@ -17,9 +17,11 @@ namespace cayspin::inline v0_1::detail {
 
 inline constexpr std::size_t pairs_kept = 6;
 
+template <class Number>
+using OfPairs = Kokkos::Array<Number, pairs_kept>;
 /// Arrays of the pairs, oldest first. Behind the last one stand others, which `count` leaves out.
 template <class Real>
-using PairArrays = SiteArray<Real, 3>[pairs_kept];
+using PairArrays = OfPairs<SiteArray<Real, 3>>;
 
 /// s_i.g, and s_i.y_j for i < j; then the energy of the last step in the exchange.
 template <class Real>
@@ -33,7 +35,7 @@ struct ProductsOfPairs {
   SiteArray<Real, 3> spins, gradient;
   PairArrays<Real> steps, changes;
   int count;
-  double couplings[3];  // where negative, of neighbours that want to be opposite
+  Kokkos::Array<double, 3> couplings;  // where negative, of neighbours that want to be opposite
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -69,7 +71,7 @@ template <class Real>
 struct WithoutChanges {
   SiteArray<Real, 3> spins, gradient;
   PairArrays<Real> changes;
-  Real weights[pairs_kept];
+  OfPairs<Real> weights;
   int count;
   OutputArray<Real, 3> output;
 
@@ -105,7 +107,8 @@ struct DirectionWithSteps {
   SiteArray<Real, 3> spins, gradient, vectors;
   SiteArray<Real, 1> moves;
   PairArrays<Real> steps;
-  double scale, weights[pairs_kept];
+  OfPairs<double> weights;
+  double scale;
   int count;
   SiteArray<Real, 3> direction;
 
@@ -132,8 +135,6 @@ class Pairs {
       : steps_(numbered_fields<Spins, pairs_kept + 1>(name + "::step", lattice)),
         changes_(numbered_fields<Spins, pairs_kept + 1>(name + "::change", lattice)) {}
 
-  std::size_t bytes() const { return (pairs_kept + 1) * (steps_[0].bytes() + changes_[0].bytes()); }
-
   /// Room for a pair that may be kept or not.
   Spins const& next_step() const { return steps_[count_]; }
   Spins const& next_change() const { return changes_[count_]; }
@@ -157,15 +158,19 @@ class Pairs {
   Spins const& step(std::size_t i) const { return steps_[i]; }
   Spins const& change(std::size_t i) const { return changes_[i]; }
 
-  void arrays(PairArrays<Real>& steps, PairArrays<Real>& changes) const {
-    for (std::size_t i = 0; i < pairs_kept; ++i) {
-      steps[i] = steps_[i].array();
-      changes[i] = changes_[i].array();
-    }
-  }
+  PairArrays<Real> steps() const { return arrays_of(steps_); }
+  PairArrays<Real> changes() const { return arrays_of(changes_); }
 
  private:
-  std::array<Spins, pairs_kept + 1> steps_, changes_;
+  using Fields = std::array<Spins, pairs_kept + 1>;
+
+  static PairArrays<Real> arrays_of(Fields const& fields) {
+    PairArrays<Real> arrays;
+    for (std::size_t i = 0; i < pairs_kept; ++i) arrays[i] = fields[i].array();
+    return arrays;
+  }
+
+  Fields steps_, changes_;
   std::array<double, pairs_kept + 1> products_{};
   std::size_t count_ = 0;
 };

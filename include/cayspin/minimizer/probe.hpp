@@ -131,18 +131,13 @@ FieldStrengths probe(
   auto const parallel = look_at({});
   double rests = parallel[2];
   bool is_frustrated = false;
-  auto const sites = static_cast<double>(lattice.sites());
-  found.rest = std::sqrt(parallel[1] / sites);
+  found.rest = std::sqrt(parallel[1] / static_cast<double>(lattice.sites()));
   for (int axis = 0; axis < 3; ++axis) {
     if (!lattice.has_neighbors(axis)) continue;
     auto const i = static_cast<std::size_t>(axis);
-    auto const extent = static_cast<double>(lattice.shape[i]);
     // Each bond between opposite spins takes 4 J from the sum of m.H.
-    bool const closes = lattice.boundary[i] == Boundary::periodic && lattice.shape[i] % 2 == 0;
-    double const bonds = sites / extent * (extent - (closes ? 0 : 1));
-    AlternatingSigns signs;
-    signs.along[i] = true;
-    auto const opposed = look_at(signs);
+    double const bonds = opposed_bonds(lattice, axis);
+    auto const opposed = look_at(AlternatingSigns::along_axis(axis));
     rests = opposed[2];
     double const coupling = (parallel[0] - opposed[0]) / (4 * bonds);
     bool const is_noise = !(4 * bonds * std::abs(coupling) > 1e-5 * std::abs(parallel[0]));

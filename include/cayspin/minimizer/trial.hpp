@@ -4,7 +4,6 @@
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/narrowing_store.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
-#include <cayspin/detail/widening_load.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/scalars.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/memory.hpp>
+#include <cayspin/lattice.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +13,11 @@ namespace cayspin::inline v0_1::detail {
 struct AlternatingSigns {
   bool along[3] = {false, false, false};
 
+  static AlternatingSigns along_axis(int axis) {
+    AlternatingSigns signs;
+    signs.along[axis] = true;
+    return signs;
+  }
   bool any() const { return along[0] || along[1] || along[2]; }
 
   /// Of site 0 of a row.
@@ -31,5 +37,14 @@ struct AlternatingSigns {
     return load<Value>(signs);
   }
 };
+
+/// The bonds along an axis between sites of other signs, where signs alternate along it: all of
+/// them, but for those that close an odd ring.
+inline double opposed_bonds(Lattice const& lattice, int axis) {
+  auto const extent = lattice.shape[static_cast<std::size_t>(axis)];
+  bool const closes =
+      lattice.boundary[static_cast<std::size_t>(axis)] == Boundary::periodic && extent % 2 == 0;
+  return static_cast<double>(lattice.sites() / extent * (extent - (closes ? 0 : 1)));
+}
 
 }  // namespace cayspin::inline v0_1::detail

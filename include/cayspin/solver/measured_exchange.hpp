@@ -2,37 +2,31 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
-#include <cayspin/detail/narrowing_store.hpp>
+#include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/solver/alternating_signs.hpp>
 #include <cayspin/spin_field.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 
 namespace cayspin::inline v0_1::detail {
 
-/// z + sign (-1)^(index along `axis`) x on every site; uniform where axis is 3.
+/// z + amplitude sign x on every site.
 template <class Real>
 struct FillWaves {
-  RowLayout layout;
-  int axis;
-  Real sign;
-  SiteArray<Real, 3> to;
+  AlternatingSigns signs;
+  Real amplitude;
+  OutputArray<Real, 3> output;
 
-  KOKKOS_FUNCTION void operator()(std::int64_t site) const {
-    std::int64_t const row = site / layout.nx;
-    std::int64_t const index = axis == 0   ? site % layout.nx
-                               : axis == 1 ? row % layout.ny
-                               : axis == 2 ? row / layout.ny
-                                           : 0;
-    std::ptrdiff_t const at = layout.offset(site);
-    to.data[at] = index % 2 == 0 ? sign : -sign;
-    to.data[to.stride + at] = 0;
-    to.data[2 * to.stride + at] = 1;
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Value const wave = Value(amplitude) * signs.template at<Value>(site);
+    site.store(Vec3<Value>{wave, Value(Real(0)), Value(Real(1))}, output);
   }
 };
 
@@ -65,18 +59,17 @@ struct MeasuredExchange {
   int measure(Exec const& exec, std::string const& label, Generator const& generator,
               Spins const& work, double t) {
     auto const& lattice = work.lattice();
-    auto const uniform = response(exec, label, generator, work, t, 3);
+    auto const uniform = response(exec, label, generator, work, t, {});
     std::array<double, 3> precessing{}, damped{};
     int evaluations = 2;
     double total_precessing = 0, total_damped = 0;
     for (int axis = 0; axis < 3; ++axis) {
       if (!lattice.has_neighbors(axis)) continue;
       auto const i = static_cast<std::size_t>(axis);
-      auto const answer = response(exec, label, generator, work, t, axis);
+      auto const answer =
+          response(exec, label, generator, work, t, AlternatingSigns::along_axis(axis));
       evaluations += 2;
-      bool const closes = lattice.boundary[i] == Boundary::periodic && lattice.shape[i] % 2 == 0;
-      double const bonds = static_cast<double>(lattice.sites() / lattice.shape[i]) *
-                           static_cast<double>(lattice.shape[i] - (closes ? 0 : 1));
+      double const bonds = opposed_bonds(lattice, axis);
       auto const coupling = [&](double from_uniform, double from_waves) {
         double const difference = from_uniform - from_waves;
         bool const is_noise = std::abs(difference) < 1e-5 * std::abs(from_uniform);
@@ -98,12 +91,12 @@ struct MeasuredExchange {
   template <class Exec, class Generator, class Spins>
   static std::array<double, 2> response(Exec const& exec, std::string const& label,
                                         Generator const& generator, Spins const& work, double t,
-                                        int axis) {
+                                        AlternatingSigns const& signs) {
     using Real = typename Spins::value_type;
     std::array<double, 2> sum{};
-    for (Real const sign : {Real(1), Real(-1)}) {
-      for_each_task(exec, label, work.sites(), work.sites(),
-                    FillWaves<Real>{work.layout(), axis, sign, work.array()});
+    for (Real const amplitude : {Real(1), Real(-1)}) {
+      for_each_site<Real>(exec, label, work.layout(),
+                          FillWaves<Real>{signs, amplitude, work.output(false)});
       auto prepared = prepare_term(generator, exec, work, t);
       auto const values = reduce_sites<Sum, 2>(
           exec, label, work.layout(),

@@ -154,17 +154,17 @@ class Multigrid {
                   CellArray<OutReal, 3> const& out) const {
     launch.template run<Real>(
         relax_label_, level.layout,
-        RelaxZero<Operation, Real, Real, OutReal>{level.grid.extent[0], operation,
-                                                  cells_of<right_components>(level.right), out});
+        RelaxZero<Operation, Real, OutReal>{level.grid.extent[0], operation,
+                                            cells_of<right_components>(level.right), out});
   }
   template <bool Residual, class Launch, class OutReal>
   void relax(Launch const& launch, Level const& level, Operation const& operation, Field const& u,
              CellArray<OutReal, 3> const& out) const {
     launch.template run<Real>(
         Residual ? residual_label_ : relax_label_, level.layout,
-        RelaxCells<Operation, Residual, Real, Real, OutReal>{
-            level.grid, operation, cells_of<3>(u), cells_of<right_components>(level.right), out,
-            level.grid.periodic[0]});
+        RelaxCells<Operation, Residual, Real, OutReal>{level.grid, operation, cells_of<3>(u),
+                                                       cells_of<right_components>(level.right), out,
+                                                       level.grid.periodic[0]});
   }
 
   template <class Launch, int Components>
@@ -180,12 +180,12 @@ class Multigrid {
       if (axis == 0)
         launch.template run<Real>(
             restrict_label_, to.layout(),
-            RestrictAlongRows<Real, Real, Components>{level.grid.extent[0], numbers.coarse_cells,
-                                                      numbers, source, target});
+            RestrictAlongRows<Real, Components>{level.grid.extent[0], numbers.coarse_cells, numbers,
+                                                source, target});
       else
-        launch.template run<Real>(restrict_label_, to.layout(),
-                                  RestrictRows<Real, Real, Components>{
-                                      axis, level.grid.extent[axis], numbers, source, target});
+        launch.template run<Real>(
+            restrict_label_, to.layout(),
+            RestrictRows<Real, Components>{axis, level.grid.extent[axis], numbers, source, target});
       from = &to;
     }
   }

@@ -97,12 +97,12 @@ struct ShiftedSpinWaves {
 };
 
 /// out = u after a relaxation, or what is left of the right side.
-template <class Operation, bool Residual, class Real, class RightReal, class OutReal>
+template <class Operation, bool Residual, class Real, class OutReal>
 struct RelaxCells {
   CellGrid<Real> grid;
   Operation operation;
   CellArray<Real, 3> u;
-  CellArray<RightReal, Operation::right_components> right;
+  CellArray<Real, Operation::right_components> right;
   CellArray<OutReal, 3> out;
   bool goes_around;  // where x is periodic
 
@@ -167,11 +167,11 @@ struct KeepAcross {
 };
 
 /// out = the relaxation of zero.
-template <class Operation, class Real, class RightReal, class OutReal>
+template <class Operation, class Real, class OutReal>
 struct RelaxZero {
   std::int32_t nx;
   Operation operation;
-  CellArray<RightReal, Operation::right_components> right;
+  CellArray<Real, Operation::right_components> right;
   CellArray<OutReal, 3> out;
 
   template <class Value>

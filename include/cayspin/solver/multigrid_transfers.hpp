@@ -22,13 +22,12 @@ KOKKOS_FORCEINLINE_FUNCTION void clear_beside_row(Real* row, std::int32_t nx) {
 
 /// Restriction along y or z: `to` has about half the cells along the axis. Components from the
 /// fourth one on are means.
-template <class Real, class FromReal, int Components>
+template <class Real, int Components>
 struct RestrictRows {
   int axis;
   std::int32_t extent;  // of the fine grid
   CellAxisArrays<Real> numbers;
-  CellArray<FromReal, Components> from;
-  CellArray<Real, Components> to;
+  CellArray<Real, Components> from, to;
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(CellPlace const& place) const {
@@ -36,7 +35,7 @@ struct RestrictRows {
     CellPlace first = place;
     (axis == 1 ? first.y : first.z) = 0;
     std::ptrdiff_t const stride = stride_along(from, axis);
-    FromReal const* const source = from.at(first);
+    Real const* const source = from.at(first);
     Real* const target = to.at(place);
     for (int component = 0; component < Components; ++component) {
       Value sum(0);
@@ -54,27 +53,24 @@ struct RestrictRows {
 };
 
 /// Restriction along x.
-template <class Real, class FromReal, int Components>
+template <class Real, int Components>
 struct RestrictAlongRows {
   std::int32_t extent, coarse_extent;
   CellAxisArrays<Real> numbers;
-  CellArray<FromReal, Components> from;
-  CellArray<Real, Components> to;
+  CellArray<Real, Components> from, to;
 
   KOKKOS_FORCEINLINE_FUNCTION void row(CellPlace const& place, std::int32_t) const {
     std::int32_t const cells = coarse_extent;
     Real const *const w0 = numbers.weights, *const w1 = w0 + cells, *const w2 = w1 + cells,
                       *const w3 = w2 + cells;
     for (int component = 0; component < Components; ++component) {
-      FromReal const* const source = from.at(place) + component * from.stride;
+      Real const* const source = from.at(place) + component * from.stride;
       Real* const target = to.at(place) + component * to.stride;
       target[0] = sum(source, 0);
       CAYSPIN_DETAIL_INDEPENDENT
       for (std::int32_t i = 1; i < cells - 2; ++i)
-        target[i] = w0[i] * static_cast<Real>(source[2 * i - 1]) +
-                    w1[i] * static_cast<Real>(source[2 * i]) +
-                    w2[i] * static_cast<Real>(source[2 * i + 1]) +
-                    w3[i] * static_cast<Real>(source[2 * i + 2]);
+        target[i] = w0[i] * source[2 * i - 1] + w1[i] * source[2 * i] + w2[i] * source[2 * i + 1] +
+                    w3[i] * source[2 * i + 2];
       // The last coarse cell may hold three, and the one before it reach into these.
       for (std::int32_t i = cells > 3 ? cells - 2 : 1; i < cells; ++i) target[i] = sum(source, i);
       Real const* const mean = numbers.mean;
@@ -95,11 +91,11 @@ struct RestrictAlongRows {
   }
 
  private:
-  KOKKOS_FORCEINLINE_FUNCTION Real sum(FromReal const* source, std::int32_t coarse) const {
+  KOKKOS_FORCEINLINE_FUNCTION Real sum(Real const* source, std::int32_t coarse) const {
     Real sum = 0;
     for (std::int32_t k = 0; k < static_cast<std::int32_t>(CellAxis::reach); ++k)
       sum += numbers.weights[k * coarse_extent + coarse] *
-             static_cast<Real>(source[(2 * coarse + k + extent - 1) % extent]);
+             source[(2 * coarse + k + extent - 1) % extent];
     return sum;
   }
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/device_site.hpp>
-#include <cayspin/detail/no_unique_address.hpp>
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 #include <cayspin/detail/unrolled.hpp>

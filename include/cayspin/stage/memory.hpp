@@ -5,7 +5,6 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/sweep.hpp>
-#include <cayspin/stage/sweep_buffers.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +21,7 @@ class StageMemory {
  public:
   using Real = typename Spins::value_type;
   static constexpr int stages = Tableau::stages;
+  static constexpr int fields_of_passes = work_fields<Tableau, Update>();
 
   void allocate_fields(std::string const& name, Lattice const& lattice) {
     *this = {};
@@ -58,6 +58,14 @@ class StageMemory {
     constexpr std::size_t distinct = keeps_sum<Tableau, Update> ? 1 : stages;
     for (std::size_t i = 0; i < distinct; ++i) sum += increments_[i].bytes();
     return sum;
+  }
+
+  static std::size_t bytes_of_passes(RowLayout const& layout) {
+    return fields_of_passes * layout.allocation(3) * sizeof(Real);
+  }
+  static std::size_t bytes_of_sweep(RowLayout const& layout, SweepPlan const& plan) {
+    std::size_t const fields = 1 + carried_fields<Update>();
+    return fields * layout.allocation(3) * sizeof(Real) + Buffers::bytes(plan);
   }
 
   /// Sets the fields that the step before left to zero.

@@ -5,7 +5,6 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/arrays.hpp>
 #include <cayspin/stage/sweep.hpp>
-#include <cayspin/stage/sweep_buffers.hpp>
 #include <cayspin/stepper/adaptive_stage.hpp>
 
 #include <algorithm>
@@ -35,12 +34,12 @@ struct AdaptiveMemory {
         increments(numbered_fields<Spins, std::size_t{stages - 1}>(name + "::increment", lattice)),
         square(name + "::squared_error", lattice) {}
 
-  void allocate_level(std::string const& name, Lattice const& lattice) {
+  void allocate_fields(std::string const& name, Lattice const& lattice) {
     level = Spins(name + "::level", lattice);
     buffers_ = {};
     streaming_ = exceeds_caches<DefaultExec>(begin.bytes() + bytes());
   }
-  void allocate_buffers(std::string const& name, SweepPlan const& plan) {
+  void allocate_buffers(std::string const& name, Lattice const&, SweepPlan const& plan) {
     level = {};
     buffers_ = Buffers("cayspin::" + name, plan);
     std::size_t const in_use = 4 * begin.bytes() + square.bytes() + buffers_.bytes();
@@ -104,7 +103,6 @@ struct AdaptiveMemory {
 
   template <class Loop>
   void set(Loop& loop) const {
-    loop.start = begin.array();
     loop.next = end.output(streaming_);
     buffers_.set(loop);
   }

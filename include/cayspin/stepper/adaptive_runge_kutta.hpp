@@ -9,25 +9,28 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stage/pass.hpp>
-#include <cayspin/stage/sweep.hpp>
 #include <cayspin/stage/update.hpp>
 #include <cayspin/stepper/adaptive_memory.hpp>
 #include <cayspin/stepper/adaptive_stage.hpp>
+#include <cayspin/stepper/staged_stepper.hpp>
 #include <cayspin/stepper/step_control.hpp>
-#include <cayspin/stepper/stepper_base.hpp>
 #include <cayspin/stepper/tableau.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
 
 namespace cayspin::inline v0_1 {
+
+namespace detail {
+template <class Spins, class Embedded, class Update, class Isotropy>
+using AdaptiveStages =
+    StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, Update, Isotropy,
+                  AdaptiveMemory<Spins, tableau::FirstSameAsLast<Embedded>, Update>>;
+}  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
 /// angle of any spin between the two solutions, and is kept below the tolerance.
@@ -35,80 +38,32 @@ namespace cayspin::inline v0_1 {
 /// the group. The method's own steps do not depend on dt. It remembers its state: `spins` and t
 /// must be those at the end of the step before. Otherwise call `reset`.
 template <class Spins, class Embedded, class Update, class Isotropy = isotropy::Zero>
-class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
-  using Base = detail::StepperBase<Spins>;
+class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>,
+                           public detail::OwnSteps {
+  using Base = detail::AdaptiveStages<Spins, Embedded, Update, Isotropy>;
   using Tableau = tableau::FirstSameAsLast<Embedded>;
-  using Memory = detail::AdaptiveMemory<Spins, Tableau, Update>;
-  static constexpr int stages = Tableau::stages;
 
  public:
   using typename Base::Real;
   static constexpr int order = Embedded::order;
-  static constexpr int ghosts = Tableau::stages;
-  /// Fields of three numbers per site when stages go one by one, beside a number per site.
-  static constexpr int work_fields = Memory::fields_of_passes;
 
   /// Throws std::invalid_argument for invalid options, for example a tolerance below 32 epsilon of
   /// the precision.
   AdaptiveRungeKutta(std::string const& name, Spins const& like, StepOptions const& options,
                      Isotropy isotropy = {})
-      : Base(name, like.lattice(), ghosts),
-        name_(name),
-        isotropy_(isotropy),
-        options_(options),
-        controller_(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
-                    "cayspin::" + name),
-        plan_(Sweeps::plan(like.layout(), DefaultExec().concurrency())),
-        memory_(name, like.lattice()) {
-    use(Sweeps::sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep
-                                                                             : Path::pass);
-  }
+      : Base(name, like, isotropy, {name, like.lattice()}),
+        OwnSteps(options, Embedded::embedded_order + 1, StepOptions::least_tolerance<Real>(),
+                 "cayspin::" + name) {}
 
-  /// Takes this path from now on instead of the automatic choice, and allocates its memory.
-  /// Throws std::invalid_argument when the fields cannot be swept.
-  void use(Path path) {
-    if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
-    path_ = path;
-    if constexpr (Sweeps::possible) {
-      if (path == Path::sweep) return memory_.allocate_buffers(name_, plan_);
-    }
-    memory_.allocate_level(name_, this->lattice_);
-  }
-  Path path() const { return path_; }
-
-  std::size_t work_bytes() const { return memory_.bytes(); }
-  /// Predicted bytes of work memory with so many threads. `by_time_alone`: the generator needs the
-  /// time alone to be made ready (cayspin::Generator).
-  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
-    auto const layout = detail::RowLayout::of<Real>(lattice);
-    if (!by_time_alone || !Sweeps::sweeps_by_itself(layout, threads))
-      return Memory::bytes_of_passes(layout);
-    return Memory::bytes_of_sweep(layout, Sweeps::plan(layout, threads));
-  }
-
-  /// Evaluations of the generator so far, and own steps accepted and rejected.
+  /// Evaluations of the generator so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
-  std::int64_t accepted_steps() const { return accepted_; }
-  std::int64_t rejected_steps() const { return rejected_; }
-  /// The dt of the next own step.
-  double next_dt() const { return next_dt_; }
-
-  /// Forgets the run so far: the next step begins at its own t and spins.
-  void reset() { running_ = false; }
 
   /// For cayspin::exchange_memory: the own step under way, and what chooses the next one.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     visit("evaluations", evaluations_done_);
-    visit("accepted", accepted_);
-    visit("rejected", rejected_);
-    visit("running", running_);
-    if (!running_) return;
-    controller_.visit_memory(visit);
+    if (!visit_steps(visit)) return;
     visit("begin_time", begin_time_);
-    visit("end_time", end_time_);
-    visit("dt", dt_);
-    visit("next_dt", next_dt_);
     memory_.visit(visit);
   }
 
@@ -118,18 +73,15 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
-    double const asked = t + dt, slack = 1e-9 * std::abs(dt);
-    if (!(dt >= 0) || !(asked <= options_.end + slack))
-      throw std::invalid_argument(
-          this->label("::step: dt must not be negative, nor t + dt beyond the end of the options"));
-    if (!running_) begin(exec, generator, spins, t, dt);
-    while (end_time_ < asked - slack) take_step(exec, generator, asked);
+    double const asked = t + dt;
+    go_on_to(
+        t, dt, [&] { begin(exec, generator, spins, t, dt); },
+        [&] { take_step(exec, generator, asked); });
     deliver(exec, spins, asked);
   }
 
  private:
-  using DefaultExec = typename Spins::memory_space::execution_space;
-  using Sweeps = detail::SweepChoice<Spins, Tableau, Update, work_fields>;
+  using Base::stages, Base::labels_, Base::isotropy_, Base::memory_;
   static constexpr std::make_integer_sequence<int, stages - 2> stages_between{};
 
   template <class Exec, class Generator>
@@ -143,35 +95,24 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
                                     std::move(prepared), isotropy_, start.array(),
                                     memory_.last.output(false), memory_.square.output(false)});
     ++evaluations_done_;
-    controller_.reset();
-    next_dt_ = controller_.first_dt(std::sqrt(largest_square(exec)), asked);
-    begin_time_ = end_time_ = t;
-    running_ = true;
+    begin_run(t, std::sqrt(largest_square(exec)), asked);
+    begin_time_ = t;
   }
 
   /// The next own step, from the end of the last one, towards a time that is asked for.
   template <class Exec, class Generator>
   void take_step(Exec const& exec, Generator const& generator, double asked) {
     memory_.exchange_begin_and_end();
-    double const t = end_time_;
-    while (true) {
-      double const dt = detail::step_within(options_.end - t, next_dt_);
-      if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
-      double const error = try_step(exec, generator, t, dt, asked);
-      double const on = controller_.next_dt(dt, error);
-      if (controller_.accepts(error)) {
-        detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
-        next_dt_ = std::max(on, options_.min_dt);
-        begin_time_ = t;
-        end_time_ = t + dt;
-        dt_ = dt;
-        ++accepted_;
-        return;
-      }
-      ++rejected_;
-      next_dt_ = on;
-      if (!(on >= detail::least_step(options_, t)) || on == 0) give_up(t, on);
+    double const begin_time = end_time_;
+    try {
+      take_own_step(
+          [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, asked)}; });
+    } catch (StepTooSmall const&) {
+      memory_.exchange_begin_and_end();
+      throw;
     }
+    begin_time_ = begin_time;
+    detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
   }
 
   /// The error of a step: an angle.
@@ -181,9 +122,9 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
     bool at_once = false;
     if constexpr (detail::is_host_execution<Exec>) {
       bool const by_time = detail::needs_time_alone(generator, exec, memory_.begin);
-      if (path_ == Path::sweep && !by_time) use(Path::pass);
-      if constexpr (Sweeps::possible) {
-        if (path_ == Path::sweep) {
+      if (this->path() == Path::sweep && !by_time) this->use(Path::pass);
+      if constexpr (Base::Sweeps::possible) {
+        if (this->path() == Path::sweep) {
           sweep(exec, generator, t, dt, ends_beyond(asked, t + dt, dt));
           return error(exec);
         }
@@ -242,11 +183,7 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
              bool keeps_increments) const {
     with_kernels(exec, generator, t, dt, memory_.outputs_of_sweep(keeps_increments),
                  [&]<class... Kernel>(Kernel const&... kernel) {
-                   detail::SweepLoop<Tableau, Update, Real, Kernel...> loop{
-                       {kernel...}, plan_, {}, {}, {}, nullptr, nullptr};
-                   memory_.set(loop);
-                   detail::for_each_task(exec, sweep_label_, plan_.tasks(), memory_.begin.sites(),
-                                         loop);
+                   this->sweep_through(exec, memory_.begin, std::tuple(kernel...));
                  });
   }
 
@@ -301,26 +238,11 @@ class AdaptiveRungeKutta : public detail::StepperBase<Spins> {
         detail::LargestOfSites<Real>{memory_.square.array()})[0];
   }
 
-  [[noreturn]] void give_up(double t, double dt) {
-    memory_.exchange_begin_and_end();
-    detail::throw_step_too_small(this->label(""), t, dt);
-  }
-
-  std::string name_,
-      begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
-      dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
-      step_label_ = this->label("::all_stages"), sweep_label_ = this->label("::sweep");
-  std::array<std::string, std::size_t{stages}> labels_ =
-      this->template stage_labels<std::size_t{stages}>();
-  Isotropy isotropy_;
-  StepOptions options_;
-  detail::StepController controller_;
-  detail::SweepPlan plan_;
-  Path path_ = Path::pass;
-  Memory memory_;
-  bool running_ = false;
-  double begin_time_ = 0, end_time_ = 0, dt_ = 0, next_dt_ = 0;
-  std::int64_t evaluations_done_ = 0, accepted_ = 0, rejected_ = 0;
+  std::string begin_label_ = this->label("::begin"), end_label_ = this->label("::end"),
+              dense_label_ = this->label("::dense_output"), error_label_ = this->label("::error"),
+              step_label_ = this->label("::all_stages");
+  double begin_time_ = 0;  // of the last own step
+  std::int64_t evaluations_done_ = 0;
 };
 
 /// Adaptive Runge-Kutta-Munthe-Kaas: the embedded tableau in the Lie algebra, where the last

@@ -8,9 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <cstdint>
-#include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -25,7 +22,7 @@ namespace cayspin::inline v0_1 {
 /// own steps do not depend on dt. It remembers its state: `spins` and t must be those at the end of
 /// the step before. Otherwise call `reset`.
 template <class Spins>
-class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
+class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps {
   using Base = StiffGauss<Spins, 2>;
 
  public:
@@ -36,42 +33,29 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
   /// the precision.
   explicit AdaptiveStiffGauss2(Spins const& like, StepOptions const& options = {})
       : Base(name, like, {}),
-        options_(options),
-        controller_(options, Base::order + 1, StepOptions::least_tolerance<Real>(),
-                    std::string("cayspin::") + name),
+        OwnSteps(options, Base::order + 1, StepOptions::least_tolerance<Real>(),
+                 std::string("cayspin::") + name),
         now_(std::string(name) + "::now", like.lattice()) {
     this->solving_.tolerance =
         std::max(share_of_corrections * controller_.step_tolerance(), 16 * Base::epsilon);
     this->solving_.iterations = 10;
   }
 
-  std::int64_t accepted_steps() const { return accepted_; }
-  std::int64_t rejected_steps() const { return rejected_; }
-  /// The dt of the next own step.
-  double next_dt() const { return next_dt_; }
-
   /// Forgets the run so far: the next step begins at its own t and spins.
   void reset() {
     Base::reset();
-    running_ = false;
+    OwnSteps::reset();
   }
 
   /// For cayspin::exchange_memory.
   template <class Visit>
   void visit_memory(Visit const& visit) {
     Base::visit_memory(visit);
-    visit("accepted", accepted_);
-    visit("rejected", rejected_);
-    visit("running", running_);
-    if (!running_) return;
+    if (!visit_steps(visit)) return;
     this->history_.visit_times(visit);
-    controller_.visit_memory(visit);
     visit("local", this->local_);
     visit("local_dt", local_dt_);
     visit("extrapolated", this->extrapolated_);
-    visit("end_time", end_time_);
-    visit("dt", dt_);
-    visit("next_dt", next_dt_);
     visit("begin_spins", this->start_);
     visit("end_spins", now_);
   }
@@ -83,13 +67,9 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, now_);
-    double const asked = t + dt, slack = 1e-9 * std::abs(dt);
-    if (!(dt >= 0) || !(asked <= options_.end + slack))
-      throw std::invalid_argument(
-          this->label("::step: dt must not be negative, nor t + dt beyond the end of the options"));
-    if (!running_) begin(exec, generator, spins, t, dt);
-    while (end_time_ < asked - slack) take_step(exec, generator);
-    deliver(exec, spins, asked);
+    go_on_to(
+        t, dt, [&] { begin(exec, generator, spins, t, dt); }, [&] { take_step(exec, generator); });
+    deliver(exec, spins, t + dt);
   }
 
  private:
@@ -106,44 +86,29 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
     this->history_.forget();
     Kokkos::deep_copy(exec, now_.allocation(), spins.allocation());
     ++this->evaluations_done_;
-    controller_.reset();
-    next_dt_ = controller_.first_dt(largest_rate(exec, generator, now_, t), asked);
-    end_time_ = t;
+    begin_run(t, largest_rate(exec, generator, now_, t), asked);
     dt_ = next_dt_;
     local_dt_ = 0;
-    running_ = true;
   }
 
   /// The next own step, from the end of the last one.
   template <class Exec, class Generator>
   void take_step(Exec const& exec, Generator const& generator) {
-    double const t = end_time_;
-    while (true) {
-      double const dt = detail::step_within(options_.end - t, next_dt_);
-      if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
+    double error = 0;
+    take_own_step([&](double t, double dt) -> Try {
       this->history_.rescale(dt / dt_);
       this->contraction_ *= std::max(1.0, dt / dt_);
       dt_ = dt;
       if (dt > 1.5 * local_dt_) measure_local(exec, generator, t);
-      bool const solved = this->template solve<true>(exec, generator, now_, t, dt, &this->history_);
-      double const error =
-          solved ? error_of(exec, generator, t, dt) : std::numeric_limits<double>::infinity();
-      if (solved && controller_.accepts(error)) return accept(error);
-      ++rejected_;
-      next_dt_ = solved ? controller_.next_dt(dt, error) : 0.5 * dt;
-      if (!(next_dt_ >= detail::least_step(options_, t)) || next_dt_ == 0) give_up(t, next_dt_);
-    }
-  }
-
-  void accept(double error) {
+      if (!this->template solve<true>(exec, generator, now_, t, dt, &this->history_))
+        return {.is_solved = false};
+      error = error_of(exec, generator, t, dt);
+      return {error, std::clamp(fast_enough / this->contraction_, 0.9, most_growth)};
+    });
     this->extrapolated_ = error < hardly_changes * controller_.step_tolerance() ? 1 : 3;
-    double const growth = std::clamp(fast_enough / this->contraction_, 0.9, most_growth);
-    next_dt_ = std::max(options_.min_dt, std::min(controller_.next_dt(dt_, error), growth * dt_));
     this->history_.remember(this->x_);
     swap(this->start_, now_);
     swap(now_, this->end_);
-    end_time_ += dt_;
-    ++accepted_;
   }
 
   /// Of a step that has been solved: an angle. 0 for the first two, which are short, or at rest.
@@ -203,20 +168,11 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2> {
     detail::for_each_site<Real>(exec, dense_label_, spins.layout(), kernel);
   }
 
-  [[noreturn]] void give_up(double t, double dt) {
-    detail::throw_step_too_small(this->label(""), t, dt);
-  }
-
   std::string local_label_ = this->label("::local_field"),
               difference_label_ = this->label("::difference"),
               error_label_ = this->label("::error"), dense_label_ = this->label("::dense_output");
-  StepOptions options_;
-  detail::StepController controller_;
   Spins now_;
-  double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last own step ends there
-  double local_dt_ = 0;                         // when local_ was measured
-  std::int64_t accepted_ = 0, rejected_ = 0;
-  bool running_ = false;
+  double local_dt_ = 0;  // when local_ was measured
 };
 
 }  // namespace cayspin::inline v0_1

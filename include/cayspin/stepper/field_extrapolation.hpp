@@ -119,7 +119,7 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, next_);
     if (dt == 0) return;
-    if (past_.known() > 0 && !(0 < dt / past_.last_step() && dt / past_.last_step() <= 2)) reset();
+    if (past_.known() > 0 && !past_.is_followed_by(dt)) reset();
     if (past_.known() >= Order - 1) {
       extrapolate(exec, generator, spins, t, dt);
       if (!has_failed(exec)) {

@@ -53,6 +53,8 @@ class FieldHistory {
 
   /// The step from the last field that was stored.
   double last_step() const { return steps_[0]; }
+  /// May a step of dt follow it? It may grow by a factor of 2 at most.
+  bool is_followed_by(double dt) const { return 0 < dt / steps_[0] && dt / steps_[0] <= 2; }
 
   /// For cayspin::exchange_memory.
   template <class Visit>

@@ -107,7 +107,7 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
     auto const region = this->begin_step(exec, spins);
     if (dt == 0) return;
     auto const evaluations_before = dear_.evaluations_done();
-    if (knows_begin_ && !(0 < dt / past_.last_step() && dt / past_.last_step() <= 2)) reset();
+    if (knows_begin_ && !past_.is_followed_by(dt)) reset();
     Kokkos::deep_copy(exec, begin_.allocation(), spins.allocation());
     try {
       if (knows_begin_)

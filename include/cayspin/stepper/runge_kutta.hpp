@@ -7,11 +7,8 @@
 #include <cayspin/stage/kernel.hpp>
 #include <cayspin/stage/memory.hpp>
 #include <cayspin/stage/pass.hpp>
-#include <cayspin/stage/sweep.hpp>
-#include <cayspin/stepper/stepper_base.hpp>
+#include <cayspin/stepper/staged_stepper.hpp>
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -22,12 +19,12 @@
 namespace cayspin::inline v0_1 {
 
 /// An explicit one-step method on a spin field: a tableau, and an update that moves spins by
-/// increments (cayspin::update). Holds all work memory. A large field on a host is swept through
-/// once per step, unless the generator needs all spins of a stage beforehand (a nonlocal field).
-/// Otherwise there is one fused kernel per stage.
+/// increments (cayspin::update). Holds all work memory.
 template <class Spins, class Tableau, class Update, class Isotropy>
-class RungeKutta : public detail::StepperBase<Spins> {
-  using Base = detail::StepperBase<Spins>;
+class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy,
+                                                detail::StageMemory<Spins, Tableau, Update>> {
+  using Base = detail::StagedStepper<Spins, Tableau, Update, Isotropy,
+                                     detail::StageMemory<Spins, Tableau, Update>>;
 
  public:
   using typename Base::Real;
@@ -36,45 +33,10 @@ class RungeKutta : public detail::StepperBase<Spins> {
   using isotropy_type = Isotropy;
   static constexpr int order = Tableau::order;
   static constexpr int evaluations = Tableau::stages;  // of the generator, per step
-  static constexpr int ghosts = Tableau::stages;
-  /// Fields of three numbers per site beside the spins, when stages go one by one.
-  static constexpr int work_fields = detail::work_fields<Tableau, Update>();
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
-      : Base(name, like.lattice(), ghosts),
-        name_(name),
-        isotropy_(isotropy),
-        plan_(Sweeps::plan(like.layout(), DefaultExec().concurrency())) {
-    use(Sweeps::sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep
-                                                                             : Path::pass);
-  }
-
-  /// Takes this path from now on instead of the automatic choice, and allocates its memory.
-  /// A compensated method forgets its residual, as after `reset`.
-  /// Throws std::invalid_argument when the fields cannot be swept.
-  void use(Path path) {
-    if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
-    path_ = path;
-    if constexpr (Sweeps::possible) {
-      if (path == Path::sweep) return memory_.allocate_buffers(name_, this->lattice_, plan_);
-    }
-    memory_.allocate_fields(name_, this->lattice_);
-  }
-  Path path() const { return path_; }
-
-  /// Bytes of work memory.
-  std::size_t work_bytes() const { return memory_.bytes(); }
-  /// Predicted bytes of work memory with so many threads. `by_time_alone`: the generator needs the
-  /// time alone to be made ready (cayspin::Generator).
-  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
-    auto const layout = detail::RowLayout::of<Real>(lattice);
-    std::size_t const field = layout.allocation(3) * sizeof(Real);
-    if (!by_time_alone || !Sweeps::sweeps_by_itself(layout, threads)) return work_fields * field;
-    std::size_t const fields = 1 + detail::carried_fields<Update>();
-    return fields * field + detail::SweepBuffers<Real, typename Spins::memory_space>::bytes(
-                                Sweeps::plan(layout, threads));
-  }
+      : Base(name, like, isotropy) {}
 
   /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
   /// `spins` with its own, so take arrays of `spins` again after it.
@@ -83,13 +45,13 @@ class RungeKutta : public detail::StepperBase<Spins> {
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     auto const region = this->begin_step(exec, spins);
     if (exchanges()) this->require_other_memory(spins, memory_.end());
-    if constexpr (Sweeps::possible && detail::is_host_execution<Exec>) {
-      if (path_ == Path::sweep) {
+    if constexpr (Base::Sweeps::possible && detail::is_host_execution<Exec>) {
+      if (this->path() == Path::sweep) {
         if (detail::needs_time_alone(generator, exec, spins)) {
           sweep(exec, generator, spins, t, dt);
           return update_ghosts(exec, spins);
         }
-        use(Path::pass);
+        this->use(Path::pass);
       }
     }
     stages_from<0>(exec, generator, spins, t, dt);
@@ -116,7 +78,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   /// every step.
   template <class Exec, class Generator>
   bool takes_batches(Exec const& exec, Generator const& generator, Spins const& spins) const {
-    return path_ == Path::pass && this->lattice_.part == nullptr &&
+    return this->path() == Path::pass && this->lattice_.part == nullptr &&
            detail::runs_on_calling_thread<Exec>(spins.sites()) &&
            detail::is_stationary(generator, exec, spins);
   }
@@ -141,9 +103,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   }
 
  private:
-  static constexpr int stages = Tableau::stages;
-  using DefaultExec = typename Spins::memory_space::execution_space;
-  using Sweeps = detail::SweepChoice<Spins, Tableau, Update, work_fields>;
+  using Base::stages, Base::labels_, Base::isotropy_, Base::memory_;
 
   template <class Exec>
   void update_ghosts(Exec const& exec, Spins const& spins) const {
@@ -153,7 +113,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
   }
 
   /// Does a step exchange the memory of the spins?
-  bool exchanges() const { return stages == 1 || path_ == Path::sweep; }
+  bool exchanges() const { return stages == 1 || this->path() == Path::sweep; }
 
   template <int Stage, class Prepared>
   auto kernel(Prepared prepared, double dt) const {
@@ -184,13 +144,8 @@ class RungeKutta : public detail::StepperBase<Spins> {
       auto const kernel_at = [&]<int S>(std::integral_constant<int, S>) {
         return kernel<S>(detail::prepare_term(generator, exec, spins, t + Tableau::c[S] * dt), dt);
       };
-      std::tuple const kernels{kernel_at(std::integral_constant<int, Stage>{})...};
-      using Loop =
-          detail::SweepLoop<Tableau, Update, Real,
-                            std::tuple_element_t<std::size_t{Stage}, decltype(kernels)>...>;
-      Loop loop{kernels, plan_, spins.array(), {}, {}, nullptr, nullptr};
-      memory_.set(loop);
-      detail::for_each_task(exec, sweep_label_, plan_.tasks(), spins.sites(), loop);
+      this->sweep_through(exec, spins,
+                          std::tuple{kernel_at(std::integral_constant<int, Stage>{})...});
     }(std::make_integer_sequence<int, stages>{});
     swap(spins, memory_.end());
   }
@@ -216,13 +171,7 @@ class RungeKutta : public detail::StepperBase<Spins> {
     }
   }
 
-  std::string name_, sweep_label_ = this->label("::sweep"), batch_label_ = this->label("::batch");
-  std::array<std::string, std::size_t{stages}> labels_ =
-      this->template stage_labels<std::size_t{stages}>();
-  Isotropy isotropy_;
-  detail::SweepPlan plan_;
-  Path path_ = Path::pass;
-  detail::StageMemory<Spins, Tableau, Update> memory_;
+  std::string batch_label_ = this->label("::batch");
 };
 
 }  // namespace cayspin::inline v0_1

@@ -1,16 +1,163 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/local_part.hpp>
+#include <cayspin/generator/orthogonal.hpp>
+#include <cayspin/isotropy/energy.hpp>
 #include <cayspin/isotropy/policies.hpp>
-#include <cayspin/stepper/series4_stage.hpp>
+#include <cayspin/rotation/cayley.hpp>
+#include <cayspin/stencil.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 namespace cayspin::inline v0_1 {
+
+namespace detail {
+
+/// The truncated series of F from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002,
+/// Sec. 5.3, any isotropy.
+struct DirectSeries {
+  using Correction = Series4Correction;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> coordinates(Vec3<Value> const* a,
+                                                             Vec3<Value> const&, Value const& dt) {
+    Value const square = dot(a[0], a[0]);
+    Vec3<Value> const third = Value(2) * a[2] + square * a[0] + cross(a[1], a[0]);
+    Vec3<Value> const fourth =
+        a[3] + square * a[1] + cross(a[2], a[0]) + Value(Value(2) * dot(a[1], a[0])) * a[0];
+    return sum(a, Value(1. / 12) * third, Value(1. / 24) * fourth, dt);
+  }
+
+ protected:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> sum(Vec3<Value> const* a, Vec3<Value> const& third,
+                                                     Vec3<Value> const& fourth, Value const& dt) {
+    Vec3<Value> f = multiply_add(dt, fourth, third);
+    f = multiply_add(dt, f, Vec3<Value>(Value(0.5) * a[1]));
+    f = multiply_add(dt, f, a[0]);
+    return dt * f;
+  }
+};
+
+/// The orthogonal series as the paper prints it, from the derivatives of A_o: of the same order,
+/// with three times the energy error of the direct series.
+struct PaperSeries : DirectSeries {
+  using Correction = Series4PaperCorrection;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> coordinates(Vec3<Value> const* a,
+                                                             Vec3<Value> const& m,
+                                                             Value const& dt) {
+    Vec3<Value> const third =
+        Value(1. / 6) * a[2] + Value(1. / 12) * (dot(a[0], a[0]) * a[0] + dot(a[2], m) * m);
+    Vec3<Value> const fourth = Value(1. / 24) * a[3] + Value(Value(0.125) * dot(a[1], a[0])) * a[0];
+    return sum(a, third, fourth, dt);
+  }
+};
+
+/// A stencil without neighbours: a site, with a vector of the kernel as its centre.
+template <class Site>
+struct PointStencil {
+  using value_type = typename Site::value_type;
+  using vector_type = Vec3<value_type>;
+  Site const& at;
+  vector_type const& vector;
+
+  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return vector; }
+  KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return at; }
+};
+
+/// m^(K+1) = d^K/dt^K (A x m)
+template <int K, class Generator, class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generator,
+                                                        Vec3<Value> const* m,
+                                                        Vec3<Value> const* source) {
+  Vec3<Value> a[std::size_t{K + 1}];
+  unrolled<K + 1>(
+      [&](auto order) { a[order] = generator.template derivative<order()>(m, source); });
+  Vec3<Value> sum{Value(0), Value(0), Value(0)};
+  leibniz<K>([&](auto weight, auto j, auto rest) {
+    sum = multiply_add(Value(static_cast<scalar_t<Value>>(weight())), cross(a[j], m[rest]), sum);
+  });
+  return sum;
+}
+
+/// The end of the step from derivatives 0 .. 3 of m and of the series' source.
+template <class Series, class Isotropy, class Generator, class Site, class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator, Site const& site,
+                                                      Vec3<Value> const* m,
+                                                      Vec3<Value> const* source, Value const& dt) {
+  Vec3<Value> a[4];
+  unrolled<4>([&](auto order) {
+    if constexpr (std::is_same_v<Series, PaperSeries>)
+      a[order] = orthogonal_derivative<order()>(generator, m, source);
+    else
+      a[order] = generator.template derivative<order()>(m, source);
+  });
+  Vec3<Value> f = Series::coordinates(a, m[0], dt);
+  if constexpr (std::is_same_v<Isotropy, isotropy::Energy>)
+    f = corrected<typename Series::Correction>(generator, site, f, m[0], dt);
+  return Cayley::rotate(f, m[0]);
+}
+
+/// A whole step, if A at a site depends on the spin of that site only, and linearly.
+template <class Series, class Isotropy, class Generator, class Real>
+struct LocalSeriesStage {
+  Generator generator;
+  SiteArray<Real, 3> start;
+  OutputArray<Real, 3> next;
+  Real dt;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> m[4], source[4];
+    m[0] = site.load(start);
+    unrolled<4>([&](auto k) {
+      source[k] = generator.series_source(PointStencil<Site>{site, m[k]});
+      if constexpr (k < 3) m[k + 1] = next_derivative<k()>(generator, m, source);
+    });
+    site.store(end_of_series<Series, Isotropy>(generator, site, m, source, Value(dt)), next);
+  }
+};
+
+/// Kernel K of the four of a step on coupled spins. It computes the K-th derivative of the source,
+/// then the next derivative of the spins, or after the last one the end of the step.
+template <class Series, int K, class Generator, class Real>
+struct SeriesStage {
+  Generator generator;
+  SiteArray<Real, 3> spins[std::size_t{K + 1}];  // derivatives 0 .. K
+  OutputArray<Real, 3> sources[std::size_t{K == 3 ? 3 : K + 1}];
+  OutputArray<Real, 3> next;
+  Real dt;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Stencil<Site, Real> const stencil(site, spins[K]);
+    Vec3<Value> m[std::size_t{K + 1}], source[std::size_t{K + 1}];
+    unrolled<K>([&](auto k) {
+      m[k] = site.load(spins[k]);
+      source[k] = site.load(sources[k]);
+    });
+    m[K] = stencil.center();
+    source[K] = K == 0 ? generator.series_source(stencil) : generator.linear_series_source(stencil);
+    if constexpr (K < 3) {
+      site.store(source[K], sources[K]);
+      site.store(next_derivative<K>(generator, m, source), next);
+    } else {
+      site.store(end_of_series<Series, isotropy::Zero>(generator, site, m, source, Value(dt)),
+                 next);
+    }
+  }
+};
+
+}  // namespace detail
 
 /// The symbolic series of order 4 in Cayley coordinates:
 /// F = dt a + dt^2 a_1/2 + dt^3 (2 a_2 + |a|^2 a + a_1 x a)/12

@@ -43,17 +43,6 @@ inline double step_within(double left, double dt) {
   return 2 * dt > left ? 0.5 * left : dt;
 }
 
-/// The shortest step from t.
-inline double least_step(StepOptions const& options, double t) {
-  return std::max(options.min_dt, 16 * std::numeric_limits<double>::epsilon() * std::abs(t));
-}
-
-[[noreturn]] inline void throw_step_too_small(std::string const& region, double t, double dt) {
-  throw StepTooSmall(region + "::step: from t = " + to_text(t) +
-                     " the tolerance needs a step below " + to_text(dt) +
-                     "; the numbers are not finite, or the field is not smooth");
-}
-
 /// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): the next dt from
 /// the errors of this step and the one before. Plain host arithmetic on a maximum over sites, so
 /// the sequence of steps is the same on every host space.
@@ -126,6 +115,101 @@ class StepController {
   double exponent_;
   double before_ = 1;  // error / tolerance of the last accepted step
   bool rejected_ = false;
+};
+
+/// The steps that an adaptive method takes on its own, whatever times it is asked for.
+class OwnSteps {
+ public:
+  std::int64_t accepted_steps() const { return accepted_; }
+  std::int64_t rejected_steps() const { return rejected_; }
+  /// The dt of the next own step.
+  double next_dt() const { return next_dt_; }
+  /// Forgets the run so far: the next step begins at its own t and spins.
+  void reset() { running_ = false; }
+
+ protected:
+  /// How a try of a step went. Its error is an angle.
+  struct Try {
+    double error = 0;
+    double most_growth = std::numeric_limits<double>::infinity();  // of the next dt
+    bool is_solved = true;  // otherwise there is no error, and half the step is tried
+  };
+
+  OwnSteps(StepOptions const& options, int error_order, double least_tolerance,
+           std::string const& region)
+      : options_(options),
+        controller_(options, error_order, least_tolerance, region),
+        region_(region) {}
+
+  /// Calls begin() unless a run is under way, and take_step() until one ends at t + dt or later.
+  template <class Begin, class TakeStep>
+  void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
+    double const asked = t + dt, slack = 1e-9 * std::abs(dt);
+    if (!(dt >= 0) || !(asked <= options_.end + slack))
+      throw std::invalid_argument(
+          region_ + "::step: dt must not be negative, nor t + dt beyond the end of the options");
+    if (!running_) begin();
+    while (end_time_ < asked - slack) take_step();
+  }
+
+  /// From t, for spins that turn by at most `rate` per unit of time.
+  void begin_run(double t, double rate, double asked) {
+    controller_.reset();
+    next_dt_ = controller_.first_dt(rate, asked);
+    end_time_ = t;
+    running_ = true;
+  }
+
+  /// Takes the next own step: try_step(t, dt) returns a Try. Throws StepTooSmall.
+  template <class TryStep>
+  void take_own_step(TryStep const& try_step) {
+    double const t = end_time_;
+    while (true) {
+      double const dt = step_within(options_.end - t, next_dt_);
+      if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
+      Try const now = try_step(t, dt);
+      next_dt_ = now.is_solved ? controller_.next_dt(dt, now.error) : 0.5 * dt;
+      if (now.is_solved && controller_.accepts(now.error)) {
+        next_dt_ = std::max(options_.min_dt, std::min(next_dt_, now.most_growth * dt));
+        end_time_ = t + dt;
+        dt_ = dt;
+        ++accepted_;
+        return;
+      }
+      ++rejected_;
+      double const least = 16 * std::numeric_limits<double>::epsilon() * std::abs(t);
+      if (!(next_dt_ >= std::max(options_.min_dt, least)) || next_dt_ == 0) give_up(t, next_dt_);
+    }
+  }
+
+  /// For cayspin::exchange_memory. Returns whether a run is under way.
+  template <class Visit>
+  bool visit_steps(Visit const& visit) {
+    visit("accepted", accepted_);
+    visit("rejected", rejected_);
+    visit("running", running_);
+    if (!running_) return false;
+    controller_.visit_memory(visit);
+    visit("end_time", end_time_);
+    visit("dt", dt_);
+    visit("next_dt", next_dt_);
+    return true;
+  }
+
+  StepOptions options_;
+  StepController controller_;
+  double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last own step ends there
+
+ private:
+  [[noreturn]] void give_up(double t, double dt) const {
+    throw StepTooSmall(region_ + "::step: from t = " + to_text(t) +
+                       " the tolerance needs a step below " + to_text(dt) +
+                       "; the numbers are not finite, or the field is not smooth");
+  }
+
+  std::string region_;
+  std::int64_t accepted_ = 0, rejected_ = 0;
+  bool running_ = false;
 };
 
 }  // namespace detail

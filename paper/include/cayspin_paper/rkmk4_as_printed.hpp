@@ -78,14 +78,11 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   static constexpr int work_fields = 5;
 
   explicit Rkmk4AsPrinted(Spins const& like, Isotropy isotropy = {})
-      : Base("Rkmk4AsPrinted", like.lattice()), isotropy_(isotropy) {
-    for (std::size_t i = 0; i < levels_.size(); ++i)
-      levels_[i] = Spins("Rkmk4AsPrinted::level_" + std::to_string(i + 1), like.lattice());
-    for (std::size_t i = 0; i < generators_.size(); ++i)
-      generators_[i] = Spins("Rkmk4AsPrinted::generator_" + std::to_string(i + 1), like.lattice());
-    for (std::size_t i = 0; i < labels_.size(); ++i)
-      labels_[i] = this->label("::stage_") + std::to_string(i + 1);
-  }
+      : Base("Rkmk4AsPrinted", like.lattice()),
+        isotropy_(isotropy),
+        levels_(detail::numbered_fields<Spins, 2>("Rkmk4AsPrinted::level", like.lattice())),
+        generators_(
+            detail::numbered_fields<Spins, 3>("Rkmk4AsPrinted::generator", like.lattice())) {}
 
   std::size_t work_bytes() const { return work_fields * levels_[0].bytes(); }
 
@@ -132,7 +129,7 @@ class Rkmk4AsPrinted : public detail::StepperBase<Spins> {
   Isotropy isotropy_;
   std::array<Spins, 2> levels_;
   std::array<Spins, 3> generators_;
-  std::array<std::string, 4> labels_;
+  std::array<std::string, 4> labels_ = this->template stage_labels<4>();
 };
 
 }  // namespace cayspin::inline v0_1

@@ -4,6 +4,7 @@
 #include "cayspin_git_commit.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/plan.hpp"
 
 #include <cayspin/version.hpp>
 

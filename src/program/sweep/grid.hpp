@@ -10,6 +10,15 @@
 
 namespace cayspin::program::sweep {
 
+struct SweepOptions : SceneOptions {
+  std::vector<std::string> over;  // key.path=VALUE,VALUE,...
+  std::filesystem::path output;
+  Precision precision = Precision::double_precision;
+  std::optional<std::string> space;
+  std::optional<int> jobs, threads;  // runs at a time; threads of each
+  bool overwrite = false, quiet = false;
+};
+
 /// A sweep whose scenes are all valid.
 struct Grid {
   io::SweepHeader header;

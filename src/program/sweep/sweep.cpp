@@ -4,9 +4,11 @@
 #include "files/available_memory.hpp"
 #include "grid.hpp"
 #include "program/command.hpp"
+#include "program/progress.hpp"
 #include "session.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
+#include "simulation/plan.hpp"
 #include "simulation/text.hpp"
 #include "table.hpp"
 
@@ -63,21 +65,14 @@ Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t
 std::vector<std::string> arguments_of(SweepOptions const& options, Grid const& grid,
                                       std::int64_t run, std::filesystem::path const& file,
                                       Sharing const& sharing) {
-  std::vector<std::string> arguments{"run", options.scene.string()};
+  std::vector<std::string> arguments{
+      "run",         options.scene.string(), "--output",    file.string(),
+      "--overwrite", "--report-progress",    "--precision", grid.header.precision,
+      "--space",     grid.header.space};
   for (auto const& overrides : {options.overrides, grid.header.overrides(run)})
-    for (auto const& override : overrides) {
-      arguments.emplace_back("--set");
-      arguments.push_back(override);
-    }
-  for (auto const& word :
-       {std::string("--output"), file.string(), std::string("--overwrite"),
-        std::string("--precision"), grid.header.precision, std::string("--space"),
-        grid.header.space, std::string("--report-progress")})
-    arguments.push_back(word);
-  if (sharing.threads) {
-    arguments.emplace_back("--threads");
-    arguments.push_back(std::to_string(*sharing.threads));
-  }
+    for (auto const& override : overrides) arguments.insert(arguments.end(), {"--set", override});
+  if (sharing.threads)
+    arguments.insert(arguments.end(), {"--threads", std::to_string(*sharing.threads)});
   return arguments;
 }
 
@@ -164,8 +159,6 @@ int close_sweep(SweepOptions const& options, Session const& session, double seco
   throw std::runtime_error(message);
 }
 
-}  // namespace
-
 int sweep_over(SweepOptions const& options) {
   auto const begin = Clock::now();
   auto const grid = make_grid(options);
@@ -178,6 +171,28 @@ int sweep_over(SweepOptions const& options) {
   fmt::print(stderr, "{}: interrupted with {} of {} runs to do; the same command goes on\n",
              options.output.string(), open, session.info().runs.size());
   return Status::interrupted;
+}
+
+}  // namespace
+
+Command add_sweep(CLI::App& program) {
+  auto const options = std::make_shared<SweepOptions>();
+  auto* const command = program.add_subcommand(
+      "sweep", "Run a scene with all combinations of some keys' values, into one file (HDF5)");
+  add_scene_options(*command, *options);
+  command
+      ->add_option("--over", options->over,
+                   "A key and its values: key.path=VALUE,VALUE,..., TOML values")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUES");
+  command->add_option("--output", options->output, "The file of all runs")->required();
+  command->add_option("--jobs", options->jobs, "Runs at a time")->check(CLI::Range(1, 65536));
+  add_space_options(*command, *options);
+  command->add_flag("--overwrite", options->overwrite,
+                    "Start again where the file has a sweep, or replace another file");
+  command->add_flag("--quiet", options->quiet, "No progress and no table");
+  return {command, [options](Ranks&) { return sweep_over(*options); }};
 }
 
 }  // namespace cayspin::program

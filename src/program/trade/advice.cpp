@@ -61,7 +61,7 @@ class Search {
   void run() {
     if (prospects_.empty()) return;
     double const least = prospects_.front().expected_evaluations();
-    for (double const factor : {unlikely, std::numeric_limits<double>::infinity()}) {
+    for (double const factor : {unlikely, infinite}) {
       try_each(factor * least);
       refine();
     }
@@ -129,10 +129,10 @@ class Search {
   // Of what has the error; infinite where nothing has.
   double seconds_of_passing(Prospect const& prospect) const {
     auto const* const passing = prospect.passing(error_);
-    return passing ? passing->seconds : std::numeric_limits<double>::infinity();
+    return passing ? passing->seconds : infinite;
   }
   double least_seconds() const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = infinite;
     for (auto const& one : prospects_) least = std::min(least, seconds_of_passing(one));
     return least;
   }
@@ -173,10 +173,7 @@ class Search {
     auto const& candidate = prospect.candidate();
     if (!prospect.allows(steps)) return prospect.drop();
     if (request_.progress) request_.progress->show(clock_.seconds() / limit_, candidate.name());
-    auto const measured = fine_.solution.measure(candidate, steps, true, quick);
-    prospect.add(
-        {steps, measured.error, measured.seconds, static_cast<double>(measured.evaluations)},
-        fine_.error);
+    prospect.add(fine_.solution.measure(candidate, steps, true, quick), fine_.error);
     if (prospect.tries().size() >= tries || prospect.is_round_off(error_)) prospect.drop();
   }
 

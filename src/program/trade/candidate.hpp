@@ -5,6 +5,7 @@
 #include "simulation/plan.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 namespace cayspin::program::trade {
 
 using namespace simulation;
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// A choice in one precision, whose steps are still to be chosen.
 struct Candidate : Choice {
@@ -28,6 +31,14 @@ struct Candidate : Choice {
 struct Steps {
   std::int64_t count = 0;
   double tolerance = 0;
+};
+
+/// A run of a candidate; infinite error where it failed.
+struct Try {
+  Steps steps;
+  double error = infinite;
+  double seconds = 0;
+  std::int64_t evaluations = 0;
 };
 
 /// All that can run a scene, those of high order first; in one precision, where that is given. A

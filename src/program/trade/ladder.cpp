@@ -29,7 +29,7 @@ double interpolated(Rung const* before, Rung const& rung, double error, bool of_
 }
 
 double least(Ladder const& ladder, double error, bool of_evaluations, Ladder* around = nullptr) {
-  double best = std::numeric_limits<double>::infinity();
+  double best = infinite;
   Rung const* before = nullptr;
   for (auto const& rung : ladder.rungs) {
     double const now =
@@ -69,24 +69,24 @@ Ladder climb(Pilot const& pilot, Candidate const& candidate, Reference const& re
              std::vector<Ladder> const& others, LadderLimits const& limits) {
   Ladder ladder{candidate, {}};
   int worse = 0;
-  double best = std::numeric_limits<double>::infinity();
+  double best = infinite;
   Steps steps =
       coarsest_steps(pilot, candidate, reference.horizon.time, reference.horizon.own_steps);
   for (int i = 0; i < limits.rungs; ++i, steps = finer(candidate, steps)) {
     if (candidate.method->adaptive && steps.tolerance < candidate.least_tolerance()) break;
     if (limits.progress) limits.progress->show(limits.share, candidate.name());
-    auto const [failure, error, seconds, evaluations] =
-        reference.solution.measure(candidate, steps, false, measured_well);
+    auto const run = reference.solution.measure(candidate, steps, false, measured_well);
     double const dt =
         candidate.method->adaptive ? 0 : reference.horizon.time / static_cast<double>(steps.count);
-    if (std::isfinite(error)) ladder.rungs.push_back({steps, dt, error, seconds, evaluations});
+    double const error = run.error;
+    if (std::isfinite(error)) ladder.rungs.push_back({run, dt});
     worse = error < 0.9 * best ? 0 : worse + 1;
     best = std::min(best, error);
-    double most = std::numeric_limits<double>::infinity();
+    double most = infinite;
     for (auto const& other : others)
       most = std::min(most, limits.far_behind * seconds_to(other, error));
     // Round-off, or dt at which the method is of no use.
-    if (error < limits.least_error || seconds > std::min(limits.seconds, most) ||
+    if (error < limits.least_error || run.seconds > std::min(limits.seconds, most) ||
         (worse > 2 && best < 1e-3) || worse > 12)
       break;
   }

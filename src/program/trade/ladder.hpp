@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "program/progress.hpp"
 #include "reference.hpp"
-#include "trial_progress.hpp"
 
-#include <limits>
 #include <vector>
 
 namespace cayspin::program::trade {
 
 /// One run of a ladder.
-struct Rung {
-  Steps steps;
-  double dt = 0;  // of methods with equal steps
-  double error = 0;
-  double seconds = 0;
-  std::int64_t evaluations = 0;
+struct Rung : Try {
+  double dt = 0;          // of methods with equal steps
   bool on_front = false;  // nothing is both faster and more accurate
 };
 

@@ -79,8 +79,7 @@ double distance(std::vector<double> const& a, std::vector<double> const& b) {
 }
 
 double distance(Outcome const& a, Outcome const& b) {
-  if (a.failure || b.failure || a.states.size() != b.states.size())
-    return std::numeric_limits<double>::infinity();
+  if (a.failure || b.failure || a.states.size() != b.states.size()) return infinite;
   double largest = 0;
   for (std::size_t look = 0; look < a.states.size(); ++look)
     largest = std::max(largest, distance(a.states[look], b.states[look]));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cayspin::program::trade {
 namespace {
@@ -88,18 +87,18 @@ Steps Prospect::needed(double error) const {
 
 double Prospect::seconds_of(Steps const& steps) const {
   double const wanted = resolution(steps);
-  double per_evaluation = std::numeric_limits<double>::infinity();
+  double per_evaluation = infinite;
   Try const* nearest = nullptr;
   auto const apart = [&](Try const& one) {
     return std::abs(std::log(resolution(one.steps) / wanted));
   };
   for (auto const& one : tries_) {
     if (!std::isfinite(one.error)) continue;
-    per_evaluation = std::min(per_evaluation, one.seconds / one.evaluations);
+    per_evaluation = std::min(per_evaluation, one.seconds / static_cast<double>(one.evaluations));
     if (!nearest || apart(one) < apart(*nearest)) nearest = &one;
   }
   if (!nearest) return per_evaluation;
-  return per_evaluation * nearest->evaluations *
+  return per_evaluation * static_cast<double>(nearest->evaluations) *
          std::pow(wanted / resolution(nearest->steps), cost_order_);
 }
 

@@ -7,13 +7,6 @@
 
 namespace cayspin::program::trade {
 
-/// A run of a candidate; infinite error where it failed.
-struct Try {
-  Steps steps;
-  double error, seconds;
-  double evaluations;
-};
-
 /// What is known of a candidate, and what that promises. Resolution: its number of steps, or
 /// 1 / tolerance.
 class Prospect {

@@ -37,15 +37,25 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   auto keys = candidate.keys();
   if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
   keys += fmt::format(",dt={},steps={}", dt, steps);
-  for (auto const& [key, member] : io::Integrator::flags()) {
+  for (auto const& key : io::Integrator::keys()) {
     bool const belongs_to_method =
-        key == "compensated" || (key == "energy_control" && candidate.method->adaptive);
-    if (!belongs_to_method && of_scene.*member != io::Integrator{}.*member)
-      keys += fmt::format(",{}={}", key, of_scene.*member);
+        key.name == "compensated" || (key.name == "energy_control" && candidate.method->adaptive);
+    auto const* const flag = std::get_if<bool io::Integrator::*>(&key.member);
+    if (flag && !belongs_to_method && of_scene.**flag != io::Integrator{}.**flag)
+      keys += fmt::format(",{}={}", key.name, of_scene.**flag);
   }
   if (of_scene.until_torque)
     keys += fmt::format(",until_torque={}", *of_scene.until_torque * scene.units.field);
   return fmt::format("integrator={{{}}}", keys);
+}
+
+// Those keys of [output] that the scene has: `steps_of` makes other steps of its own.
+template <class StepsOf>
+void add_output_keys(io::Scene const& scene, std::vector<std::string>& overrides,
+                     StepsOf const& steps_of) {
+  for (auto const& [key, every] : {std::pair{"output.every", scene.output.every},
+                                   {"output.scalars_every", scene.output.scalars_every}})
+    if (scene.places.contains(key)) overrides.push_back(fmt::format("{}={}", key, steps_of(every)));
 }
 
 }  // namespace
@@ -66,13 +76,8 @@ Resolved resolve(io::Scene const& scene, Advice const& advice) {
   resolved.overrides.push_back(integrator_table(scene, advice, resolved.dt, resolved.steps));
   if (has_dear_field(scene) && advice.candidate.substeps == 0)
     resolved.overrides.emplace_back(without_dear(scene));
-  auto const keep = [&](char const* key, std::int64_t every) {
-    if (!scene.places.contains(std::string("output.") + key)) return;
-    resolved.overrides.push_back(
-        fmt::format("output.{}={}", key, within(integrator, every) / together * parts));
-  };
-  keep("every", scene.output.every);
-  keep("scalars_every", scene.output.scalars_every);
+  add_output_keys(scene, resolved.overrides,
+                  [&](std::int64_t every) { return within(integrator, every) / together * parts; });
   return resolved;
 }
 
@@ -111,13 +116,8 @@ std::optional<io::Scene> with_method_of(io::Scene const& scene, std::string cons
                         fmt::format("integrator.steps={}", steps(scene.integrator.steps))};
   if (has_dear_field(scene) && !has_dear_field(resolved))
     overrides.emplace_back(without_dear(scene));
-  auto const keep = [&](char const* key, std::int64_t every) {
-    if (scene.places.contains(std::string("output.") + key))
-      overrides.push_back(
-          fmt::format("output.{}={}", key, std::max<std::int64_t>(1, steps(every))));
-  };
-  keep("every", scene.output.every);
-  keep("scalars_every", scene.output.scalars_every);
+  add_output_keys(scene, overrides,
+                  [&](std::int64_t every) { return std::max<std::int64_t>(1, steps(every)); });
   return io::with_overrides(scene, overrides);
 }
 

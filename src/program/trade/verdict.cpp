@@ -2,7 +2,6 @@
 #include "verdict.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace cayspin::program::trade {
 namespace {
@@ -30,7 +29,7 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
   if (!choice) return verdict;
   double const horizon = reference.horizon.time;
   verdict.error = reference.solution.measure(choice->candidate, choice->steps, false, {}).error;
-  verdict.seconds = std::numeric_limits<double>::infinity();
+  verdict.seconds = infinite;
   auto best = cheapest(ladders, asked);
   for (int turn = 0; turn < turns; ++turn) {
     auto const again = [&](Candidate const& candidate, Steps const& steps, double& seconds) {
@@ -41,7 +40,7 @@ Verdict judge(Pilot const& pilot, Reference const& reference, std::vector<Ladder
     for (auto& ladder : best)
       for (auto& rung : ladder.rungs) again(ladder.candidate, rung.steps, rung.seconds);
   }
-  verdict.best = std::numeric_limits<double>::infinity();
+  verdict.best = infinite;
   for (auto const& ladder : best) verdict.best = std::min(verdict.best, seconds_to(ladder, asked));
   return verdict;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "context.hpp"
+#include "main.hpp"
 
 #include "cayspin_git_commit.hpp"
 
@@ -59,7 +59,9 @@ void add_environment() {
 
 }  // namespace
 
-int run_benchmarks(int argc, char** argv) {
+int main(int argc, char** argv) {
+  Kokkos::ScopeGuard const kokkos(argc, argv);
+  register_benchmarks();
   // Defaults in front, so that the command line wins.
   std::vector<char*> arguments{argv[0]};
   std::string defaults[] = {"--benchmark_repetitions=5", "--benchmark_min_time=0.05",
@@ -75,5 +77,6 @@ int run_benchmarks(int argc, char** argv) {
   add_kokkos();
   add_environment();
   benchmark::RunSpecifiedBenchmarks();
+  benchmark::ClearRegisteredBenchmarks();  // and the memory that they hold, before Kokkos ends
   return 0;
 }

@@ -21,6 +21,11 @@ namespace {
 using io::FollowedTrajectory;
 using Seconds = std::chrono::duration<double>;
 
+struct WatchOptions {
+  std::filesystem::path file;
+  bool once = false;
+};
+
 constexpr auto between_looks = std::chrono::milliseconds(500);
 constexpr auto between_lines = std::chrono::seconds(5);
 // A file that nobody writes for so long is asked for its writer.
@@ -225,8 +230,6 @@ class Screen {
   std::chrono::steady_clock::time_point shown_;
 };
 
-}  // namespace
-
 int watch(WatchOptions const& options) {
   if (has_sweep(options.file))
     throw UsageError(
@@ -259,6 +262,16 @@ int watch(WatchOptions const& options) {
   }
   if (report.fate == Fate::complete) return Status::done;
   throw NumbersFailed(fmt::format("{}: {}", options.file.string(), fate_text(report)));
+}
+
+}  // namespace
+
+Command add_watch(CLI::App& program) {
+  auto const options = std::make_shared<WatchOptions>();
+  auto* const command = program.add_subcommand("watch", "Follow a run by its trajectory file");
+  command->add_option("FILE", options->file, "Trajectory file (HDF5)")->required();
+  command->add_flag("--once", options->once, "Say how far it is, and end");
+  return {command, [options](Ranks&) { return watch(*options); }};
 }
 
 }  // namespace cayspin::program

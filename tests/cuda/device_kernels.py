@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """What the tests of the compilers for devices have in common."""
 
+import argparse
 import collections
 import json
+import pathlib
 import re
 import shlex
 import subprocess
+import sys
 
 Kernel = collections.namedtuple("Kernel", "symbol stack spill_stores spill_loads registers")
 ENTRY = re.compile(
@@ -13,10 +16,29 @@ ENTRY = re.compile(
     r"(\d+) bytes spill loads.*?Used (\d+) registers", re.DOTALL)
 
 
-def compile_entry(commands, source):
-    """The directory and the words of the command that compiles a source."""
-    entry = next(entry for entry in json.loads(commands.read_text()) if entry["file"] == source)
+def parser_of(description):
+    """Of a script that compiles a source once more, into another file."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("commands", type=pathlib.Path, metavar="compile_commands.json")
+    parser.add_argument("source")
+    parser.add_argument("output")
+    return parser
+
+
+def compile_entry(arguments):
+    """The directory and the words of the command that compiles the source."""
+    entry = next(entry for entry in json.loads(arguments.commands.read_text())
+                 if entry["file"] == arguments.source)
     return entry["directory"], shlex.split(entry["command"])
+
+
+def output_of(command, directory):
+    """What a command prints. Ends the script where it fails."""
+    done = subprocess.run(command, cwd=directory, text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT)
+    if done.returncode != 0:
+        sys.exit(f"{done.stdout}\n{shlex.join(command)} ended with {done.returncode}")
+    return done.stdout
 
 
 def device_command(words, output):

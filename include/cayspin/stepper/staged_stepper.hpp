@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/spin_field.hpp>
+#include <cayspin/stage/kernel.hpp>
+#include <cayspin/stage/sweep.hpp>
+#include <cayspin/stepper/stepper_base.hpp>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace cayspin::inline v0_1::detail {
+
+/// A stepper of Runge-Kutta stages, equal steps or adaptive. A large field on a host is swept
+/// through once per step, unless the generator needs all spins of a stage beforehand (a nonlocal
+/// field). Otherwise there is one fused kernel per stage. Memory holds the fields that passes need
+/// or the buffers of a sweep.
+template <class Spins, class Tableau, class Update, class Isotropy, class Memory>
+class StagedStepper : public StepperBase<Spins> {
+ public:
+  using typename StepperBase<Spins>::Real;
+  static constexpr int ghosts = Tableau::stages;
+  /// Fields of three numbers per site beside the spins, when stages go one by one.
+  static constexpr int work_fields = Memory::fields_of_passes;
+
+  /// Takes this path from now on instead of the automatic choice, and allocates its memory.
+  /// A compensated method forgets its residual, as after `reset`.
+  /// Throws std::invalid_argument when the fields cannot be swept.
+  void use(Path path) {
+    if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
+    path_ = path;
+    if constexpr (Sweeps::possible) {
+      if (path == Path::sweep) return memory_.allocate_buffers(name_, this->lattice_, plan_);
+    }
+    memory_.allocate_fields(name_, this->lattice_);
+  }
+  Path path() const { return path_; }
+
+  /// Bytes of work memory.
+  std::size_t work_bytes() const { return memory_.bytes(); }
+  /// Predicted bytes of work memory with so many threads. `by_time_alone`: the generator needs the
+  /// time alone to be made ready (cayspin::Generator).
+  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
+    auto const layout = RowLayout::of<Real>(lattice);
+    if (!by_time_alone || !Sweeps::sweeps_by_itself(layout, threads))
+      return Memory::bytes_of_passes(layout);
+    return Memory::bytes_of_sweep(layout, Sweeps::plan(layout, threads));
+  }
+
+ protected:
+  using Sweeps = SweepChoice<Spins, Tableau, Update, work_fields>;
+  static constexpr int stages = Tableau::stages;
+
+  StagedStepper(std::string const& name, Spins const& like, Isotropy isotropy, Memory memory = {})
+      : StepperBase<Spins>(name, like.lattice(), ghosts),
+        isotropy_(isotropy),
+        memory_(std::move(memory)),
+        name_(name),
+        plan_(Sweeps::plan(like.layout(), DefaultExec().concurrency())) {
+    use(Sweeps::sweeps_by_itself(like.layout(), DefaultExec().concurrency()) ? Path::sweep
+                                                                             : Path::pass);
+  }
+
+  /// All stages from the spins `start`, in one pass through the lattice.
+  template <class Exec, class... Kernel>
+  void sweep_through(Exec const& exec, Spins const& start,
+                     std::tuple<Kernel...> const& kernels) const {
+    SweepLoop<Tableau, Update, Real, Kernel...> loop{kernels, plan_,   start.array(), {},
+                                                     {},      nullptr, nullptr};
+    memory_.set(loop);
+    for_each_task(exec, sweep_label_, plan_.tasks(), start.sites(), loop);
+  }
+
+  std::array<std::string, std::size_t{stages}> labels_ =
+      this->template stage_labels<std::size_t{stages}>();
+  Isotropy isotropy_;
+  Memory memory_;
+
+ private:
+  using DefaultExec = typename Spins::memory_space::execution_space;
+
+  std::string name_, sweep_label_ = this->label("::sweep");
+  SweepPlan plan_;
+  Path path_ = Path::pass;
+};
+
+}  // namespace cayspin::inline v0_1::detail

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/io/scene.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cayspin::program {
+
+/// What a scene models, in words: headings and lines.
+std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene);
+
+/// Reduced units, or what one of them is in SI.
+std::string describe_units(io::Units const& units);
+
+/// "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation"
+std::string describe_method(io::Scene const& scene);
+
+}  // namespace cayspin::program

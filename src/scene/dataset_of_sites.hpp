@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "hdf5/real_dataset.hpp"
+
+#include <cayspin/io/scene.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace cayspin::inline v0_1::io::detail {
+
+/// A dataset with `of_site` numbers of each site: (nz, ny, nx), or (site, nz, ny, nx) of a crystal,
+/// and a last extent for several numbers.
+class DatasetOfSites {
+ public:
+  DatasetOfSites(std::filesystem::path const& path, std::string name, Lattice const& lattice,
+                 std::int64_t of_site)
+      : sites_(static_cast<std::int64_t>(lattice.basis.size())),
+        of_site_(of_site),
+        dataset_(path, std::move(name)),
+        expected_(extents(
+            {sites_, lattice.shape[2] / sites_, lattice.shape[1], lattice.shape[0], of_site})) {}
+
+  bool fits() const { return dataset_.extents() == expected_; }
+  std::string expected() const { return fmt::format("{}", fmt::join(expected_, ", ")); }
+  [[noreturn]] void refuse_extents(std::string const& accepted) const {
+    dataset_.refuse_extents(accepted);
+  }
+
+  /// In the order of a lattice, whose planes are the sites of a cell in turn.
+  std::vector<double> in(SiteBox const& box) const {
+    auto const at_once = sites_ == 1 ? box.extent[2] : 1;
+    std::vector<double> numbers;
+    for (auto plane = box.begin[2]; plane < box.begin[2] + box.extent[2]; plane += at_once) {
+      auto const read =
+          dataset_.read(extents({plane % sites_, plane / sites_, box.begin[1], box.begin[0], 0}),
+                        extents({1, at_once, box.extent[1], box.extent[0], of_site_}));
+      numbers.insert(numbers.end(), read.begin(), read.end());
+    }
+    return numbers;
+  }
+
+ private:
+  /// Without those that the dataset does not have.
+  Extents extents(std::array<std::int64_t, 5> const& all) const {
+    return Extents(all.begin() + (sites_ == 1 ? 1 : 0), all.end() - (of_site_ == 1 ? 1 : 0));
+  }
+
+  std::int64_t sites_, of_site_;
+  RealDataset dataset_;
+  Extents expected_;
+};
+
+}  // namespace cayspin::inline v0_1::io::detail

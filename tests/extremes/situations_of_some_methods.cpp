@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// For methods that not all scenes or not all steps go with.
+#include "situation.hpp"
+
+namespace cayspin::extremes {
+
+using enum Fate;
+using enum Against;
+
+Section adaptive_steps() {
+  Section section{"Adaptive steps",
+                  R"(
+The tolerance is 1e-4 and the field 1 unless the table says otherwise; dt is from one look to the
+next, and t runs from 0 to 6 or 6/128. The error stays below 30 times the tolerance, also where
+the field is switched on within a step. A run stops when a step would have to be below min_dt,
+when numbers are too large for the precision, and when the start is wrong. Damping of 1e12 takes
+steps of 1e-12: only min_dt bounds their number.)",
+                  {exact, bounded, refused, detected}};
+  section.add("A = 0", {.field = 0, .damping = 0.1}, solution);
+  section.add("A along m", {.damping = 0.1, .along_field = true}, solution);
+  section.add_denormal();
+  section.add("dt 1e-300", {.damping = 0.1, .dt = 1e-300}, solution);
+  section.add("1e300, dt 1e-303", {.field = 1e300, .damping = 0.1, .dt = 1e-303});
+  section.add("on within a step", {.damping = 0.1, .switched_on_at = 2.5 / 128, .tolerance = 1e-5});
+  section.add("damping 0", {.dt = 1});
+  section.add("damping 1e-12", {.damping = 1e-12, .dt = 1});
+  section.add("damping 1e12, dt 1e-13", {.damping = 1e12, .dt = 1e-13});
+  section.add("damping 1e12, min_dt 1e-3", {.damping = 1e12, .dt = 1, .min_dt = 1e-3});
+  section.add("min_dt 3", {.damping = 0.1, .dt = 1, .min_dt = 3});
+  section.add("tolerance 1", {.damping = 0.1, .dt = 1, .tolerance = 1});
+  section.add("tolerance 1e-300", {.damping = 0.1, .dt = 1, .tolerance = 1e-300});
+  section.add("1 + 1e-3", {.damping = 0.1, .dt = 1, .start_length = 1.001});
+  return section;
+}
+
+Section temperatures() {
+  Section section{"Temperatures",
+                  R"(
+Methods that take one; damping 0.1, field 1. T = 0 has the bits of a run without [thermal]. `run`
+warns where noise turns spins by half a radian a step.)",
+                  {exact, bounded, warned, refused, detected}};
+  auto const add = [&](char const* name, Setting setting, double temperature,
+                       Against against = nothing, std::int64_t detected_by = 6) {
+    setting.temperature = temperature;
+    section.add(name, setting, against, detected_by);
+  };
+  add("T = 0", {.damping = 0.1}, 0, no_noise);
+  add("T 1e-300", {.damping = 0.1, .dt = 1e-12}, 1e-300, solution);
+  add("T 1", {.damping = 0.1}, 1);
+  add("T 1e3", {.damping = 0.1}, 1e3);
+  add("T 1e300", {.damping = 0.1}, 1e300);
+  add("field 1e-300", {.field = 1e-300, .damping = 0.1}, 1);
+  add("field and T 1e300, dt 1e-303", {.field = 1e300, .damping = 0.1, .dt = 1e-303}, 1e300);
+  add("NaN", {.damping = 0.1, .dt = 1e-3, .steps = 20, .shape = {64, 1, 1}, .fault_at = 3}, 1,
+      nothing, 4);
+  return section;
+}
+
+Section dear_fields() {
+  Section section{"Dear fields",
+                  R"(
+Methods that take one; damping 0.1, field 1, and a slab's field of 0.5 that is dear.)",
+                  {exact, bounded, warned, detected},
+                  {exact, drifts, warned, detected}};
+  auto const add = [&](char const* name, Setting setting, double strength,
+                       Against against = nothing, std::int64_t detected_by = 6) {
+    setting.dear = strength;
+    section.add(name, setting, against, detected_by);
+  };
+  add("dt 1e-300", {.damping = 0.1, .dt = 1e-300}, 0.5, solution);
+  add("dt 1e-3", {.damping = 0.1, .dt = 1e-3}, 0.5);
+  add("dt 1e8", {.damping = 0.1, .dt = 1e8}, 0.5);
+  add("1000 substeps", {.damping = 0.1, .substeps = 1000}, 0.5);
+  add("strength 1e-300", {.damping = 0.1, .dt = 1e-12}, 1e-300, solution);
+  add("strength 1e300, dt 1e-303", {.damping = 0.1, .dt = 1e-303}, 1e300);
+  add("NaN", {.damping = 0.1, .dt = 1e-3, .steps = 20, .shape = {64, 1, 1}, .fault_at = 3}, 0.5,
+      nothing, 4);
+  return section;
+}
+
+}  // namespace cayspin::extremes

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+"""Draws the rooms of check_layers.py and their includes as docs/images/architecture.svg.
+
+Usage: draw_layers.py ROOT [--check]    --check: fails where the picture is not that of today
+A room stands one row above the highest room that it includes. An arrow that follows from others is
+left out.
+"""
+
+import pathlib
+import sys
+from html import escape
+
+from check_layers import LIBRARY, PROGRAMS, Tree, room_of
+
+PICTURE = "docs/images/architecture.svg"
+
+# Where a room stands from left to right, in widths of a box, and what it holds.
+PLACES = {
+    "numbers": (1, "vectors, SIMD packs, SI units"),
+    "lattice": (2, "sites, boundaries, bonds, parts"),
+    "loops over sites": (1.5, "layout, loops, sums; no physics"),
+    "spins": (1.5, "the state; a site and its neighbours"),
+    "contracts": (1.5, "what terms, steppers, .. have to offer"),
+    "field terms": (1.5, "H and E of each term, and their sum"),
+    "demagnetization": (3, "the field of all cells on all, by FFTs"),
+    "generators": (1, "A of m' = A x m"),
+    "rotations": (0, "Cayley map and exponential"),
+    "isotropies": (0.5, "sigma, which is added along m"),
+    "reductions": (2, "energy and other numbers of a state"),
+    "solvers": (0.5, "exchange solved by lines, multigrid"),
+    "stages": (0.5, "a stage: arrays, kernel, pass, sweep"),
+    "stability": (0.5, "the largest stable step"),
+    "steppers": (1, "methods and their tableaux"),
+    "time": (2.5, "the loop over steps"),
+    "observers": (2, "records, energy control, noise"),
+    "minimisers": (1, "states of rest"),
+    "everything": (1, "all of the library"),
+    "ranks": (2.75, "a part of the lattice on each rank"),
+    "scenes and files": (3.5, "scenes as structs, files"),
+    "list of methods": (2.25, "one row for each method of scenes"),
+    "the paper's steppers": (0, "forms as printed in 2002"),
+    "reader and writer": (2.25, "reads TOML, writes HDF5 and OVF"),
+    "simulation": (1.5, "scenes as types, the one dispatch"),
+    "C interface": (0.5, "scenes for C and Fortran"),
+    "program": (1.5, "the commands"),
+    "paper and extremes": (2.5, "the tables of 2002, extreme inputs"),
+}
+
+WIDTH, HEIGHT, GAP, ROW, EDGE = 236, 58, 20, 94, 12
+LETTERS = 33  # of a folder's name in a box
+STYLE = """
+text { font-family: system-ui, "Segoe UI", Helvetica, Arial, sans-serif; text-anchor: middle; }
+rect { stroke-width: 1.2; }
+.library rect { fill: #e3eefb; stroke: #3d78b8; }
+.programs rect { fill: #e7f4e4; stroke: #4c924a; }
+.room { font-size: 14px; font-weight: 600; fill: #14212e; }
+.folder { font-size: 10.5px; font-family: ui-monospace, Menlo, Consolas, monospace; fill: #3b4a59; }
+.holds { font-size: 11.5px; fill: #3b4a59; }
+path { fill: none; stroke: #7f8c99; stroke-width: 1.5; }
+marker path { fill: #7f8c99; stroke: none; }
+"""
+
+
+def room_name(file):
+    library = file.startswith("include/cayspin/")
+    found = room_of(LIBRARY if library else PROGRAMS, file.removeprefix("include/cayspin/"))
+    return found and found[1]
+
+
+def includes_of_rooms(tree):
+    """Each room and the others that its files include."""
+    found = {room: set() for room, _ in LIBRARY + PROGRAMS}
+    for file, included in tree.includes.items():
+        here = room_name(file)
+        if here:
+            found[here] |= {room_name(other) for other in included if other} - {here, None}
+    return found
+
+
+def reduced(includes):
+    """Without what a room includes by way of another."""
+    def below(room):
+        return includes[room].union(*map(below, includes[room]))
+    return {room: sorted(includes[room] - set().union(*map(below, includes[room])), key=list(
+        includes).index) for room in includes}
+
+
+def rows_of(includes):
+    def row(room):
+        return 1 + max(map(row, includes[room]), default=-1)
+    return {room: row(room) for room in includes}
+
+
+class Picture:
+    def __init__(self, includes):
+        self.arrows, self.rows = reduced(includes), rows_of(includes)
+        self.top = max(self.rows.values())
+        self.width = max(map(self.middle, includes)) + WIDTH / 2 + EDGE
+        self.height = 2 * EDGE + self.top * ROW + HEIGHT
+        # What stands in a row: the boxes, then the arrows that pass between them.
+        self.taken = {row: [(self.middle(room), WIDTH / 2 + 9) for room in includes
+                            if self.rows[room] == row] for row in range(self.top + 1)}
+
+    def middle(self, room):
+        return EDGE + WIDTH / 2 + PLACES[room][0] * (WIDTH + GAP)
+
+    def upper(self, row):
+        return EDGE + (self.top - row) * ROW
+
+    def free(self, row, wish):
+        """The free place of a row that is nearest to the wish."""
+        places = sorted(range(EDGE, int(self.width) - EDGE + 1), key=lambda x: (abs(x - wish), x))
+        place = next(x for x in places
+                     if all(abs(x - middle) >= half for middle, half in self.taken[row]))
+        self.taken[row].append((place, 9))
+        return place
+
+    def ends(self, room, others, down):
+        """Where the arrows between a room and the others leave or reach its box."""
+        order = sorted(others, key=lambda other: (self.middle(other), self.rows[other]))
+        step = min(26, (WIDTH - 40) / max(len(order), 1))
+        first = self.middle(room) - step * (len(order) - 1) / 2
+        y = self.upper(self.rows[room]) + (HEIGHT if down else -5)
+        return {other: (first + step * place, y) for place, other in enumerate(order)}
+
+    def arrow(self, begin, end, rows):
+        """A smooth line from begin to end, straight through the rows between them."""
+        points = [begin]
+        for row in rows:
+            x = self.free(row, end[0])
+            points += [(x, self.upper(row)), (x, self.upper(row) + HEIGHT)]
+        points.append(end)
+        line = f"M{begin[0]:.0f} {begin[1]:.0f}"
+        for (x, y), (to_x, to_y) in zip(points[::2], points[1::2]):
+            bend = (y + to_y) / 2
+            line += f" C{x:.0f} {bend:.0f} {to_x:.0f} {bend:.0f} {to_x:.0f} {to_y:.0f}"
+            line += f" V{to_y + HEIGHT:.0f}" if (to_x, to_y) != end else ""
+        return f'<path d="{line}" marker-end="url(#head)"/>'
+
+    def draw_arrows(self):
+        users = {room: [other for other in self.arrows if room in self.arrows[other]]
+                 for room in self.arrows}
+        begins = {room: self.ends(room, self.arrows[room], True) for room in self.arrows}
+        ends = {room: self.ends(room, users[room], False) for room in self.arrows}
+        for room, others in self.arrows.items():
+            for other in others:
+                between = range(self.rows[room] - 1, self.rows[other], -1)
+                yield self.arrow(begins[room][other], ends[other][room], between)
+
+    def draw_box(self, room, patterns):
+        x, y, name = self.middle(room), self.upper(self.rows[room]), ""
+        for number, pattern in enumerate(patterns):
+            longer = f"{name}, {pattern}" if name else pattern
+            if len(longer) > (LETTERS if number == len(patterns) - 1 else LETTERS - 4):
+                name += ", .."
+                break
+            name = longer
+        texts = (("room", 18, room), ("folder", 34, name), ("holds", 50, PLACES[room][1]))
+        return (f'<rect x="{x - WIDTH / 2:.0f}" y="{y}" width="{WIDTH}" height="{HEIGHT}" rx="6"/>'
+                + "".join(f'<text class="{kind}" x="{x:.0f}" y="{y + down}">{escape(text)}</text>'
+                          for kind, down, text in texts))
+
+    def draw(self):
+        lines = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width:.0f} '
+                 f'{self.height}" role="img">',
+                 "<title>The rooms of cayspin: an arrow leads to what a room includes</title>",
+                 f"<style>{STYLE}</style>",
+                 '<marker id="head" viewBox="0 0 8 8" refX="3" refY="4" markerWidth="7" '
+                 'markerHeight="7" orient="auto"><path d="M0 0L8 4L0 8z"/></marker>',
+                 *self.draw_arrows()]
+        for group, rooms in (("library", LIBRARY), ("programs", PROGRAMS)):
+            lines += [f'<g class="{group}">', *(self.draw_box(*room) for room in rooms), "</g>"]
+        return "\n".join([*lines, "</svg>", ""])
+
+
+def main():
+    arguments = [argument for argument in sys.argv[1:] if argument != "--check"]
+    if len(arguments) != 1:
+        sys.exit(__doc__)
+    root = pathlib.Path(arguments[0]).resolve()
+    includes = includes_of_rooms(Tree(root))
+    if set(includes) != set(PLACES):
+        sys.exit(f"PLACES and the rooms differ: {sorted(set(includes) ^ set(PLACES))}")
+    picture, file = Picture(includes).draw(), root / PICTURE
+    if "--check" not in sys.argv:
+        file.write_text(picture, encoding="utf-8")
+    elif not file.exists() or file.read_text(encoding="utf-8") != picture:
+        sys.exit(f"{PICTURE} is not that of today's includes: "
+                 "python3 tests/layering/draw_layers.py . draws it again")
+
+
+if __name__ == "__main__":
+    main()
