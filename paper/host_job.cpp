@@ -13,9 +13,9 @@ HostSpins run_on_host(io::Scene const& scene, std::vector<double> const& starts,
       lattice, Times{0, integrator.dt, integrator.steps}, starts,
       SceneGenerator<HostSpins>(scene, lattice, inverse_inertia));
   // No plan of the run is made: its search for the stable dt would take longer than the run.
-  auto const ending = simulation.advance(
-      find_variant(scene), {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}},
-      observer);
+  auto const method = find_variant(scene).open(
+      &simulation, {integrator.rotation, integrator.sigma, integrator.isotropy_cap, {}});
+  auto const ending = simulation.advance(*method, observer);
   if (ending.failure) throw NumbersFailed(*ending.failure);
   return simulation.spins;
 }

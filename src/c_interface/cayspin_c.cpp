@@ -1,21 +1,84 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
-#include "simulation.hpp"
+#include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
 
+#include <cayspin/cayspin.h>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/version.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <memory>
 #include <mutex>
+#include <new>
+#include <optional>
+#include <string>
 
-using namespace cayspin::c_interface;
 using namespace cayspin::simulation;
 namespace io = cayspin::io;
 
+struct cayspin_simulation {
+  std::mutex turn;  // of the calls of several threads
+  std::unique_ptr<SceneRun> run;
+  std::optional<LentVectors> borrowed, borrowed_field;
+};
+
 namespace {
+
+/// What cayspin_last_error returns.
+std::string& last_error() {
+  thread_local std::string message;
+  return message;
+}
+
+/// The status and message of the exception that is being handled.
+cayspin_status failure() {
+  auto const is = [](cayspin_status status, char const* message) {
+    try {
+      last_error() = message;
+    } catch (...) {
+      last_error().clear();  // no memory for the message
+    }
+    return status;
+  };
+  try {
+    throw;
+  } catch (UsageError const& error) {
+    return is(CAYSPIN_WRONG_USAGE, error.what());
+  } catch (io::SceneError const& error) {
+    return is(CAYSPIN_WRONG_SCENE, error.what());
+  } catch (NumbersFailed const& error) {
+    return is(CAYSPIN_NUMBERS_FAILED, error.what());
+  } catch (std::bad_alloc const&) {
+    return is(CAYSPIN_FAILED, "out of memory");
+  } catch (std::exception const& error) {
+    return is(CAYSPIN_FAILED, error.what());
+  } catch (...) {
+    return is(CAYSPIN_FAILED, "an exception of unknown type");
+  }
+}
+
+/// CAYSPIN_OK after work(), otherwise the status of what it throws.
+template <class Work>
+cayspin_status guarded(Work const& work) {
+  try {
+    work();
+    return CAYSPIN_OK;
+  } catch (...) {
+    return failure();
+  }
+}
+
+/// Throws UsageError naming a null pointer.
+template <class Type>
+Type& required(Type* pointer, char const* name) {
+  if (pointer == nullptr)
+    throw UsageError(std::string(name) + " is NULL; accepted: a valid pointer");
+  return *pointer;
+}
 
 Precision precision_of(cayspin_precision precision) {
   if (precision == CAYSPIN_DOUBLE) return Precision::double_precision;

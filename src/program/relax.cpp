@@ -9,7 +9,6 @@
 #include "simulation/space.hpp"
 #include "simulation/text.hpp"
 
-#include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/io/run_output.hpp>
 #include <cayspin/observer/record.hpp>
@@ -39,16 +38,11 @@ class Relaxation {
   Relaxation(io::Scene const& scene, Lattice const& lattice, RelaxOptions const& options)
       : scene_(scene), options_(options), spins_("spins", lattice), minimizer_(spins_) {
     copy_from_host(io::initial_spins(scene), spins_);
-    int const threads = cayspin::detail::is_host_execution<Space> ? exec_.concurrency() : 1;
-    auto header = run_header(scene, options.precision, chosen_space(options.space), threads,
-                             CAYSPIN_GIT_COMMIT);
+    auto header = run_header(scene, options.precision, chosen_space(options.space),
+                             threads_of(exec_), CAYSPIN_GIT_COMMIT);
     header.relaxes = true;
-    // That of another run would be taken for one of this file.
-    auto const path = output_file(scene, options.output);
-    auto const checkpoint = io::checkpoint_beside(path);
-    require_free_output(path, options.overwrite);
-    file_.emplace(path, header, run_output_options(scene, options.overwrite));
-    std::filesystem::remove(checkpoint);
+    file_.emplace(open_output(output_file(scene, options.output), header,
+                              run_output_options(scene, options.overwrite)));
   }
 
   int run() {

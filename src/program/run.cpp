@@ -10,27 +10,22 @@
 #include "simulation/parts.hpp"
 #include "simulation/plan.hpp"
 #include "simulation/restart.hpp"
-#include "simulation/run_state.hpp"
 #include "simulation/text.hpp"
-#include "simulation/thermal.hpp"
 #include "trade/resolved.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
-#include <cayspin/version.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace cayspin::program {
-
 namespace {
 
 struct RunOptions : DeviceOptions {
@@ -38,14 +33,6 @@ struct RunOptions : DeviceOptions {
   std::optional<std::string> ranks;  // "y,z"
   Listener listener = Listener::user;
 };
-
-void warn_above_stable_dt(io::Scene const& scene, Plan const& plan, Ranks const& ranks) {
-  auto const reason = dt_warning(plan, scene.units);
-  if (!reason) return;
-  auto const error = io::scene_error(scene, "integrator.dt", *reason);
-  if (scene.integrator.refuse_unstable) throw error;
-  if (ranks.is_first()) fmt::print(stderr, "warning: {}\n", error.what());
-}
 
 void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ranks const& ranks) {
   if (!ranks.many()) return;
@@ -59,19 +46,6 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
   if (slab->on_host || slab->normal[0] != 0 || !on_host)
     throw io::scene_error(scene, "field.slab_demag.average",
                           accepted + "or a normal along y or z on a host without where = \"host\"");
-}
-
-io::CheckpointHeader checkpoint_header(io::Scene const& typed, io::Scene const& scene,
-                                       Precision precision, Step const& step) {
-  return {.scene_text = typed.text,
-          .resolved_scene = typed.integrator.method->automatic ? scene.text : std::string(),
-          .cayspin_version = CAYSPIN_VERSION_STRING,
-          .precision = std::string(to_string(precision)),
-          .shape = scene.lattice.shape,
-          .cell_sites = std::ssize(scene.lattice.basis),
-          .step = step.number,
-          .time = step.time * scene.units.time,
-          .si = scene.units.si};
 }
 
 Restart restart_of(LeftBehind left, io::Scene const& scene, Plan const& plan,
@@ -107,54 +81,41 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   Kokkos::Timer const clock;
   auto times = plan.times;
   if (restart) times.first = restart->step();
-  Simulation<Real, Space> simulation(scene, plan.lattice, times, ranks.together([&] {
-    return start_of(scene, plan.lattice, restart);
-  }));
-  auto const method = open_method(scene, plan, &simulation);
+  RunningScene<Real, Space> simulation(
+      scene, plan, times, ranks.together([&] { return start_of(scene, plan.lattice, restart); }));
 
   auto const path = output_file(scene, options.output);
   auto const checkpoint_path = io::checkpoint_beside(path);
+  auto const resolved = typed.integrator.method->automatic ? scene.text : std::string();
   Watch<Real, Space> watch(
-      scene, simulation.generator, simulation.spins, times.first,
+      scene, simulation,
       [&] {
-        require_free_output(path, options.overwrite);
-        auto const& exec = simulation.exec;
-        int const threads = cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
-        auto header = run_header(typed, options.precision, chosen_space(options.space), threads,
-                                 CAYSPIN_GIT_COMMIT);
-        if (typed.integrator.method->automatic) header.resolved_scene = scene.text;
+        auto header = run_header(typed, options.precision, chosen_space(options.space),
+                                 threads_of(simulation.exec), CAYSPIN_GIT_COMMIT);
+        header.resolved_scene = resolved;
         auto files = run_output_options(scene, options.overwrite);
         files.most_planes = ranks.planes_at_once(plan.lattice);
-        io::RunOutput file(path, header, files);
-        std::filesystem::remove(checkpoint_path);
-        return file;
+        return open_output(path, header, files);
       },
       ranks.is_first() ? options.listener : Listener::nobody, ranks);
-  std::optional<ControlledWatch<Real, Space>> controlled;
-  if (scene.integrator.energy_control)
-    controlled.emplace(watch, simulation.generator, simulation.spins);
-  std::optional<ThermalWatch<Real, Space>> thermal;
-  if (is_thermal(scene))
-    thermal.emplace(watch, scene, simulation.generator, simulation.spins, times.first);
-  auto const exchange = [&](Checkpoint& checkpoint, bool& continues) {
-    exchange_state(checkpoint, simulation, *method, continues, watch.guard(),
-                   controlled ? &controlled->control() : nullptr);
-  };
   auto const store_checkpoint = [&](Step const& step) {
     std::optional<io::CheckpointWriter> file;
     ranks.together([&] {
-      if (ranks.is_first())
-        file.emplace(checkpoint_path, checkpoint_header(typed, scene, options.precision, step));
+      if (!ranks.is_first()) return;
+      auto header =
+          checkpoint_header(typed, options.precision, step.number, step.time * scene.units.time);
+      header.resolved_scene = resolved;
+      file.emplace(checkpoint_path, header);
     });
     CheckpointFromRanks checkpoint(ranks, plan.lattice, file ? &*file : nullptr);
     bool continues = true;
-    exchange(checkpoint, continues);
+    simulation.exchange(checkpoint, continues);
     checkpoint.commit();
   };
   watch.store_checkpoints_by(store_checkpoint);
   if (restart && restart->memory()) {
     CheckpointForRank part(plan.lattice, *restart->memory());
-    exchange(part, simulation.times.continues);
+    simulation.exchange(part, simulation.times.continues);
   }
 
   auto const kept = [&] {
@@ -170,15 +131,11 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
         throw NumbersFailed(fmt::format("{}: {}; {}", scene.path.string(), why, kept()));
     });
   };
-  auto [summary, failure] = controlled ? simulation.advance(*method, *controlled)
-                            : thermal  ? simulation.advance(*method, *thermal)
-                                       : simulation.advance(*method, watch);
+  auto [summary, failure] = simulation.advance(watch);
   // The library's own messages, which know nothing of the scene's units.
   if (failure && scene.units.si)
     *failure += fmt::format(" (times in units of {:.6g} s)", scene.units.time);
   if (failure) fail(*failure);
-  if (controlled) summary.evaluations += controlled->evaluations();
-  if (thermal) summary.step_seconds += thermal->seconds();
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
   bool const whole = !watch.failure() && !watch.interrupted();
   auto const frames = ranks.together([&]() -> std::int64_t {
@@ -273,7 +230,8 @@ int run_on_ranks(RunOptions const& options, Ranks& ranks) {
   keep_part(plan, scene, options.precision, part.local, ranks.planes_at_once(part.local));
   auto const restart = ranks.together([&]() -> std::unique_ptr<Restart> {
     require_memory(scene, plan, ranks.on_this_machine());
-    warn_above_stable_dt(scene, plan, ranks);
+    if (auto const warning = dt_warning(scene, plan); warning && ranks.is_first())
+      fmt::print(stderr, "warning: {}\n", *warning);
     if (!left) return nullptr;
     return std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
   });

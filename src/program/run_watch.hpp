@@ -3,22 +3,18 @@
 
 #include "progress.hpp"
 #include "simulation/checkpoint_schedule.hpp"
-#include "simulation/guard.hpp"
 #include "simulation/ranks.hpp"
 #include "simulation/run_files.hpp"
-#include "simulation/run_noise.hpp"
-#include "simulation/simulate.hpp"
+#include "simulation/running_scene.hpp"
 
 #include <cayspin/io/run_output.hpp>
 #include <cayspin/io/scene.hpp>
-#include <cayspin/observer/energy_control.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -27,9 +23,8 @@ namespace cayspin::program {
 
 using namespace simulation;
 
-/// All that happens beside the stepping of a run: frames and scalars into the file, the guard, the
-/// ends before the end, the progress. Of several ranks all look at the same steps, and the first
-/// has the file.
+/// The looks at a run: frames and scalars into the file, the ends before the end, the progress. Of
+/// several ranks all look at the same steps, and the first has the file.
 template <class Real, class Space>
 class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
   using Spins = SpinField<Real, typename Space::memory_space>;
@@ -44,26 +39,21 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   using StoreCheckpoint = std::function<void(Step const&)>;
 
   /// `open_file` is called at the first look, when all memory of the run has been allocated.
-  /// `first`: the step after which the run begins.
-  Watch(io::Scene const& scene, SceneGenerator<Spins> const& generator, Spins const& spins,
-        std::int64_t first, OpenFile open_file, Listener listener, Ranks& ranks)
+  Watch(io::Scene const& scene, RunningScene<Real, Space>& run, OpenFile open_file,
+        Listener listener, Ranks& ranks)
       : ranks_(ranks),
-        first_(first),
-        generator_(generator),
+        run_(run),
+        first_(run.times.first),
         output_(scene.output),
         cell_sites_(std::ssize(scene.lattice.basis)),
         units_(scene.units),
-        until_torque_(scene.integrator.until_torque),
         open_file_(std::move(open_file)),
-        checkpoints_(scene.output.checkpoint_every, first),
-        guard_(scene, std::numeric_limits<Real>::epsilon()),
-        progress_(first, scene.integrator.steps, io::sites(scene), !scene.integrator.tolerance,
+        checkpoints_(scene.output.checkpoint_every, first_),
+        progress_(first_, scene.integrator.steps, io::sites(scene), !scene.integrator.tolerance,
                   listener),
-        frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(spins.sites())),
+        frame_("cayspin::frame", on_host ? 0 : static_cast<std::size_t>(run.spins.sites())),
         part_("cayspin::part_of_frame",
-              ranks.many() ? static_cast<std::size_t>(spins.sites()) : 0) {
-    if (until_torque_) torque_.emplace(generator.precession_alone());
-  }
+              ranks.many() ? static_cast<std::size_t>(run.spins.sites()) : 0) {}
 
   /// What stores a checkpoint, before the run begins.
   void store_checkpoints_by(StoreCheckpoint store) { store_checkpoint_ = std::move(store); }
@@ -77,18 +67,16 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     if (progress_.due(step)) progress_.show(step);
     auto const [interrupt, stored] = ranks_.any({interrupt_requested(), checkpoints_.due(step)});
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
-    if (!recorded && !stored && !guard_.due(step)) return Next::proceed;
+    if (!recorded && !stored && !run_.guard().due(step)) return Next::proceed;
 
-    Sample const now = torque_ ? sample_scene(exec, generator_, step, spins, *torque_)
-                               : sample_scene(exec, generator_, step, spins);
-    failure_ = guard_.judge(step, now.energy, now.norm_defect);
+    auto const found = run_.look(exec, step, spins);
+    failure_ = found.failure;
     if (failure_) return Next::stop;
-    at_rest_ = torque_ && step.number > first_ && now.energy.value < guard_.first_energy() &&
-               now.largest_rate < *until_torque_;
-    bool const ends = interrupt || at_rest_;
-    interrupted_ = interrupt && !at_rest_ && !step.last;
+    bool const at_rest = found.at_rest && step.number > first_;
+    bool const ends = interrupt || at_rest;
+    interrupted_ = interrupt && !at_rest && !step.last;
     if (recorded || ends)
-      write(exec, now, spins, frame_due(step) || ends, scalars_due(step) || ends);
+      write(exec, found.sample, spins, frame_due(step) || ends, scalars_due(step) || ends);
     if (ends) return Next::stop;
     if (stored) {
       // HDF5 is the writer's until it has written.
@@ -107,7 +95,6 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   Sample const& last_frame() const { return last_frame_; }
   std::optional<io::RunOutput>& file() { return file_; }
   Progress& progress() { return progress_; }
-  Guard& guard() { return guard_; }
 
  private:
   bool at(Step const& step, std::int64_t every) const {
@@ -116,7 +103,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   bool frame_due(Step const& step) const { return at(step, output_.every); }
   bool scalars_due(Step const& step) const { return at(step, output_.scalars_every); }
   bool due_on_all(Step const& step) const {
-    return guard_.due(step) || frame_due(step) || scalars_due(step) ||
+    return run_.guard().due(step) || frame_due(step) || scalars_due(step) ||
            (checkpoints_.is_by_steps() && checkpoints_.due(step));
   }
 
@@ -170,78 +157,21 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   }
 
   Ranks& ranks_;
-  std::int64_t first_;
-  SceneGenerator<Spins> generator_;
-  std::optional<SceneGenerator<Spins>> torque_;
+  RunningScene<Real, Space>& run_;
+  std::int64_t first_;  // the step after which the run begins
   io::Output output_;
   std::int64_t cell_sites_;
   io::Units units_;
-  std::optional<double> until_torque_;
   OpenFile open_file_;
   StoreCheckpoint store_checkpoint_;
   CheckpointSchedule checkpoints_;
   std::optional<io::RunOutput> file_;
-  Guard guard_;
   Progress progress_;
   Frame frame_;  // on its way from a device
   Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace> part_;  // on its way to the first
   Sample last_frame_;
   std::optional<std::string> failure_;
-  bool interrupted_ = false, at_rest_ = false;
-};
-
-/// A watch, and after it the control that holds the run's energy.
-template <class Real, class Space>
-class ControlledWatch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
-  using Spins = SpinField<Real, typename Space::memory_space>;
-
- public:
-  ControlledWatch(Watch<Real, Space>& watch, SceneGenerator<Spins> const& generator,
-                  Spins const& spins)
-      : watch_(watch), control_(generator, spins) {}
-
-  bool due(Step const&) const override { return true; }
-
-  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
-    auto const next = watch_.due(step) ? watch_(exec, step, spins) : Next::proceed;
-    if (next == Next::proceed && !step.last) control_(exec, step, spins);
-    return next;
-  }
-
-  std::int64_t evaluations() const { return control_.evaluations_done(); }
-
-  using Control = EnergyControl<Spins, SceneGenerator<Spins>>;
-  Control& control() { return control_; }
-
- private:
-  Watch<Real, Space>& watch_;
-  Control control_;
-};
-
-/// A watch, and around it the noise of a temperature.
-template <class Real, class Space>
-class ThermalWatch : public RunObserver<Space, SpinField<Real, typename Space::memory_space>> {
-  using Spins = SpinField<Real, typename Space::memory_space>;
-
- public:
-  /// `first`: the step after which the run begins.
-  ThermalWatch(Watch<Real, Space>& watch, io::Scene const& scene,
-               SceneGenerator<Spins> const& generator, Spins const& spins, std::int64_t first)
-      : watch_(watch), noise_(scene, generator, spins), first_(first) {}
-
-  bool due(Step const&) const override { return true; }
-
-  Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
-    return noise_(exec, step, first_, spins, watch_.due(step),
-                  [&] { return watch_(exec, step, spins); });
-  }
-
-  double seconds() { return noise_.take_seconds(); }
-
- private:
-  Watch<Real, Space>& watch_;
-  RunNoise<Spins> noise_;
-  std::int64_t first_;
+  bool interrupted_ = false;
 };
 
 }  // namespace cayspin::program

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "families.hpp"
 #include "kokkos_settings.hpp"
+#include "method_list.hpp"
 #include "variant.hpp"
 
-#include <cayspin/rotation/cayley.hpp>
-#include <cayspin/rotation/exponential.hpp>
-#include <cayspin/stability.hpp>
-#include <cayspin/stepper/energy_projection.hpp>
-#include <cayspin/stepper/methods.hpp>
+#include <cayspin/cayspin.hpp>
+
+#include <cayspin_paper/rkmk4_as_printed.hpp>
 
 #include <limits>
 

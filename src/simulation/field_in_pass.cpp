@@ -35,8 +35,10 @@ double bulk_constant(io::Scene const& scene) {
   return field.bulk_dmi && !field.dmi_factors.there() ? field.bulk_dmi->constant : 0;
 }
 
-// The largest of all parts: of doubles >= 0 their words are in the same order.
-double largest_of_parts(Lattice const& lattice, double largest) {
+// The largest magnitude in all parts: of doubles >= 0 their words are in the same order.
+double largest_of_parts(Lattice const& lattice, std::vector<double> const& values) {
+  double largest = 0;
+  for (double const value : values) largest = std::max(largest, std::abs(value));
   if (lattice.part == nullptr) return largest;
   std::array words{std::bit_cast<std::int64_t>(largest)};
   lattice.part->maximum(words);
@@ -172,9 +174,7 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
   auto const read = [&](char const* name, io::SiteNumbers const& numbers, std::string_view key,
                         double bond_energies) {
     auto const values = io::numbers_of_sites(scene, numbers, key, box);
-    double largest = 0;
-    for (double const value : values) largest = std::max(largest, std::abs(value));
-    none_.magnitude += bond_energies * largest_of_parts(lattice_, largest);
+    none_.magnitude += bond_energies * largest_of_parts(lattice_, values);
     return field_of<Real, Memory>(name, lattice_, values);
   };
   auto const& spacing = lattice_.spacing;
@@ -211,13 +211,10 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
   for (auto const& term : field.anisotropies) {
     if (!term.factors.there()) continue;
     auto values = io::numbers_of_sites(scene, term.factors, "field.anisotropy", box);
-    double largest = 0;
-    for (std::size_t site = 0; site < values.size(); ++site) {
+    for (std::size_t site = 0; site < values.size(); ++site)
       if (term.site >= 0 && site_of_cell(lattice_, site) != static_cast<std::size_t>(term.site))
         values[site] = 0;
-      largest = std::max(largest, std::abs(values[site]));
-    }
-    none_.magnitude += 0.5 * largest_of_parts(lattice_, largest);
+    none_.magnitude += 0.5 * largest_of_parts(lattice_, values);
     constants_of_axes_.push_back(field_of<Real, Memory>("anisotropy", lattice_, values));
     axes.push_back({constants_of_axes_.back().array(), vector(term.axis)});
   }

@@ -31,6 +31,11 @@ bool has_name(std::string const& word) {
 /// "serial" where Kokkos already runs with more threads.
 std::string chosen_space(std::optional<std::string> const& asked);
 
+/// 1 on devices.
+template <class Space>
+int threads_of(Space const& exec) {
+  return cayspin::detail::is_host_execution<Space> ? exec.concurrency() : 1;
+}
 /// Threads of the default space on hosts: how many there are, or will be by default.
 int expected_threads();
 

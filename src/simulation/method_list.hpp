@@ -7,78 +7,154 @@
 #include <cayspin/stepper/tableau_order6.hpp>
 
 #include <tuple>
+#include <type_traits>
 
 // The methods of scenes, one row each. From here come the words of scenes and what they refuse,
 // `cayspin methods`, the candidates of `cayspin trade`, the tables of extremes, and what is
-// compiled. No Kokkos is needed to read it. A new tableau is a struct in
-// cayspin/stepper/tableau.hpp and a row.
+// compiled. No Kokkos is needed to read it: steppers are declared alone.
+// A new tableau is a struct in cayspin/stepper/tableau.hpp and a row; a new stepper a declaration
+// and a row.
+namespace cayspin::inline v0_1 {
+
+template <class Spins, class Isotropy, class Rotation>
+class LieEuler;
+template <class Spins, class Isotropy, class Rotation>
+class LieHeun;
+template <class Spins, class Isotropy, class Rotation>
+class Rkmk4;
+template <class Spins, class Tableau, class Isotropy, class Rotation>
+class Rkmk;
+template <class Spins, class Tableau, class Isotropy, class Rotation>
+class AdaptiveRkmk;
+template <class Spins, class Tableau>
+class StereographicRungeKutta;
+template <class Spins, class Tableau>
+class AdaptiveStereographic;
+template <class Spins, class Tableau>
+class ClassicalRungeKutta;
+template <class Spins, class Tableau>
+class ProjectedRungeKutta;
+template <class Spins, class Tableau>
+class AdaptiveProjected;
+template <class Spins, class Isotropy>
+class Rkmk4AsPrinted;
+template <class Spins, class Isotropy>
+class CommutatorFree4;
+template <class Spins, class Isotropy, class Rotation>
+class LieAdamsBashforth2;
+template <class Spins, class Isotropy, class Rotation>
+class ImplicitLieEuler;
+template <class Spins>
+class ImplicitMidpoint;
+template <class Spins, int Order>
+class StiffGauss;
+template <class Spins>
+class AdaptiveStiffGauss2;
+template <class Spins, bool Estimates>
+class FieldExtrapolation3;
+template <class Spins, bool Estimates>
+class FieldExtrapolation4;
+template <class Spins, int Order>
+class RedBlack;
+template <class Spins, class Isotropy, class Series>
+class Series4;
+namespace detail {
+struct DirectSeries;
+struct PaperSeries;
+}  // namespace detail
+namespace isotropy {
+struct Zero;
+struct Energy;
+}  // namespace isotropy
+struct Cayley;
+
+}  // namespace cayspin::inline v0_1
+
 namespace cayspin::simulation {
 
-/// What makes the steppers of a method. Defined in families.hpp.
+/// What makes the steppers of a method: Stepper for spins, an isotropy and a rotation, as far as
+/// these are the stepper's choice; Chart where the method takes the generator "tangent".
 namespace family {
+
+template <template <class> class Of>
+struct Plain {
+  template <class Spins, class, class>
+  using Stepper = Of<Spins>;
+};
+template <template <class, class> class Of>
+struct WithIsotropy {
+  static constexpr bool takes_sigma = true;
+  template <class Spins, class Isotropy, class>
+  using Stepper = Of<Spins, Isotropy>;
+};
+template <template <class, class, class> class Of>
+struct WithRotation {
+  static constexpr bool takes_sigma = true;
+  template <class Spins, class Isotropy, class Rotation>
+  using Stepper = Of<Spins, Isotropy, Rotation>;
+};
+template <template <class, int> class Of, int Order>
+struct OfOrder {
+  template <class Spins, class, class>
+  using Stepper = Of<Spins, Order>;
+};
+template <template <class, bool> class Of>
+struct WithoutEstimates {
+  template <class Spins, class, class>
+  using Stepper = Of<Spins, false>;
+};
+
+/// A tableau in space, with which spins leave the sphere unless each step is projected to it.
+template <template <class, class> class Of, class Tableau>
+struct InSpace {
+  using tableau_type = Tableau;
+  template <class Spins, class, class>
+  using Stepper = Of<Spins, Tableau>;
+};
+/// Runge-Kutta-Munthe-Kaas, and the same tableau in the stereographic chart.
 template <class Tableau>
-struct Group;  // Runge-Kutta-Munthe-Kaas, and the same tableau in the stereographic chart
+struct Group {
+  using tableau_type = Tableau;
+  static constexpr bool takes_sigma = true, has_chart = true;
+  template <class Spins, class Isotropy, class Rotation>
+  using Stepper = Rkmk<Spins, Tableau, Isotropy, Rotation>;
+  template <class Spins>
+  using Chart = StereographicRungeKutta<Spins, Tableau>;
+};
+/// The same by a class of the tableau's own.
+template <template <class, class, class> class Of, class Tableau>
+struct GroupBy : Group<Tableau> {
+  template <class Spins, class Isotropy, class Rotation>
+  using Stepper = Of<Spins, Isotropy, Rotation>;
+};
 template <class Tableau>
-struct Classical;  // Runge-Kutta in space
-template <class Tableau>
-struct Projected;  // the same, each step divided by the length
-template <class Tableau>
-struct AdaptiveGroup;
-template <class Tableau>
-struct AdaptiveProjected;
-struct AsPrinted;
-struct CommutatorFree;
-struct AdamsBashforth;
-struct ImplicitEuler;
-struct ImplicitMidpoint;
-struct Series;
-struct PaperSeries;
-struct Automatic;
-template <int Order>
-struct FieldExtrapolation;
-template <int Order>
-struct RedBlack;
-template <int Order>
-struct Stiff;
-struct AdaptiveStiff;
+struct AdaptiveGroup {
+  using tableau_type = Tableau;
+  static constexpr bool takes_sigma = true, has_chart = true;
+  template <class Spins, class Isotropy, class Rotation>
+  using Stepper = AdaptiveRkmk<Spins, Tableau, Isotropy, Rotation>;
+  template <class Spins>
+  using Chart = AdaptiveStereographic<Spins, Tableau>;
+};
+
+/// The series know spins and rigid bodies as types, and energy as an isotropy of the latter.
+template <class Of>
+struct Series {
+  template <class Spins, class Isotropy, class>
+  using Stepper = Series4<Spins,
+                          std::conditional_t<std::is_same_v<Isotropy, isotropy::Energy>,
+                                             isotropy::Energy, isotropy::Zero>,
+                          Of>;
+  /// Without a sigma its linear stages are those of RKMK4.
+  template <class Spins>
+  using StableAs = Rkmk4<Spins, isotropy::Zero, Cayley>;
+  static constexpr bool distinguishes_rigid_bodies = true;
+  static constexpr int work_fields_of_rigid_bodies = 1;
+};
+
+struct Automatic {};
+
 }  // namespace family
-
-/// A method and what makes its steppers.
-template <class Family>
-struct Row : io::Method {
-  using family = Family;
-};
-
-/// A row whose order and evaluations are those that it says.
-template <class Family>
-struct RowOf {
-  static constexpr Row<Family> with(io::Method method) { return {method}; }
-};
-
-/// Those of a tableau are its own.
-template <template <class> class Family, class Tableau>
-struct RowOf<Family<Tableau>> {
-  static constexpr Row<Family<Tableau>> with(io::Method method) {
-    method.order = Tableau::order;
-    if (!method.adaptive) method.evaluations = Tableau::stages;
-    return {method};
-  }
-};
-
-template <class Family>
-constexpr Row<Family> row(io::Method const& method) {
-  return RowOf<Family>::with(method);
-}
-
-/// A method on the Lie group: in Cayley coordinates, with the generators default and orthogonal and
-/// no sigma, where the row says nothing else.
-constexpr io::Method lie(io::Method method) {
-  if (method.rotations.empty()) method.rotations = {io::Rotation::cayley};
-  if (method.generators.empty())
-    method.generators = {io::Generator::standard, io::Generator::orthogonal};
-  if (method.isotropies.empty()) method.isotropies = {io::Isotropy::zero};
-  return method;
-}
 
 namespace sets {
 using enum io::Isotropy;
@@ -89,154 +165,162 @@ using enum io::Neighbors;
 using enum io::Trial;
 
 inline constexpr io::SetOf<io::Rotation> both_rotations{cayley, exponential};
-inline constexpr io::SetOf<io::Generator> with_chart{standard, orthogonal, tangent};
-inline constexpr io::SetOf<io::Isotropy> a_number{zero, constant};
 }  // namespace sets
+
+/// A method and what makes its steppers. Order and evaluations of a tableau are its own.
+template <class Family>
+struct Row : io::Method {
+  using family = Family;
+
+  constexpr Row(io::Method const& method) : io::Method(method) {
+    if constexpr (requires { typename Family::tableau_type; }) {
+      order = Family::tableau_type::order;
+      if (!adaptive) evaluations = Family::tableau_type::stages;
+    }
+  }
+};
+
+/// A method on the Lie group. Where the row says nothing else it is in Cayley coordinates, and has
+/// the generators and isotropies that its steppers have.
+template <class Family>
+constexpr Row<Family> row(io::Method method) {
+  using namespace sets;
+  if (method.rotations.empty()) method.rotations = {cayley};
+  if (method.generators.empty()) {
+    method.generators = {standard, orthogonal};
+    if constexpr (requires { Family::has_chart; })
+      method.generators = {standard, orthogonal, tangent};
+  }
+  if (method.isotropies.empty()) {
+    method.isotropies = {zero};
+    if constexpr (requires { Family::takes_sigma; }) method.isotropies = {zero, constant};
+  }
+  return {method};
+}
+
+/// A method in space, and one that stands for others.
+template <template <class, class> class Of, class Tableau>
+constexpr Row<family::InSpace<Of, Tableau>> baseline(io::Method const& method) {
+  return {method};
+}
+constexpr Row<family::Automatic> automatic(io::Method const& method) { return {method}; }
 
 inline constexpr auto method_list = [] {
   using namespace sets;
   using namespace family;
   return std::tuple{
-      row<Group<tableau::Euler>>(lie(
+      row<GroupBy<LieEuler, tableau::Euler>>(
           {.word = "euler",
            .rotations = both_rotations,
-           .generators = with_chart,
            .isotropies = {zero, constant, analytic, finite_difference, finite_difference_backward},
            .energy_kinds = {llg},
-           .trials = {plain}})),
-      row<ImplicitEuler>(lie({.word = "implicit_euler",
-                              .order = 1,
-                              .rotations = both_rotations,
-                              .isotropies = {zero, constant, analytic}})),
-      row<Group<tableau::Heun>>(lie({.word = "heun",
-                                     .rotations = both_rotations,
-                                     .generators = with_chart,
-                                     .isotropies = a_number,
-                                     .energy_kinds = {llg, rigid_body},
-                                     .trials = {plain, in_chart, single_precision}})),
-      row<Group<tableau::Classical4>>(lie(
+           .trials = {plain}}),
+      row<WithRotation<ImplicitLieEuler>>({.word = "implicit_euler",
+                                           .order = 1,
+                                           .rotations = both_rotations,
+                                           .isotropies = {zero, constant, analytic}}),
+      row<GroupBy<LieHeun, tableau::Heun>>({.word = "heun",
+                                            .rotations = both_rotations,
+                                            .energy_kinds = {llg, rigid_body},
+                                            .trials = {plain, in_chart, single_precision}}),
+      row<GroupBy<Rkmk4, tableau::Classical4>>(
           {.word = "rkmk4",
            .compensated = true,
            .rotations = both_rotations,
-           .generators = with_chart,
-           .isotropies = a_number,
            .energy_kinds = {llg, rigid_body},
-           .trials = {plain, in_chart, sigma, single_precision, compensated_single_precision}})),
-      row<AsPrinted>(
-          lie({.word = "rkmk4_as_printed", .order = 3, .evaluations = 4, .isotropies = a_number})),
-      row<Group<tableau::Oscillatory64>>(lie({.word = "rkmk64",
-                                              .generators = with_chart,
-                                              .isotropies = a_number,
-                                              .trials = {plain, in_chart}})),
-      row<Group<tableau::Tsitouras5>>(
-          lie({.word = "rkmk5",
-               .compensated = true,
-               .generators = with_chart,
-               .isotropies = a_number,
-               .trials = {plain, in_chart, compensated_single_precision}})),
-      row<Group<tableau::Oscillatory86>>(lie({.word = "rkmk86",
-                                              .generators = with_chart,
-                                              .isotropies = a_number,
-                                              .trials = {plain, in_chart, sigma}})),
-      row<Group<tableau::Damped86>>(lie({.word = "rkmk86_damped",
-                                         .generators = with_chart,
-                                         .isotropies = a_number,
-                                         .trials = {plain, in_chart}})),
-      row<Group<tableau::DormandPrince8>>(lie({.word = "rkmk8",
-                                               .generators = with_chart,
-                                               .isotropies = a_number,
-                                               .trials = {plain, in_chart, sigma}})),
-      row<Series>(lie({.word = "series4",
-                       .order = 4,
-                       .evaluations = 4,
-                       .differentiates_field = true,
-                       .energy_kinds = {rigid_body},
-                       .trials = {plain}})),
-      row<PaperSeries>(lie({.word = "series4_paper",
-                            .order = 4,
-                            .evaluations = 4,
-                            .differentiates_field = true,
-                            .energy_kinds = {rigid_body}})),
-      row<AdamsBashforth>(lie({.word = "ab2",
-                               .order = 2,
-                               .evaluations = 1,
-                               .rotations = both_rotations,
-                               .isotropies = a_number,
-                               .trials = {plain}})),
-      row<ImplicitMidpoint>(lie({.word = "implicit_midpoint", .order = 2, .trials = {plain}})),
-      row<Stiff<2>>(lie({.word = "stiff2", .order = 2, .stiff = true, .trials = {plain}})),
-      row<Stiff<4>>(lie({.word = "stiff4", .order = 4, .stiff = true, .trials = {plain}})),
-      row<AdaptiveStiff>(lie({.word = "stiff2_adaptive",
-                              .order = 2,
-                              .adaptive = true,
-                              .stiff = true,
-                              .trials = {plain}})),
-      row<CommutatorFree>(lie({.word = "cf4",
-                               .order = 4,
-                               .evaluations = 4,
-                               .rotations = {exponential},
-                               .isotropies = a_number,
-                               .trials = {plain, sigma}})),
-      row<FieldExtrapolation<3>>(lie({.word = "fx3",
-                                      .order = 3,
-                                      .evaluations = 1,
-                                      .neighbors = predicted,
-                                      .trials = {plain}})),
-      row<FieldExtrapolation<4>>(lie({.word = "fx4",
-                                      .order = 4,
-                                      .evaluations = 1,
-                                      .neighbors = predicted,
-                                      .trials = {plain}})),
-      row<RedBlack<2>>(lie({.word = "red_black2",
-                            .order = 2,
-                            .evaluations = 1,
-                            .neighbors = by_colour,
-                            .generators = {standard},
-                            .trials = {plain}})),
-      row<RedBlack<4>>(lie({.word = "red_black4",
-                            .order = 4,
-                            .evaluations = 5,
-                            .neighbors = by_colour,
-                            .generators = {standard},
-                            .trials = {plain}})),
-      row<AdaptiveGroup<tableau::Tsitouras5>>(lie({.word = "tsit5",
+           .trials = {plain, in_chart, sigma, single_precision, compensated_single_precision}}),
+      row<WithIsotropy<Rkmk4AsPrinted>>({.word = "rkmk4_as_printed", .order = 3, .evaluations = 4}),
+      row<Group<tableau::Oscillatory64>>({.word = "rkmk64", .trials = {plain, in_chart}}),
+      row<Group<tableau::Tsitouras5>>({.word = "rkmk5",
+                                       .compensated = true,
+                                       .trials = {plain, in_chart, compensated_single_precision}}),
+      row<Group<tableau::Oscillatory86>>({.word = "rkmk86", .trials = {plain, in_chart, sigma}}),
+      row<Group<tableau::Damped86>>({.word = "rkmk86_damped", .trials = {plain, in_chart}}),
+      row<Group<tableau::DormandPrince8>>({.word = "rkmk8", .trials = {plain, in_chart, sigma}}),
+      row<Series<cayspin::detail::DirectSeries>>({.word = "series4",
+                                                  .order = 4,
+                                                  .evaluations = 4,
+                                                  .differentiates_field = true,
+                                                  .energy_kinds = {rigid_body},
+                                                  .trials = {plain}}),
+      row<Series<cayspin::detail::PaperSeries>>({.word = "series4_paper",
+                                                 .order = 4,
+                                                 .evaluations = 4,
+                                                 .differentiates_field = true,
+                                                 .energy_kinds = {rigid_body}}),
+      row<WithRotation<LieAdamsBashforth2>>({.word = "ab2",
+                                             .order = 2,
+                                             .evaluations = 1,
+                                             .rotations = both_rotations,
+                                             .trials = {plain}}),
+      row<Plain<ImplicitMidpoint>>({.word = "implicit_midpoint", .order = 2, .trials = {plain}}),
+      row<OfOrder<StiffGauss, 2>>({.word = "stiff2", .order = 2, .stiff = true, .trials = {plain}}),
+      row<OfOrder<StiffGauss, 4>>({.word = "stiff4", .order = 4, .stiff = true, .trials = {plain}}),
+      row<Plain<AdaptiveStiffGauss2>>({.word = "stiff2_adaptive",
+                                       .order = 2,
+                                       .adaptive = true,
+                                       .stiff = true,
+                                       .trials = {plain}}),
+      row<WithIsotropy<CommutatorFree4>>({.word = "cf4",
+                                          .order = 4,
+                                          .evaluations = 4,
+                                          .rotations = {exponential},
+                                          .trials = {plain, sigma}}),
+      row<WithoutEstimates<FieldExtrapolation3>>(
+          {.word = "fx3", .order = 3, .evaluations = 1, .neighbors = predicted, .trials = {plain}}),
+      row<WithoutEstimates<FieldExtrapolation4>>(
+          {.word = "fx4", .order = 4, .evaluations = 1, .neighbors = predicted, .trials = {plain}}),
+      row<OfOrder<RedBlack, 2>>({.word = "red_black2",
+                                 .order = 2,
+                                 .evaluations = 1,
+                                 .neighbors = by_colour,
+                                 .generators = {standard},
+                                 .trials = {plain}}),
+      row<OfOrder<RedBlack, 4>>({.word = "red_black4",
+                                 .order = 4,
+                                 .evaluations = 5,
+                                 .neighbors = by_colour,
+                                 .generators = {standard},
+                                 .trials = {plain}}),
+      row<AdaptiveGroup<tableau::Tsitouras5>>({.word = "tsit5",
+                                               .adaptive = true,
+                                               .rotations = both_rotations,
+                                               .trials = {plain, in_chart, sigma}}),
+      row<AdaptiveGroup<tableau::DormandPrince5>>({.word = "dp5",
                                                    .adaptive = true,
                                                    .rotations = both_rotations,
-                                                   .generators = with_chart,
-                                                   .isotropies = a_number,
-                                                   .trials = {plain, in_chart, sigma}})),
-      row<AdaptiveGroup<tableau::DormandPrince5>>(lie({.word = "dp5",
-                                                       .adaptive = true,
-                                                       .rotations = both_rotations,
-                                                       .generators = with_chart,
-                                                       .isotropies = a_number,
-                                                       .trials = {plain, in_chart, sigma}})),
-      row<AdaptiveGroup<tableau::BogackiShampine3>>(lie({.word = "bs3",
-                                                         .adaptive = true,
-                                                         .rotations = both_rotations,
-                                                         .generators = with_chart,
-                                                         .isotropies = a_number,
-                                                         .trials = {plain, in_chart}})),
-      row<Classical<tableau::Euler>>({.word = "classical_euler", .keeps_length = false}),
-      row<Classical<tableau::Heun>>({.word = "classical_heun", .keeps_length = false}),
-      row<Classical<tableau::Classical4>>({.word = "classical_rk4", .keeps_length = false}),
-      row<Projected<tableau::Euler>>({.word = "projected_euler"}),
-      row<Projected<tableau::Heun>>({.word = "projected_heun", .trials = {plain}}),
-      row<Projected<tableau::Classical4>>(
+                                                   .trials = {plain, in_chart, sigma}}),
+      row<AdaptiveGroup<tableau::BogackiShampine3>>({.word = "bs3",
+                                                     .adaptive = true,
+                                                     .rotations = both_rotations,
+                                                     .trials = {plain, in_chart}}),
+      baseline<ClassicalRungeKutta, tableau::Euler>(
+          {.word = "classical_euler", .keeps_length = false}),
+      baseline<ClassicalRungeKutta, tableau::Heun>(
+          {.word = "classical_heun", .keeps_length = false}),
+      baseline<ClassicalRungeKutta, tableau::Classical4>(
+          {.word = "classical_rk4", .keeps_length = false}),
+      baseline<ProjectedRungeKutta, tableau::Euler>({.word = "projected_euler"}),
+      baseline<ProjectedRungeKutta, tableau::Heun>({.word = "projected_heun", .trials = {plain}}),
+      baseline<ProjectedRungeKutta, tableau::Classical4>(
           {.word = "projected_rk4",
            .compensated = true,
            .trials = {plain, single_precision, compensated_single_precision}}),
-      row<Projected<tableau::Oscillatory64>>({.word = "projected_rk64", .trials = {plain}}),
-      row<Projected<tableau::Oscillatory74>>(
+      baseline<ProjectedRungeKutta, tableau::Oscillatory64>(
+          {.word = "projected_rk64", .trials = {plain}}),
+      baseline<ProjectedRungeKutta, tableau::Oscillatory74>(
           {.word = "projected_rk74", .trials = {plain, single_precision}}),
-      row<Projected<tableau::Oscillatory86>>({.word = "projected_rk86", .trials = {plain}}),
-      row<Projected<tableau::DormandPrince5>>({.word = "projected_rk5",
-                                               .compensated = true,
-                                               .trials = {plain, compensated_single_precision}}),
-      row<Projected<tableau::DormandPrince8>>({.word = "projected_rk8", .trials = {plain}}),
-      row<AdaptiveProjected<tableau::DormandPrince5>>(
+      baseline<ProjectedRungeKutta, tableau::Oscillatory86>(
+          {.word = "projected_rk86", .trials = {plain}}),
+      baseline<ProjectedRungeKutta, tableau::DormandPrince5>(
+          {.word = "projected_rk5",
+           .compensated = true,
+           .trials = {plain, compensated_single_precision}}),
+      baseline<ProjectedRungeKutta, tableau::DormandPrince8>(
+          {.word = "projected_rk8", .trials = {plain}}),
+      baseline<AdaptiveProjected, tableau::DormandPrince5>(
           {.word = "projected_dp5", .adaptive = true, .trials = {plain}}),
-      row<Automatic>({.word = "auto", .automatic = true})};
+      automatic({.word = "auto", .automatic = true})};
 }();
 
 }  // namespace cayspin::simulation

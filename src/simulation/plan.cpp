@@ -267,8 +267,6 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
 
 }  // namespace
 
-std::int64_t available_memory() { return io::available_memory(); }
-
 Plan make_plan(io::Scene const& scene, Precision precision) {
   require_demagnetization(scene);
   auto const lattice = make_lattice(scene);
@@ -357,6 +355,14 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
   return std::nullopt;
 }
 
+std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan) {
+  auto const reason = dt_warning(plan, scene.units);
+  if (!reason) return std::nullopt;
+  auto const error = io::scene_error(scene, "integrator.dt", *reason);
+  if (scene.integrator.refuse_unstable) throw error;
+  return error.what();
+}
+
 void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice const& local,
                std::int64_t planes_at_once) {
   plan.lattice = local;
@@ -365,10 +371,10 @@ void keep_part(Plan& plan, io::Scene const& scene, Precision precision, Lattice 
                     : memory_of<float>(scene, local, plan.variant, precision, planes_at_once);
 }
 
-bool fits(Plan const& plan) { return plan.memory.total() <= available_memory(); }
+bool fits(Plan const& plan) { return plan.memory.total() <= io::available_memory(); }
 
 void require_memory(io::Scene const& scene, Plan const& plan, int ranks) {
-  std::int64_t const available = available_memory() / ranks;
+  std::int64_t const available = io::available_memory() / ranks;
   if (plan.memory.total() > available)
     throw io::scene_error(scene, "lattice.shape",
                           fmt::format("the run needs {} of memory, {} are available",

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "restart.hpp"
 
+#include "dear_method.hpp"
 #include "failure.hpp"
-#include "run_state.hpp"
 #include "text.hpp"
 
 #include <fmt/format.h>
@@ -29,6 +29,11 @@ bool ran_alike(std::string const& scene_as_run, io::Scene const& scene, Plan con
 }
 
 }  // namespace
+
+bool remembers(io::Scene const& scene, Plan const& plan) {
+  return plan.variant.remembers || scene.integrator.energy_control ||
+         scene.integrator.until_torque.has_value() || has_dear_field(scene);
+}
 
 LeftBehind::LeftBehind(std::filesystem::path of_run) : path(std::move(of_run)) {
   if (io::is_checkpoint(path)) {

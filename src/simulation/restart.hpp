@@ -14,6 +14,9 @@
 
 namespace cayspin::simulation {
 
+/// Does a run of this plan need more than its spins to go on with the same bits?
+bool remembers(io::Scene const& scene, Plan const& plan);
+
 /// What a run left behind for another one: a trajectory, the checkpoint beside it, or a checkpoint.
 struct LeftBehind {
   explicit LeftBehind(std::filesystem::path path);

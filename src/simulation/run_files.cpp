@@ -3,7 +3,6 @@
 
 #include "files/file_beside.hpp"
 
-#include <cayspin/io/checkpoint.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
@@ -27,6 +26,12 @@ bool is_whole_checkpoint(std::filesystem::path const& path) {
   } catch (std::runtime_error const&) {
     return false;
   }
+}
+
+void require_free_output(std::filesystem::path const& path, bool overwrite) {
+  io::require_free(path, overwrite);
+  auto const checkpoint = io::checkpoint_beside(path);
+  io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
 }
 
 // Site by site of the cell, as the file has them.
@@ -76,6 +81,19 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
   return header;
 }
 
+io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precision,
+                                       std::int64_t step, double time) {
+  return {.scene_text = scene.text,
+          .resolved_scene = {},
+          .cayspin_version = CAYSPIN_VERSION_STRING,
+          .precision = std::string(to_string(precision)),
+          .shape = scene.lattice.shape,
+          .cell_sites = std::ssize(scene.lattice.basis),
+          .step = step,
+          .time = time,
+          .si = scene.units.si};
+}
+
 io::TrajectoryStorage storage_of(io::Scene const& scene) {
   auto const& output = scene.output;
   auto const frames = (scene.integrator.steps + output.every - 1) / output.every + 1;
@@ -95,10 +113,12 @@ io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite) 
                                                     : std::vector<double>()};
 }
 
-void require_free_output(std::filesystem::path const& path, bool overwrite) {
-  io::require_free(path, overwrite);
-  auto const checkpoint = io::checkpoint_beside(path);
-  io::require_free(checkpoint, overwrite || is_whole_checkpoint(checkpoint));
+io::RunOutput open_output(std::filesystem::path const& path, io::TrajectoryHeader const& header,
+                          io::RunOutputOptions const& options) {
+  require_free_output(path, options.overwrite);
+  io::RunOutput file(path, header, options);
+  std::filesystem::remove(io::checkpoint_beside(path));
+  return file;
 }
 
 std::optional<std::string> output_refusal(io::Output const& output) {

@@ -3,6 +3,7 @@
 
 #include "precision.hpp"
 
+#include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/run_output.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
@@ -19,6 +20,10 @@ io::TrajectoryHeader run_header(io::Scene const& scene, Precision precision,
                                 std::string const& space, int threads,
                                 std::string const& git_commit);
 
+/// After `step`, at `time` in the scene's units.
+io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precision,
+                                       std::int64_t step, double time);
+
 /// Does a file say where the sites are? They are on no regular grid.
 bool has_positions(io::Lattice const& lattice);
 /// Of /positions, once in a file; 0 without them.
@@ -29,9 +34,11 @@ io::TrajectoryStorage storage_of(io::Scene const& scene);
 
 io::RunOutputOptions run_output_options(io::Scene const& scene, bool overwrite);
 
-/// Throws if the trajectory `path`, or what is named like its checkpoint, must not be replaced. A
-/// checkpoint whose trajectory is gone may be.
-void require_free_output(std::filesystem::path const& path, bool overwrite);
+/// The trajectory `path` of a new run, and the files beside it. Throws if one of them, or what is
+/// named like its checkpoint, must not be replaced. A checkpoint whose trajectory is gone may be:
+/// that of another run would be taken for one of this file.
+io::RunOutput open_output(std::filesystem::path const& path, io::TrajectoryHeader const& header,
+                          io::RunOutputOptions const& options);
 
 /// Why a run could not write the files that its scene names, in one line, or nothing.
 std::optional<std::string> output_refusal(io::Output const& output);

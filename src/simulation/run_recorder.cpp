@@ -12,11 +12,6 @@ namespace {
 
 constexpr std::int64_t most_steps = 4096;  // from one look at the clock to the next
 
-std::filesystem::path free_checkpoint(std::filesystem::path const& path, bool overwrite) {
-  require_free_output(path, overwrite);
-  return io::checkpoint_beside(path);
-}
-
 }  // namespace
 
 RunRecorder::RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path const& path,
@@ -26,12 +21,11 @@ RunRecorder::RunRecorder(SceneRun& run, std::int64_t end, std::filesystem::path 
       end_(end),
       evaluations_before_(run.evaluations()),
       seconds_before_(run.step_seconds()),
-      checkpoint_(free_checkpoint(path, overwrite)),
+      checkpoint_(io::checkpoint_beside(path)),
       checkpoints_(run.scene().output.checkpoint_every, first_),
-      file_(path, run_header(run.scene(), run.precision(), run.space(), run.threads(), git_commit),
-            run_output_options(run.scene(), overwrite)) {
-  std::filesystem::remove(checkpoint_);
-}
+      file_(open_output(
+          path, run_header(run.scene(), run.precision(), run.space(), run.threads(), git_commit),
+          run_output_options(run.scene(), overwrite))) {}
 
 std::int64_t RunRecorder::next() const {
   auto const& output = run_.scene().output;

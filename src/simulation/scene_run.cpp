@@ -2,19 +2,18 @@
 #include "scene_run.hpp"
 
 #include "restart.hpp"
+#include "run_files.hpp"
 #include "scene_run_in_space.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/minimize.hpp>
 #include <cayspin/spin_field.hpp>
-#include <cayspin/version.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <iterator>
 #include <limits>
 #include <mutex>
 
@@ -174,15 +173,7 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
 
 void SceneRun::save(std::filesystem::path const& checkpoint) {
   Turn const turn;
-  io::CheckpointWriter file(checkpoint, {.scene_text = scene_.text,
-                                         .resolved_scene = {},
-                                         .cayspin_version = CAYSPIN_VERSION_STRING,
-                                         .precision = std::string(to_string(precision_)),
-                                         .shape = scene_.lattice.shape,
-                                         .cell_sites = std::ssize(scene_.lattice.basis),
-                                         .step = number_,
-                                         .time = time(),
-                                         .si = scene_.units.si});
+  io::CheckpointWriter file(checkpoint, checkpoint_header(scene_, precision_, number_, time()));
   exchange(file);
   file.commit();
 }
@@ -192,11 +183,7 @@ bool SceneRun::remembers() const { return simulation::remembers(scene_, plan_); 
 std::optional<std::string> SceneRun::warning() const {
   auto plan = plan_;
   if (scene_.integrator.steps == 0) plan.times.steps = 1;  // no end
-  auto const reason = dt_warning(plan, scene_.units);
-  if (!reason) return std::nullopt;
-  auto const error = io::scene_error(scene_, "integrator.dt", *reason);
-  if (scene_.integrator.refuse_unstable) throw error;
-  return error.what();
+  return dt_warning(scene_, plan);
 }
 
 std::int64_t SceneRun::step_at(double t) const {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "dear_method.hpp"
-#include "guard.hpp"
 #include "interrupt_poll.hpp"
-#include "run_noise.hpp"
-#include "run_state.hpp"
+#include "running_scene.hpp"
 #include "scene_minimizer.hpp"
 #include "scene_run.hpp"
-#include "thermal.hpp"
 
 #include <cayspin/evaluate.hpp>
-#include <cayspin/observer/energy_control.hpp>
 
 #include <limits>
 
@@ -31,19 +26,11 @@ class SceneRunInSpace final
  public:
   SceneRunInSpace(io::Scene const& scene, Plan const& plan, Precision precision,
                   std::string const& space, std::vector<double> const& start)
-      : SceneRun(scene, plan, precision, space),
-        simulation_(scene, plan.lattice, plan.times, start),
-        method_(open_method(scene, plan, &simulation_)),
-        guard_(scene, epsilon) {
-    if (on_host) threads_ = simulation_.exec.concurrency();
-    if (scene.integrator.energy_control) control_.emplace(simulation_.generator, simulation_.spins);
-    if (is_thermal(scene)) noise_.emplace(scene, simulation_.generator, simulation_.spins);
-    if (scene.integrator.until_torque) torque_.emplace(simulation_.generator.precession_alone());
+      : SceneRun(scene, plan, precision, space), simulation_(scene, plan, plan.times, start) {
+    threads_ = threads_of(simulation_.exec);
   }
 
  private:
-  static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-
   Advanced advance_to(std::int64_t target, Looks const& looks) override {
     leave_lent_memory(true);
     looks_ = looks;
@@ -55,10 +42,9 @@ class SceneRunInSpace final
     simulation_.times = {0, plan_.times.dt, target, number_, continues_};
     // What throws may have left the method's memory within a step.
     continues_ = false;
-    if (noise_) noise_->take_seconds();
     Ending ending;
     try {
-      ending = simulation_.advance(*method_, *this);
+      ending = simulation_.advance(*this);
     } catch (...) {
       number_ = seen_;
       throw;
@@ -71,7 +57,7 @@ class SceneRunInSpace final
     evaluations_ += ending.summary.evaluations;
     own_steps_ += ending.summary.own_steps;
     rejected_ += ending.summary.rejected;
-    step_seconds_ += ending.summary.step_seconds + (noise_ ? noise_->take_seconds() : 0);
+    step_seconds_ += ending.summary.step_seconds;
     if (failure_) throw NumbersFailed(scene_.path.string() + ": " + *failure_);
     continues_ = true;
     return ended_;
@@ -80,43 +66,23 @@ class SceneRunInSpace final
   // RunObserver
   bool due(Step const& step) const override {
     seen_ = step.number;
-    return control_ || noise_ || step.number >= next_look_ || (*interrupt_)();
+    return step.number >= next_look_ || (*interrupt_)();
   }
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
-    auto const looks = [&] { return between_steps(exec, step, spins); };
-    if (!noise_) return looks();
-    bool const wanted = step.number >= next_look_ || (*interrupt_)();
-    return (*noise_)(exec, step, simulation_.times.first, spins, wanted, looks);
-  }
-
-  Next between_steps(Space const& exec, Step const& step, Spins const& spins) {
     if (step.number >= next_look_ && judge(exec, step, spins) == Next::stop) return Next::stop;
-    if (step.last) return Next::proceed;
-    if ((*interrupt_)()) {
-      ended_ = Advanced::interrupted;
-      return Next::stop;
-    }
-    if (control_) {
-      auto const before = control_->evaluations_done();
-      (*control_)(exec, step, spins);
-      evaluations_ += control_->evaluations_done() - before;
-    }
-    return Next::proceed;
+    if (step.last || !(*interrupt_)()) return Next::proceed;
+    ended_ = Advanced::interrupted;
+    return Next::stop;
   }
 
   Next judge(Space const& exec, Step const& step, Spins const& spins) {
     bool const first = looked_ < 0;
     looked_ = step.number;
     next_look_ = step.number + looks_.period;
-    auto const now = torque_ && looks_.until_torque
-                         ? sample_scene(exec, simulation_.generator, step, spins, *torque_)
-                         : sample_scene(exec, simulation_.generator, step, spins);
-    failure_ = guard_.judge(step, now.energy, now.norm_defect);
+    auto const found = simulation_.look(exec, step, spins, looks_.until_torque);
+    failure_ = found.failure;
     if (failure_) return Next::stop;
-    if (!torque_ || !looks_.until_torque || first) return Next::proceed;
-    if (!(now.energy.value < guard_.first_energy() &&
-          now.largest_rate < *scene_.integrator.until_torque))
-      return Next::proceed;
+    if (first || !found.at_rest) return Next::proceed;
     ended_ = Advanced::at_rest;
     return Next::stop;
   }
@@ -164,18 +130,15 @@ class SceneRunInSpace final
   // With other spins.
   void begin_again() {
     continues_ = false;
-    guard_ = Guard(scene_, epsilon);
     looked_ = -1;
     next_look_ = number_;
-    if (control_) control_->reset();
-    if (noise_) noise_->reset();
+    simulation_.begin_again(scene_);
   }
 
   void exchange(Checkpoint& checkpoint) override {
-    exchange_state(checkpoint, simulation_, *method_, continues_, guard_,
-                   control_ ? &*control_ : nullptr);
+    simulation_.exchange(checkpoint, continues_);
     if (!checkpoint.restores()) return;
-    looked_ = guard_.last_look();
+    looked_ = simulation_.guard().last_look();
     next_look_ = looked_ < 0 ? steps() : std::numeric_limits<std::int64_t>::max();
   }
 
@@ -226,12 +189,7 @@ class SceneRunInSpace final
 
   Step now() const { return {number_, reduced_time(), plan_.times.dt, false}; }
 
-  Simulation<Real, Space> simulation_;
-  std::unique_ptr<OpenMethod> method_;
-  Guard guard_;
-  std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
-  std::optional<RunNoise<Spins>> noise_;
-  std::optional<SceneGenerator<Spins>> torque_;
+  RunningScene<Real, Space> simulation_;
   std::optional<SceneMinimizer<Real, Space>> minimizer_;
   std::vector<std::pair<std::string, SceneGenerator<Spins>>> terms_;
   std::shared_ptr<Spins> lent_;

@@ -25,12 +25,6 @@ Ending Simulation<Real, Space>::advance(OpenMethod& method, RunObserver<Exec, Sp
   return ending;
 }
 
-template <class Real, class Space>
-Ending Simulation<Real, Space>::advance(Variant const& variant, MethodOptions const& options,
-                                        RunObserver<Exec, Spins>& observed_by) {
-  return advance(*variant.open(this, options), observed_by);
-}
-
 #define CAYSPIN_INSTANTIATE(Space, Real) template struct Simulation<Real, Space>;
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)

@@ -19,8 +19,6 @@
 namespace cayspin::simulation {
 
 class OpenMethod;
-struct Variant;
-struct MethodOptions;
 
 /// Called while a simulation advances.
 template <class Exec, class Spins>
@@ -61,8 +59,6 @@ struct Simulation {
 
   /// Runs to the end of the times, or as far as the numbers or `observed_by` let it.
   Ending advance(OpenMethod& method, RunObserver<Exec, Spins>& observed_by);
-  Ending advance(Variant const& variant, MethodOptions const& options,
-                 RunObserver<Exec, Spins>& observed_by);
 };
 
 /// The spaces compiled in, behind a first type that is none.

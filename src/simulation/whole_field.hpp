@@ -2,16 +2,56 @@
 #pragma once
 
 #include "demagnetization.hpp"
-#include "host_solver.hpp"
 
 #include <cayspin/field/host_field.hpp>
+#include <cayspin/field/slab_demag_on_host.hpp>
+#include <cayspin/io/own_field.hpp>
 #include <cayspin/optional_members.hpp>
 
+#include <type_traits>
 #include <utility>
 #include <variant>
 
 namespace cayspin::simulation {
 
+/// The vectors of a field in host memory.
+template <class HostSpins>
+io::HostVectors host_vectors(HostSpins const& spins) {
+  auto const array = spins.array();
+  auto const& layout = spins.layout();
+  return {array.data,
+          std::is_same_v<typename HostSpins::value_type, double>,
+          {layout.nz, layout.ny, layout.nx},
+          {layout.plane, layout.pitch, 1, array.stride}};
+}
+
+/// A scene's field that is computed on the host: a slab's, the whole demagnetising field, or a
+/// program's own.
+class HostSolver {
+ public:
+  static constexpr int degree = 2;
+  using Own = decltype(io::OwnField::nonlocal);
+
+  explicit HostSolver(SlabDemagOnHost slab) : solver_(std::move(slab)) {}
+  explicit HostSolver(Own own) : solver_(std::move(own)) {}
+  template <class Real>
+  explicit HostSolver(FieldOnHost<Real> field) : solver_(std::move(field)) {}
+
+  template <class HostSpins>
+  void operator()(HostSpins const& spins, HostSpins const& field, double t) const {
+    if (auto const* own = std::get_if<Own>(&solver_))
+      (*own)(host_vectors(spins), host_vectors(field), t);
+    else if (auto const* found = std::get_if<FieldOnHost<typename HostSpins::value_type>>(&solver_))
+      (*found)(spins, field);
+    else
+      std::get<SlabDemagOnHost>(solver_)(spins, field, t);
+  }
+
+ private:
+  std::variant<SlabDemagOnHost, Own, FieldOnHost<double>, FieldOnHost<float>> solver_;
+};
+
+/// The same where the spins are.
 template <class Spins>
 struct SolverInPlace {
   static constexpr int degree = 2;

@@ -24,9 +24,9 @@ template <class Use>
 void for_each_column(Use const& use) {
   use("time", [](auto& sample) -> auto& { return sample.time; });
   use("step", [](auto& sample) -> auto& { return sample.step; });
-  use("energy", [](auto& sample) -> auto& { return sample.scalars.energy; });
-  use("norm_defect", [](auto& sample) -> auto& { return sample.scalars.norm_defect; });
-  use("magnetization", [](auto& sample) -> auto& { return sample.scalars.magnetization; });
+  for_each_scalar([&](char const* name, auto scalar) {
+    use(name, [scalar](auto& sample) -> auto& { return sample.scalars.*scalar; });
+  });
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include "hdf5/dataset.hpp"
 #include "hdf5/handle.hpp"
 
+#include <cayspin/io/trajectory.hpp>
+
 namespace cayspin::inline v0_1::io {
 
 inline constexpr char const* sweep_format = "sweep_format";
@@ -16,9 +18,9 @@ void for_each_result(Use const& use) {
   use("status", [](auto& run) -> auto& { return run.status; });
   use("step", [](auto& run) -> auto& { return run.step; });
   use("time", [](auto& run) -> auto& { return run.time; });
-  use("energy", [](auto& run) -> auto& { return run.scalars.energy; });
-  use("norm_defect", [](auto& run) -> auto& { return run.scalars.norm_defect; });
-  use("magnetization", [](auto& run) -> auto& { return run.scalars.magnetization; });
+  for_each_scalar([&](char const* name, auto scalar) {
+    use(name, [scalar](auto& run) -> auto& { return run.scalars.*scalar; });
+  });
   use("evaluations", [](auto& run) -> auto& { return run.cost.evaluations; });
   use("wall_seconds", [](auto& run) -> auto& { return run.cost.wall_seconds; });
   use("step_seconds", [](auto& run) -> auto& { return run.cost.step_seconds; });

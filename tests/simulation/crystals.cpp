@@ -5,10 +5,7 @@
 
 #include <cayspin/io/method.hpp>
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <filesystem>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -65,11 +62,10 @@ TEST(CrystalScenes, ConesTurnAtTheFrequencyOfTheirMagnon) {
       SCOPED_TRACE(fmt::format("{}, {} precision", name, to_string(precision)));
       double const rate = frequency * std::cos(0.7), end = 2;
       auto const scene = [&](std::string const& at) {
-        return scene_of(
-            fmt::format("[system]\nkind = 'llg'\ndamping = 0\n{}[initial]\n"
-                        "expression = [\"sin(0.7)*cos({})\", \"sin(0.7)*sin({})\", "
-                        "\"cos(0.7)\"]\n[integrator]\nmethod = 'rkmk8'\ndt = 0.02\n"
-                        "steps = 100\n",
+        return llg_scene(
+            "0", "rkmk8", 100,
+            fmt::format("{}[initial]\nexpression = [\"sin(0.7)*cos({})\", \"sin(0.7)*sin({})\", "
+                        "\"cos(0.7)\"]\n",
                         lattice, at, at));
       };
       auto text = phase;
@@ -99,11 +95,8 @@ TEST(CrystalScenes, ConesOfAnAntiferromagnetTurnAtTheFrequencyOfTheirMagnon) {
             fmt::format("(2*pi*(i/8 + j/6 + k/4) + ({} > 0 ? 0 : pi) + {:.17g})", up, turned);
         auto const sine = fmt::format("({} {} 0 ? {:.17g} : {:.17g})", up,
                                       up_opens_more ? '>' : '<', std::sin(opening), cone.smaller);
-        return scene_of(fmt::format(
-            R"toml(
-[system]
-kind = "llg"
-damping = 0
+        return llg_scene("0", "rkmk8", 100,
+                         fmt::format(R"toml(
 [lattice]
 shape = [8, 6, 4]
 boundary = "periodic"
@@ -112,12 +105,8 @@ couplings = {{ shells = [-0.6] }}
 anisotropy = {{ constant = {0}, axis = [0, 0, 1] }}
 [initial]
 expression = ["{2}*cos{1}", "{2}*sin{1}", "{3}*sqrt(1 - {2}^2)"]
-[integrator]
-method = "rkmk8"
-dt = 0.02
-steps = 100
 )toml",
-            K, phase, sine, up));
+                                     K, phase, sine, up));
       };
       double const rate = up_opens_more ? cone.frequency : -cone.frequency;
       auto const expected = SceneRun::open(scene(rate * end), {});
@@ -128,10 +117,7 @@ steps = 100
 }
 
 TEST(CrystalScenes, FrozenSpinsStay) {
-  auto const scene = scene_of(R"toml(
-[system]
-kind = "llg"
-damping = 0.3
+  auto const scene = llg_scene("0.3", "heun", 50, R"toml(
 [lattice]
 shape = [12, 3, 2]
 crystal = "bcc"
@@ -145,10 +131,6 @@ temperature = 0.2
 seed = 3
 [initial]
 random = { seed = 1 }
-[integrator]
-method = "heun"
-dt = 0.02
-steps = 50
 )toml");
   for (auto const precision : precisions) {
     auto const run = SceneRun::open(scene, {.precision = precision});
@@ -164,10 +146,7 @@ steps = 50
 
 // H = -(1 / mu) dE/dm: without damping E stays, and so does the sum of (mu / g) m.
 TEST(CrystalScenes, MomentsConserveEnergyAndAngularMomentum) {
-  auto const text = R"toml(
-[system]
-kind = "llg"
-damping = 0
+  auto const run = SceneRun::open(llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
 shape = [6, 5, 4]
 crystal = "honeycomb"
@@ -178,12 +157,8 @@ gyromagnetic = [0.9, 1.2]
 couplings = { shells = [-0.8, 0.2] }
 [initial]
 random = { seed = 2 }
-[integrator]
-method = "rkmk8"
-dt = 0.02
-steps = 100
-)toml";
-  auto const run = SceneRun::open(scene_of(text), {});
+)toml"),
+                                  {});
   auto const sums = [&] {
     auto const m = spins_of(*run);
     std::array<double, 3> sum{};
@@ -202,10 +177,7 @@ steps = 100
 
 // Paramagnets of two moments in one bath: each has Langevin's magnetization of its own mu h / T.
 TEST(CrystalScenes, EachMomentHasTheTemperature) {
-  auto const scene = scene_of(R"toml(
-[system]
-kind = "llg"
-damping = 1
+  auto const scene = llg_scene("1", "heun", 1000, R"toml(
 [lattice]
 shape = [32, 32, 8]
 basis = [[0, 0, 0], [0.5, 0.5, 0.5]]
@@ -218,10 +190,6 @@ temperature = 1
 seed = 7
 [initial]
 uniform = [0, 0, 1]
-[integrator]
-method = "heun"
-dt = 0.02
-steps = 1000
 )toml");
   auto const run = SceneRun::open(scene, {});
   run->advance(500);
@@ -241,25 +209,17 @@ steps = 1000
 
 // m.p = tanh(a t + atanh(m0.p)).
 TEST(CrystalScenes, ASpinUnderSlonczewski) {
-  for (auto const precision : precisions) {
-    auto const found = end_of(scene_of(R"toml(
-[system]
-kind = "llg"
-damping = 0
+  auto const scene = llg_scene("0", "rkmk8", 100, R"toml(
 [lattice]
 shape = [1]
 [torque]
 slonczewski = { damping_like = "0.4*t", polarization = [0, 0, 1] }
 [initial]
 uniform = [0.6, 0, -0.8]
-[integrator]
-method = "rkmk8"
-dt = 0.02
-steps = 100
-)toml"),
-                              precision);
-    EXPECT_NEAR(found[2], std::tanh(0.4 * 2 + std::atanh(-0.8)), 500 * epsilon(precision));
-  }
+)toml");
+  for (auto const precision : precisions)
+    EXPECT_NEAR(end_of(scene, precision)[2], std::tanh(0.4 * 2 + std::atanh(-0.8)),
+                500 * epsilon(precision));
 }
 
 // A wall of width 1 in a current. Alone it moves at (1 + damping xi) u and turns; a hard axis holds
@@ -274,10 +234,8 @@ TEST(CrystalScenes, AWallUnderACurrent) {
     for (int fine : {0, 1}) {
       int const sites = 80 << fine;
       auto const run = SceneRun::open(
-          scene_of(fmt::format(R"toml(
-[system]
-kind = "llg"
-damping = {}
+          llg_scene(fmt::to_string(damping), "rkmk4", 2000,
+                    fmt::format(R"toml(
 [lattice]
 shape = [{}]
 spacing = {}
@@ -288,12 +246,8 @@ anisotropy = [ {{ constant = 1, axis = [0, 0, 1] }}, {{ constant = {}, axis = [1
 zhang_li = {{ velocity = [{}, 0, 0], nonadiabaticity = {} }}
 [initial]
 expression = ["0", "1/cosh(40*(x - 0.4))", "-tanh(40*(x - 0.4))"]
-[integrator]
-method = "rkmk4"
-dt = 0.02
-steps = 2000
 )toml",
-                               damping, sites, 40.0 / sites, has_hard_axis ? -1.0 : 0.0, u, xi)),
+                                sites, 40.0 / sites, has_hard_axis ? -1.0 : 0.0, u, xi)),
           {});
       auto const place = [&] { return 20 * run->sample().magnetization.z; };
       run->advance(1000);
@@ -309,10 +263,7 @@ steps = 2000
 }
 
 TEST(CrystalScenes, GoOnWithTheSameBits) {
-  auto const scene = scene_of(R"toml(
-[system]
-kind = "llg"
-damping = 0.05
+  auto const scene = llg_scene("0.05", "heun", 40, R"toml(
 [lattice]
 shape = [6, 5, 4]
 crystal = "kagome"
@@ -329,28 +280,13 @@ temperature = 0.05
 seed = 3
 [initial]
 random = { seed = 1 }
-[integrator]
-method = "heun"
-dt = 0.02
-steps = 40
 )toml");
-  auto const path = std::filesystem::temp_directory_path() / "cayspin_crystal.checkpoint.h5";
-  auto const whole = end_of(scene, Precision::double_precision);
-  auto const first = SceneRun::open(scene, {});
-  first->advance(17);
-  first->save(path);
-  auto const second = SceneRun::open(scene, {.restart = path});
-  second->advance(23);
-  EXPECT_EQ(spins_of(*second), whole);
-  std::filesystem::remove(path);
+  for (auto const precision : precisions) expect_same_bits_after_a_break(scene, 17, precision);
 }
 
 // Neel's state of a bcc antiferromagnet in a field below its flop.
 TEST(CrystalScenes, Relax) {
-  auto const scene = scene_of(R"toml(
-[system]
-kind = "llg"
-damping = 0.5
+  auto const scene = llg_scene("0.5", "heun", 1, R"toml(
 [lattice]
 shape = [6, 5, 4]
 crystal = "bcc"
@@ -361,10 +297,6 @@ anisotropy = { constant = 0.5, axis = [0, 0, 1] }
 applied = [0, 0, 1]
 [initial]
 random = { seed = 4 }
-[integrator]
-method = "heun"
-dt = 0.02
-steps = 1
 )toml");
   auto const run = SceneRun::open(scene, {});
   auto const found = run->relax();
@@ -376,13 +308,12 @@ steps = 1
 // cubic crystal, whose field is not linear.
 TEST(CrystalScenes, RelaxMomentsAndCubicAxes) {
   auto const relaxed = [](std::string const& lattice, std::string const& field) {
-    auto const run = SceneRun::open(scene_of(fmt::format("[system]\nkind = 'llg'\ndamping = 0.5\n"
-                                                         "[lattice]\nshape = [6, 5, 4]\n{}\n"
-                                                         "[field]\n{}\n[initial]\nrandom = {{ "
-                                                         "seed = 4 }}\n[integrator]\nmethod = "
-                                                         "'heun'\ndt = 0.02\nsteps = 1\n",
-                                                         lattice, field)),
-                                    {});
+    auto const run =
+        SceneRun::open(llg_scene("0.5", "heun", 1,
+                                 fmt::format("[lattice]\nshape = [6, 5, 4]\n{}\n[field]\n{}\n"
+                                             "[initial]\nrandom = {{ seed = 4 }}\n",
+                                             lattice, field)),
+                       {});
     auto const found = run->relax({.torque = 1e-7});
     EXPECT_EQ(found.end, MinimizeEnd::converged);
     return found.energy.value;

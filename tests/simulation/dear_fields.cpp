@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Dear fields of scenes: orders, counts, the bits of runs with a break, and what is refused.
-#include "simulation/scene_run.hpp"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "scenes_of_text.hpp"
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,11 +11,9 @@
 namespace cayspin::simulation::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 io::Scene film(std::string const& integrator,
                std::vector<std::string> const& overrides = {"field.slab_demag.dear=true"}) {
-  return io::parse_scene(R"toml(
+  return scene_of(R"toml(
 [system]
 kind = "llg"
 damping = 0.1
@@ -35,24 +29,11 @@ slab_demag = { normal = [1, 0, 0], strength = 0.8, average = "layer", where = "h
 random = { seed = 5 }
 [integrator]
 )toml" + integrator,
-                         "scene.toml", overrides);
-}
-
-std::vector<double> end_of(io::Scene const& scene, std::int64_t steps,
-                           RunSettings const& settings = {}) {
-  auto const run = SceneRun::open(scene, settings);
-  run->advance(steps);
-  return packed<double>(run->spins().vectors);
-}
-
-double largest_distance(std::vector<double> const& a, std::vector<double> const& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
+                  overrides);
 }
 
 TEST(DearFields, OfScenesHaveOrderThreeOrFour) {
-  auto const exact = end_of(film("method='rkmk8'\ndt=0.002\nsteps=500", {}), 500);
+  auto const exact = end_of(film("method='rkmk8'\ndt=0.002\nsteps=500", {}));
   for (auto const& [method, order] : {std::pair{"heun", 2},
                                       {"rkmk4", 3},
                                       {"projected_rk4", 3},
@@ -66,9 +47,8 @@ TEST(DearFields, OfScenesHaveOrderThreeOrFour) {
     for (int i = 0; i < 2; ++i) {
       int const steps = 40 << i;
       errors[i] =
-          largest_distance(end_of(film("method='" + std::string(method) +
-                                       "'\nsubsteps=2\nend=1\ndt=" + std::to_string(1. / steps)),
-                                  steps),
+          largest_distance(end_of(film(fmt::format("method='{}'\nsubsteps=2\ndt={}\nsteps={}",
+                                                   method, 1. / steps, steps))),
                            exact);
     }
     std::printf("    %-14s error %.1e, order %.2f\n", method, errors[1],
@@ -84,11 +64,11 @@ TEST(DearFields, BesideCurrentsAndSitesOfTheirOwn) {
       "lattice.occupied='i != 3 || j > 1'", "lattice.frozen='i == 0'"};
   auto dear = others;
   dear.push_back("field.slab_demag.dear=true");
-  auto const exact = end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", others), 200);
+  auto const exact = end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", others));
   for (auto const& [method, limit] : {std::pair{"rkmk4", 2e-6}, {"rkmk5", 5e-8}}) {
     auto const scene =
         film("method='" + std::string(method) + "'\nsubsteps=2\ndt=0.025\nsteps=40", dear);
-    double const error = largest_distance(end_of(scene, 40), exact);
+    double const error = largest_distance(end_of(scene), exact);
     std::printf("    %-14s error %.1e\n", method, error);
     EXPECT_LT(error, limit) << method;
   }
@@ -140,37 +120,23 @@ TEST(DearFields, OfAProgramAreEvaluatedOnceAStep) {
 }
 
 TEST(DearFields, GoOnWithTheSameBits) {
-  auto const file = fs::path(testing::TempDir()) / ("dear_" + std::to_string(::getpid()) + ".h5");
-  for (auto const precision : {Precision::double_precision, Precision::single_precision})
+  for (auto const precision : precisions)
     for (auto const& [method, cut] :
          {std::pair{"rkmk4", 1}, {"rkmk4", 2}, {"rkmk4", 3}, {"rkmk4", 11}, {"rkmk5", 4}}) {
+      SCOPED_TRACE(fmt::format("{}, cut after {}", method, cut));
       auto const scene = film(fmt::format("method='{}'\nsubsteps=3\ndt=0.05\nsteps=20", method));
-      auto const whole = SceneRun::open(scene, {.precision = precision});
-      whole->advance(20);
-      auto const first = SceneRun::open(scene, {.precision = precision});
-      for (int step = 0; step < cut; ++step) first->advance(1);
-      EXPECT_TRUE(first->remembers());
-      first->save(file);
-      auto const second = SceneRun::open(scene, {.precision = precision, .restart = file});
-      second->advance(20 - cut);
-      EXPECT_EQ(packed<double>(second->spins().vectors), packed<double>(whole->spins().vectors));
-      EXPECT_EQ(first->evaluations() + second->evaluations(), whole->evaluations());
+      auto const one_by_one = SceneRun::open(scene, {.precision = precision});
+      for (int step = 0; step < 20; ++step) one_by_one->advance(1);
+      EXPECT_TRUE(one_by_one->remembers());
+      EXPECT_EQ(spins_of(*one_by_one), end_of(scene, precision));
+      expect_same_bits_after_a_break(scene, cut, precision);
     }
-  fs::remove(file);
 }
 
 TEST(DearFields, OfAProgramGoOnWithTheSameBits) {
-  auto const file =
-      fs::path(testing::TempDir()) / ("own_dear_" + std::to_string(::getpid()) + ".h5");
   auto const calls = std::make_shared<int>(0);
-  auto const scene = with_own_field("method='rkmk4'\nsubsteps=3\ndt=0.05\nsteps=20", calls);
-  auto const first = SceneRun::open(scene, {});
-  first->advance(7);
-  first->save(file);
-  auto const second = SceneRun::open(scene, {.restart = file});
-  second->advance(13);
-  EXPECT_EQ(packed<double>(second->spins().vectors), end_of(scene, 20));
-  fs::remove(file);
+  expect_same_bits_after_a_break(
+      with_own_field("method='rkmk4'\nsubsteps=3\ndt=0.05\nsteps=20", calls), 7);
 }
 
 TEST(DearFields, AreRefusedInOneLine) {
@@ -197,16 +163,8 @@ TEST(DearFields, AreRefusedInOneLine) {
   for (char const* const method : {"ab2", "fx3", "fx4", "implicit_euler", "implicit_midpoint"})
     wrong.push_back({"method='" + std::string(method) + "'\ndt=0.1\nsteps=9", {dear}, takes_none});
   for (auto const& [integrator, overrides, message] : wrong) {
-    auto const scene = film(integrator, overrides);
-    try {
-      make_plan(scene, Precision::double_precision);
-      ADD_FAILURE() << integrator << ": taken";
-    } catch (io::SceneError const& error) {
-      std::string const text = error.what();
-      EXPECT_NE(text.find(message), std::string::npos) << text;
-      EXPECT_NE(text.find("; accepted: "), std::string::npos) << text;
-      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-    }
+    SCOPED_TRACE(integrator);
+    expect_refused([&] { return film(integrator, overrides); }, message);
   }
   // Two dear fields.
   auto scene = with_own_field(rkmk4 + "substeps=2", std::make_shared<int>(0));

@@ -6,21 +6,15 @@
 #include <cayspin/cayspin.hpp>
 #include <cayspin/demagnetization/demagnetizing_field.hpp>
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace cayspin::simulation::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 io::Scene film(std::string const& integrator, std::vector<std::string> const& overrides = {}) {
-  return io::parse_scene(R"toml(
+  return scene_of(R"toml(
 [system]
 kind = "llg"
 damping = 0.1
@@ -35,7 +29,7 @@ demag = { strength = 0.8 }
 random = { seed = 5 }
 [integrator]
 )toml" + integrator,
-                         "scene.toml", overrides);
+                  overrides);
 }
 
 template <class Real>
@@ -83,14 +77,13 @@ TEST(Demagnetization, IsDearWhereTheMethodCan) {
 }
 
 TEST(Demagnetization, OnceAStepConvergesToThatOfEachStage) {
-  auto const exact = end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", {"field.demag.dear=false"}),
-                            Precision::double_precision);
+  auto const exact =
+      end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", {"field.demag.dear=false"}));
   double errors[2];
   for (int i = 0; i < 2; ++i) {
     int const steps = 40 << i;
     errors[i] = largest_distance(
-        end_of(film(fmt::format("method='rkmk4'\nsubsteps=2\ndt={}\nsteps={}", 1. / steps, steps)),
-               Precision::double_precision),
+        end_of(film(fmt::format("method='rkmk4'\nsubsteps=2\ndt={}\nsteps={}", 1. / steps, steps))),
         exact);
   }
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 3, 0.3);
@@ -98,19 +91,12 @@ TEST(Demagnetization, OnceAStepConvergesToThatOfEachStage) {
 }
 
 TEST(Demagnetization, GoesOnWithTheSameBits) {
-  auto const file = fs::path(testing::TempDir()) / fmt::format("demag_{}.h5", ::getpid());
   for (auto const precision : precisions)
     for (char const* const integrator :
          {"method='rkmk4'\nsubsteps=3\ndt=0.05\nsteps=20", "method='ab2'\ndt=0.05\nsteps=20"}) {
-      auto const scene = film(integrator);
-      auto const first = SceneRun::open(scene, {.precision = precision});
-      first->advance(7);
-      first->save(file);
-      auto const second = SceneRun::open(scene, {.precision = precision, .restart = file});
-      second->advance(13);
-      EXPECT_EQ(spins_of(*second), end_of(scene, precision)) << integrator;
+      SCOPED_TRACE(integrator);
+      expect_same_bits_after_a_break(film(integrator), 7, precision);
     }
-  fs::remove(file);
 }
 
 TEST(Demagnetization, IsRefusedInOneLine) {
@@ -126,15 +112,8 @@ TEST(Demagnetization, IsRefusedInOneLine) {
               "takes no dear field"},
         {"method='red_black2'\ndt=0.1\nsteps=9", {}, "field.demag: method \"red_black2\""},
         {heun, {"lattice.crystal='bcc'"}, "field."}}) {
-    try {
-      make_plan(film(integrator, overrides), Precision::double_precision);
-      ADD_FAILURE() << integrator << ": taken";
-    } catch (io::SceneError const& error) {
-      std::string const text = error.what();
-      EXPECT_NE(text.find(message), std::string::npos) << text;
-      EXPECT_NE(text.find("; accepted: "), std::string::npos) << text;
-      EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-    }
+    SCOPED_TRACE(integrator);
+    expect_refused([&] { return film(integrator, overrides); }, message);
   }
 }
 

@@ -6,8 +6,6 @@
 
 #include <cayspin/io/method.hpp>
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <optional>
 #include <string>
@@ -141,24 +139,11 @@ steps = 50
 // the library.
 TEST(FieldInPass, NumbersOfSites) {
   auto const scene = [](std::string const& damping, std::string const& field) {
-    return scene_of(fmt::format(R"toml(
-[system]
-kind = "llg"
-damping = {}
-[lattice]
-shape = [19, 4, 2]
-spacing = [0.8, 1, 1.25]
-boundary = ["open", "periodic", "open"]
-[field]
-{}
-[initial]
-random = {{ seed = 5 }}
-[integrator]
-method = "rkmk4"
-dt = 0.02
-steps = 50
-)toml",
-                                damping, field));
+    return llg_scene(damping, "rkmk4", 50,
+                     "[lattice]\nshape = [19, 4, 2]\nspacing = [0.8, 1, 1.25]\n"
+                     "boundary = ['open', 'periodic', 'open']\n"
+                     "[initial]\nrandom = { seed = 5 }\n[field]\n" +
+                         field);
   };
   std::pair<io::Scene, io::Scene> const same[] = {
       {scene("0.1",

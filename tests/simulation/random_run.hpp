@@ -10,10 +10,25 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <string>
 
 namespace cayspin::simulation::test {
+
+/// A number of the environment.
+inline std::int64_t setting(char const* name, std::int64_t usual) {
+  char const* const asked = std::getenv(name);
+  return asked ? std::atoll(asked) : usual;
+}
+inline std::uint64_t random_seed() {
+  return static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1));
+}
+
+/// The tables of a small scene.
+inline constexpr char const* chain_of_nine =
+    "lattice = { shape = [9] }\nfield = { exchange = 1.0 }\n"
+    "initial = { random = { seed = 4 } }\n";
 
 /// A small scene for a method, drawn by seed and number.
 class RandomRun {

@@ -2,9 +2,6 @@
 // Scenes in SI against the same physics in reduced units, and against numbers worked by hand.
 #include "scenes_of_text.hpp"
 
-#include <fmt/args.h>
-#include <fmt/format.h>
-
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -23,12 +20,7 @@ struct Reduced {
   double energy, field, time;
 };
 
-std::vector<double> field_of(SceneRun& run) {
-  auto const field = run.field();
-  if (run.precision() == Precision::double_precision) return packed<double>(field.vectors);
-  auto const single = packed<float>(field.vectors);
-  return {single.begin(), single.end()};
-}
+std::vector<double> field_of(SceneRun& run) { return packed<double>(run.field().vectors); }
 
 // Fields in T, energies in J, and the spins after the scene's steps.
 void expect_same_physics(std::string const& si_text, std::string const& reduced_text,

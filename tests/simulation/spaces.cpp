@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The word "serial" is the host's space with one thread.
 #include "random_run.hpp"
+#include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
-#include "simulation/kokkos_settings.hpp"
-#include "simulation/scene_run.hpp"
-
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 
@@ -13,22 +10,7 @@ namespace cayspin::simulation::test {
 namespace {
 
 #if !defined(CAYSPIN_HOST_DEVICE)
-io::Scene chain() {
-  return io::parse_scene(R"(
-[system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [4]
-[initial]
-uniform = [1, 0, 0]
-[integrator]
-method = "rkmk4"
-dt = 0.1
-steps = 1
-)",
-                         "scene.toml");
-}
+io::Scene chain() { return llg_scene("0.1", "rkmk4", 1, chain_of_nine); }
 
 [[noreturn]] void exit_with_threads_of_serial() {
   int threads = 0;

@@ -2,14 +2,10 @@
 // Runs at a temperature have the same bits in pieces, however they are looked at, and after a
 // restart, by every one-step method.
 #include "random_run.hpp"
+#include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
-#include "simulation/scene_run.hpp"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <vector>
@@ -19,17 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::int64_t setting(char const* name, std::int64_t usual) {
-  char const* const asked = std::getenv(name);
-  return asked ? std::atoll(asked) : usual;
-}
-
 class ThermalRuns : public testing::Test {
  protected:
   ThermalRuns() { fs::create_directories(folder_); }
   ~ThermalRuns() override { fs::remove_all(folder_); }
-
-  static std::vector<double> spins_of(SceneRun& run) { return packed<double>(run.spins().vectors); }
 
   /// The same run in other ways. False when the scene has no meaning.
   bool holds(std::string const& text, Precision precision, RandomRun& random) const {
@@ -40,7 +29,7 @@ class ThermalRuns : public testing::Test {
       return SceneRun::open(*scene, {.precision = precision, .restart = restart});
     };
     try {
-      scene = io::parse_scene(text, "scene.toml");
+      scene = scene_of(text);
       whole = open();
       whole->advance(steps, {.period = steps});
     } catch (io::SceneError const&) {
@@ -75,11 +64,10 @@ class ThermalRuns : public testing::Test {
 
 TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   auto const wanted = setting("CAYSPIN_THERMAL_SCENES", 40);
-  auto const seed = static_cast<std::uint64_t>(setting("CAYSPIN_SEED", 1));
   std::int64_t scenes = 0;
   std::set<std::string_view> methods;
   for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
-    RandomRun random(seed, draw);
+    RandomRun random(random_seed(), draw);
     auto const& variant = variants()[(7 * static_cast<std::size_t>(draw)) % variants().size()];
     auto const text =
         random.scene(variant) + fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
@@ -95,28 +83,17 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   EXPECT_GE(methods.size(), 12U);
 }
 
+io::Scene thermal_chain() {
+  return llg_scene("0.1", "heun", 100,
+                   std::string(chain_of_nine) + "thermal = { temperature = 0.5 }\n");
+}
+
 std::int64_t fences_of_noise = 0;
 
 // Between two looks nothing waits for noise.
 TEST_F(ThermalRuns, WaitForNoiseOnlyAtLooks) {
   namespace tools = Kokkos::Tools::Experimental;
-  auto const run = SceneRun::open(io::parse_scene(R"(
-[system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [9]
-[initial]
-random = { seed = 4 }
-[integrator]
-method = "heun"
-dt = 0.02
-steps = 100
-[thermal]
-temperature = 0.5
-)",
-                                                  "scene.toml"),
-                                  {});
+  auto const run = SceneRun::open(thermal_chain(), {});
   tools::set_begin_fence_callback([](char const* label, std::uint32_t, std::uint64_t*) {
     if (std::string_view(label).starts_with("cayspin::RunNoise")) ++fences_of_noise;
   });
@@ -127,25 +104,8 @@ temperature = 0.5
 
 // A program's field that throws once: the step is taken again, with the noise that it had.
 TEST_F(ThermalRuns, GoOnAfterAFieldThatFailed) {
-  constexpr std::string_view text = R"(
-[system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [9]
-[field]
-exchange = 1.0
-[initial]
-random = { seed = 4 }
-[integrator]
-method = "heun"
-dt = 0.02
-steps = 40
-[thermal]
-temperature = 0.5
-)";
   auto const run_of = [&](int failing_call) {
-    auto scene = io::parse_scene(std::string(text), "scene.toml");
+    auto scene = thermal_chain();
     auto const calls_left = std::make_shared<int>(-1);
     scene.field.own.uniform = [calls_left](double) {
       if ((*calls_left)-- == 0) throw std::runtime_error("once");

@@ -67,6 +67,14 @@ struct Scalars {
   std::array<double, 3> magnetization{};  ///< mean of m over the sites
 };
 
+/// visit(name, member) for each of them, by the names of their datasets.
+template <class Visit>
+void for_each_scalar(Visit const& visit) {
+  visit("energy", &Scalars::energy);
+  visit("norm_defect", &Scalars::norm_defect);
+  visit("magnetization", &Scalars::magnetization);
+}
+
 /// What `cayspin relax` came to.
 struct Relaxed {
   double torque = 0;       ///< the largest max |m x H| of its frames: reduced, or mu0 H in T

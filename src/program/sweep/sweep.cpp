@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "child.hpp"
 #include "display.hpp"
+#include "files/available_memory.hpp"
 #include "grid.hpp"
 #include "program/command.hpp"
 #include "program/progress.hpp"
@@ -46,12 +47,13 @@ Sharing share_machine(SweepOptions const& options, Grid const& grid, std::size_t
                         ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))
                         : expected_threads();
   bool const on_host = is_on_host(grid.header.space);
-  auto const fits = grid.largest > 0 ? available_memory() / grid.largest : available_memory();
+  auto const fits =
+      grid.largest > 0 ? io::available_memory() / grid.largest : io::available_memory();
   if (options.jobs && *options.jobs > fits)
-    throw UsageError(
-        fmt::format("--jobs {}: each run takes {} of memory, {} are available; "
-                    "accepted: at most {}",
-                    *options.jobs, bytes_text(grid.largest), bytes_text(available_memory()), fits));
+    throw UsageError(fmt::format(
+        "--jobs {}: each run takes {} of memory, {} are available; "
+        "accepted: at most {}",
+        *options.jobs, bytes_text(grid.largest), bytes_text(io::available_memory()), fits));
   std::int64_t jobs = options.jobs.value_or(on_host ? cores / options.threads.value_or(1) : 1);
   jobs = std::clamp<std::int64_t>(std::min(jobs, fits), 1,
                                   static_cast<std::int64_t>(std::max<std::size_t>(open, 1)));
