@@ -9,21 +9,19 @@ namespace cayspin::program::test {
 namespace {
 
 struct AdaptiveMethods : ProgramTest {
-  Outcome start_with(Arguments const& more, std::string const& scene = chain_scene()) const {
-    Arguments arguments{"run",        write("scene.toml", scene), "--quiet", "--output", "out.h5",
-                        "--overwrite"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return start(arguments);
-  }
-  std::vector<double> end(Arguments const& more) const {
-    auto const outcome = start_with(more);
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    return last_spins("out.h5");
+  std::vector<double> end(Arguments const& more) const { return end_of(chain_scene(), more); }
+
+  /// A run of the chain that has to end with this status, and one line that has `part`.
+  void expect_end(int status, std::string const& part, Arguments const& more) const {
+    auto const outcome = run_into("out.h5", chain_scene(), more);
+    EXPECT_EQ(outcome.status, status);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, part));
   }
 };
 
 TEST_F(AdaptiveMethods, FollowTheToleranceInAllCoordinates) {
-  auto const exact = end({"--set", "integrator.dt=0.0005", "--set", "integrator.steps=5000"});
+  auto const exact = end(set("integrator.dt=0.0005", "integrator.steps=5000"));
   for (auto const* const method : io::methods()) {
     if (!method->adaptive) continue;
     std::vector<std::string> all{""};
@@ -35,10 +33,9 @@ TEST_F(AdaptiveMethods, FollowTheToleranceInAllCoordinates) {
     for (auto const& coordinates : all) {
       double errors[2];
       for (int i = 0; i < 2; ++i)
-        errors[i] =
-            distance(exact, end({"--set", "integrator={method='" + std::string(method->word) +
-                                              "',tolerance=" + (i == 0 ? "1e-4" : "1e-6") +
-                                              coordinates + ",end=2.5}"}));
+        errors[i] = distance(exact, end(set("integrator={method='" + std::string(method->word) +
+                                            "',tolerance=" + (i == 0 ? "1e-4" : "1e-6") +
+                                            coordinates + ",end=2.5}")));
       EXPECT_LT(errors[0], 30e-4) << method->word << coordinates;
       EXPECT_LT(errors[1], 30e-6) << method->word << coordinates;
       EXPECT_LT(errors[1], 0.1 * errors[0]) << method->word << coordinates;
@@ -48,16 +45,15 @@ TEST_F(AdaptiveMethods, FollowTheToleranceInAllCoordinates) {
 
 TEST_F(AdaptiveMethods, WriteFramesAtTheTimesAskedFor) {
   std::string const method = "method='tsit5',tolerance=1e-7,end=2.5";
-  auto const often =
-      end({"--set", "integrator={" + method + ",dt=0.1}", "--set", "output.every=5"});
+  auto const often = end(set("integrator={" + method + ",dt=0.1}", "output.every=5"));
   auto const times = read_dataset("out.h5", "/time").values;
   ASSERT_EQ(times.size(), 6U);
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_DOUBLE_EQ(times[i], 0.5 * double(i));
   auto const half = read_dataset("out.h5", "/spins").values;
-  auto const once = end({"--set", "integrator={" + method + "}", "--set", "output.every=128"});
+  auto const once = end(set("integrator={" + method + "}", "output.every=128"));
   EXPECT_EQ(read_dataset("out.h5", "/time").values.size(), 2U);
   EXPECT_EQ(often, once);
-  auto const exact = end({"--set", "integrator.dt=0.0005", "--set", "integrator.steps=1000"});
+  auto const exact = end(set("integrator.dt=0.0005", "integrator.steps=1000"));
   std::vector<double> const second(half.begin() + std::ptrdiff_t(once.size()),
                                    half.begin() + std::ptrdiff_t(2 * once.size()));
   EXPECT_LT(distance(second, exact), 30e-7);
@@ -69,9 +65,9 @@ TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
   std::int64_t evaluations[3];
   std::string const looks[] = {"", ",dt=7.0", ",dt=0.25"};
   for (int i = 0; i < 3; ++i) {
-    ends[i] = end({"--set", "integrator={method='tsit5',tolerance=1e-6,end=7.0" + looks[i] + "}",
-                   "--set", "output.every=128"});
-    auto const info = io::read_info(in_folder("out.h5"));
+    ends[i] = end(set("integrator={method='tsit5',tolerance=1e-6,end=7.0" + looks[i] + "}",
+                      "output.every=128"));
+    auto const info = info_of("out.h5");
     evaluations[i] = info.cost.evaluations;
     EXPECT_EQ(info.frames, 2) << looks[i];
     EXPECT_EQ(info.frame_times.back(), 7.0) << looks[i];
@@ -88,59 +84,47 @@ TEST_F(AdaptiveMethods, TakeTheSameStepsHoweverOftenTheyAreLookedAt) {
 // Where spins come to rest the energy goes up and down within the tolerance.
 TEST_F(AdaptiveMethods, ComeToRestUnderTheGuard) {
   for (std::string const method : {"tsit5", "bs3", "dp5"})
-    for (std::string const tolerance : {"1e-1", "1e-3"}) {
-      auto const outcome = start_with(
-          {"--set", "integrator={method='" + method + "',tolerance=" + tolerance + ",end=400.0}"},
-          macrospin_scene());
-      EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    }
+    for (std::string const tolerance : {"1e-1", "1e-3"})
+      end_of(macrospin_scene(),
+             set("integrator={method='" + method + "',tolerance=" + tolerance + ",end=400.0}"));
 }
 
 // A look is no step: the rate is that of the method's own.
 TEST_F(AdaptiveMethods, TheRateCountsTheirOwnSteps) {
-  auto const outcome = start({"run", write("scene.toml", chain_scene()), "--output", "out.h5",
-                              "--set", "integrator={method='tsit5',tolerance=1e-6,dt=40,steps=1}"});
-  ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_TRUE(contains(outcome.output, "out.h5: 1 step, 2 frames in "));
+  auto const output = output_of({"run", "chain.toml", "--output", "out.h5", "--set",
+                                 "integrator={method='tsit5',tolerance=1e-6,dt=40,steps=1}"});
+  EXPECT_TRUE(contains(output, "out.h5: 1 step, 2 frames in "));
   auto const number_at = [&](std::string const& after) {
-    return std::stod(outcome.output.substr(outcome.output.find(after) + after.size()));
+    return std::stod(output.substr(output.find(after) + after.size()));
   };
-  auto const rate_at = outcome.output.find("stepping at ");
-  ASSERT_NE(rate_at, std::string::npos) << outcome.output;
+  auto const rate_at = output.find("stepping at ");
+  ASSERT_NE(rate_at, std::string::npos) << output;
   double const own_steps = number_at("spin updates/s, ");
-  auto const unit = outcome.output.substr(outcome.output.find("spin updates/s") - 1, 1);
+  auto const unit = output.substr(output.find("spin updates/s") - 1, 1);
   double const rate = number_at("stepping at ") * (unit == "M" ? 1e6 : unit == "k" ? 1e3 : 1);
-  auto const seconds = io::read_info(in_folder("out.h5")).cost.step_seconds;
+  auto const seconds = info_of("out.h5").cost.step_seconds;
   EXPECT_GT(own_steps, 10);
-  EXPECT_NEAR(rate, own_steps * 60 / seconds, 0.01 * rate) << outcome.output;
-  auto const watched = start({"watch", "out.h5", "--once"});
-  EXPECT_TRUE(contains(watched.output, "\ntime "));
-  EXPECT_FALSE(contains(watched.output, "updates/s"));
+  EXPECT_NEAR(rate, own_steps * 60 / seconds, 0.01 * rate) << output;
+  auto const watched = output_of({"watch", "out.h5", "--once"});
+  EXPECT_TRUE(contains(watched, "\ntime "));
+  EXPECT_FALSE(contains(watched, "updates/s"));
 }
 
 TEST_F(AdaptiveMethods, NumbersThatOverflowEndTheRunWithTheLastFrame) {
-  auto const outcome =
-      start_with({"--set", "integrator={method='dp5',tolerance=1e-6,end=2.5,dt=0.5}", "--set",
-                  "field.applied=['1e305*(t<1.2 ? 0 : 1)','0','1']"});
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-  EXPECT_TRUE(contains(outcome.errors, "the last good frame is"));
+  expect_end(3, "the last good frame is",
+             set("integrator={method='dp5',tolerance=1e-6,end=2.5,dt=0.5}",
+                 "field.applied=['1e305*(t<1.2 ? 0 : 1)','0','1']"));
 }
 
 TEST_F(AdaptiveMethods, AStepBelowTheLeastEndsTheRun) {
-  auto const outcome = start_with(
-      {"--set", "integrator={method='tsit5',tolerance=1e-12,end=2.5,min_dt=0.5,max_dt=0.6}"});
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-  EXPECT_TRUE(contains(outcome.errors, "below"));
+  expect_end(3, "below",
+             set("integrator={method='tsit5',tolerance=1e-12,end=2.5,min_dt=0.5,max_dt=0.6}"));
 }
 
 TEST_F(AdaptiveMethods, AToleranceBeyondThePrecisionIsRefused) {
-  auto const outcome = start_with(
+  expect_end(
+      2, "integrator.tolerance",
       {"--precision", "single", "--set", "integrator={method='tsit5',tolerance=1e-7,end=2.5}"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-  EXPECT_TRUE(contains(outcome.errors, "integrator.tolerance"));
 }
 
 }  // namespace

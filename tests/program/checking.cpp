@@ -9,14 +9,9 @@ namespace {
 
 class Checking : public ProgramTest {
  protected:
-  nlohmann::json check(std::string const& scene, Arguments const& arguments = {}) const {
+  nlohmann::json check(std::string const& scene, Arguments const& more = {}) const {
     write("scene.toml", scene);
-    Arguments all{"check", "scene.toml", "--json"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    auto const outcome = start(all);
-    EXPECT_EQ(outcome.status, 0);
-    EXPECT_EQ(outcome.errors, "");
-    return nlohmann::json::parse(outcome.output);
+    return nlohmann::json::parse(output_of(joined({"check", "scene.toml", "--json"}, more)));
   }
 };
 
@@ -32,8 +27,8 @@ TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
                                           {"2.0", .8000, .9611, 1.2751},
                                           {"10.0", .1980, .2000, .2780}}) {
     auto const stable_dt = [&](std::string const& method) {
-      return check(macrospin_scene(), {"--set", "integrator.method='" + method + "'", "--set",
-                                       std::string("system.damping=") + row.damping})
+      return check(macrospin_scene(), set("integrator.method='" + method + "'",
+                                          std::string("system.damping=") + row.damping))
           .at("stable_dt")
           .get<double>();
     };
@@ -48,26 +43,14 @@ TEST_F(Checking, StableDtIsThatOfTheStabilityPolynomial) {
 
 // The stiff chain and the 2D and 3D lattices: |H| = 5 and all constants 1.
 TEST_F(Checking, StableDtOfLattices) {
-  std::string const scene = R"([system]
-kind = "llg"
-damping = 0.05
-[lattice]
-shape = [100]
-spacing = 0.01
-[field]
-exchange = 1.0
-anisotropy = { constant = 1.0, axis = [0, 0, 1] }
-applied = [5.0, 0, 0]
-slab_demag = { normal = [1, 0, 0] }
-[initial]
-random = { seed = 1 }
-[integrator]
-method = "rkmk4"
-dt = 1e-5
-steps = 10
-)";
+  Arguments const stiff =
+      set("system.damping=0.05", "initial.random.seed=1",
+          "integrator={method='rkmk4',dt=1e-5,steps=10}",
+          "field={exchange=1,anisotropy={constant=1,axis=[0,0,1]},applied=[5,0,0],"
+          "slab_demag={normal=[1,0,0]}}");
   auto const stable_dt = [&](std::string const& shape, std::string const& spacing) {
-    return check(scene, {"--set", "lattice.shape=" + shape, "--set", "lattice.spacing=" + spacing})
+    return check(chain_scene(),
+                 joined(stiff, set("lattice={shape=" + shape + ",spacing=" + spacing + "}")))
         .at("stable_dt")
         .get<double>();
   };
@@ -84,36 +67,22 @@ steps = 10
 
 TEST_F(Checking, StableDtIsZeroWhereEveryDtAmplifiesAndNullWhereThereIsNone) {
   auto const undamped =
-      check(macrospin_scene(), {"--set", "system.damping=0", "--set", "integrator.method='euler'"});
+      check(macrospin_scene(), set("system.damping=0", "integrator.method='euler'"));
   EXPECT_EQ(undamped.at("stable_dt").get<double>(), 0);
-  EXPECT_TRUE(
-      check(macrospin_scene(), {"--set", "field.applied=[0,0,0]"}).at("stable_dt").is_null());
-  EXPECT_TRUE(check(R"([system]
-kind = "rigid_body"
-inertia = [1.0, 2.0, 3.0]
-[lattice]
-shape = [4]
-[initial]
-random = { seed = 2 }
-[integrator]
-method = "rkmk4"
-dt = 0.05
-steps = 40
-)")
-                  .at("stable_dt")
-                  .is_null());
+  EXPECT_TRUE(check(macrospin_scene(), set("field.applied=[0,0,0]")).at("stable_dt").is_null());
+  EXPECT_TRUE(check(bodies_scene()).at("stable_dt").is_null());
 }
 
 TEST_F(Checking, StableDtOfAFieldInTimeIsThatOfItsLargest) {
-  auto const growing = check(macrospin_scene(), {"--set", "field.applied=['0','0','t*(10-t)/6.25']",
-                                                 "--set", "integrator.end=10.0"});
-  auto const four = check(macrospin_scene(), {"--set", "field.applied=[0,0,4]"});
+  auto const growing = check(macrospin_scene(),
+                             set("field.applied=['0','0','t*(10-t)/6.25']", "integrator.end=10.0"));
+  auto const four = check(macrospin_scene(), set("field.applied=[0,0,4]"));
   EXPECT_NEAR(growing.at("stable_dt").get<double>(), four.at("stable_dt").get<double>(), 1e-9);
 }
 
 TEST_F(Checking, IterationsHaveNoCountBeforehand) {
   for (std::string const method : {"implicit_euler", "implicit_midpoint", "stiff2", "stiff4"}) {
-    auto const numbers = check(chain_scene(), {"--set", "integrator.method='" + method + "'"});
+    auto const numbers = check(chain_scene(), set("integrator.method='" + method + "'"));
     EXPECT_TRUE(numbers.at("evaluations_per_step").is_null());
     EXPECT_TRUE(numbers.at("stable_dt").is_null());
   }
@@ -122,12 +91,8 @@ TEST_F(Checking, IterationsHaveNoCountBeforehand) {
 // `run` would refuse it; a scene may still be checked beside its file.
 TEST_F(Checking, SaysWhatIsWrongWithTheOutputFile) {
   auto const last_line = [&](std::string const& file) {
-    auto const outcome =
-        start({"check", write("scene.toml", chain_scene()), "--set", "output.file='" + file + "'"});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    EXPECT_EQ(outcome.errors, "");
-    auto const begin = outcome.output.rfind('\n', outcome.output.size() - 2) + 1;
-    return outcome.output.substr(begin);
+    auto const output = output_of({"check", "chain.toml", "--set", "output.file='" + file + "'"});
+    return output.substr(output.rfind('\n', output.size() - 2) + 1);
   };
   EXPECT_TRUE(last_line("free.h5").starts_with("output "));
   for (std::string const extension : {"there.h5", "left.checkpoint.h5"}) write(extension, "kept");
@@ -180,12 +145,10 @@ TEST_F(Checking, MemoryIsWhatARunTakes) {
     double predicted, measured;
   };
   auto const take = [&](std::string const& method, std::string const& shape) {
-    Arguments const changes{"--set", "integrator={method='" + method + "',dt=0.01,steps=1}",
-                            "--set", "lattice.shape=" + shape};
+    Arguments const changes =
+        set("integrator={method='" + method + "',dt=0.01,steps=1}", "lattice.shape=" + shape);
     double const predicted = check(chain_scene(), changes).at("memory_bytes").get<double>();
-    Arguments arguments{"run", "scene.toml", "--quiet", "--overwrite"};
-    arguments.insert(arguments.end(), changes.begin(), changes.end());
-    auto const outcome = start(arguments);
+    auto const outcome = start(joined({"run", "scene.toml", "--quiet", "--overwrite"}, changes));
     EXPECT_EQ(outcome.status, 0);
     return Bytes{predicted, outcome.peak_bytes};
   };
@@ -199,28 +162,21 @@ TEST_F(Checking, MemoryIsWhatARunTakes) {
 }
 
 TEST_F(Checking, HugeLatticesAreCheckedWithoutAllocating) {
-  auto const numbers = check(chain_scene(), {"--set", "lattice.shape=[100000,100000,1000]"});
+  auto const numbers = check(chain_scene(), set("lattice.shape=[100000,100000,1000]"));
   EXPECT_GT(numbers.at("memory_bytes").get<double>(), 9e14);
 }
 
 TEST_F(Checking, TextNamesWhatIsModelled) {
-  write("chain.toml", chain_scene());
-  auto const outcome = start({"check", "chain.toml"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.errors, "");
-  for (char const* part :
-       {"damping 0.1", "20 x 3 x 1 = 60 sites", "H = 1 Lap(m)", "H = 0.5 (m.e) e",
-        "H = -0.2 (m.e) e", "(0.3, -0.2, 0.1)", "n = (1, 0, 0)", "seed 3", "order 4",
-        "25 steps of 0.02", "stable dt", "bytes per site", "4 frames"})
-    EXPECT_TRUE(contains(outcome.output, part));
-  EXPECT_FALSE(std::filesystem::exists(in_folder("chain.h5")));
+  EXPECT_TRUE(
+      contains_all(output_of({"check", "chain.toml"}),
+                   {"damping 0.1", "20 x 3 x 1 = 60 sites", "H = 1 Lap(m)", "H = 0.5 (m.e) e",
+                    "H = -0.2 (m.e) e", "(0.3, -0.2, 0.1)", "n = (1, 0, 0)", "seed 3", "order 4",
+                    "25 steps of 0.02", "stable dt", "bytes per site", "4 frames"}));
+  EXPECT_FALSE(exists("chain.h5"));
 }
 
 TEST_F(Checking, MethodsListsEveryMethodOnce) {
-  auto const outcome = start({"methods"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.errors, "");
-  write("chain.toml", chain_scene());
+  auto const list = output_of({"methods"});
   for (std::string const method : {"euler",         "implicit_euler",    "heun",
                                    "rkmk4",         "rkmk4_as_printed",  "rkmk5",
                                    "rkmk8",         "series4",           "series4_paper",
@@ -229,43 +185,27 @@ TEST_F(Checking, MethodsListsEveryMethodOnce) {
                                    "classical_rk4", "projected_euler",   "projected_heun",
                                    "projected_rk4", "projected_rk5",     "projected_rk8",
                                    "rkmk64",        "projected_rk64",    "projected_rk74"}) {
-    EXPECT_TRUE(contains(outcome.output, "\n" + method + " "));
-    EXPECT_EQ(start({"check", "chain.toml", "--set", "integrator.method='" + method + "'"}).status,
-              0)
-        << method;
+    EXPECT_TRUE(contains(list, "\n" + method + " "));
+    output_of({"check", "chain.toml", "--set", "integrator.method='" + method + "'"});
   }
 }
 
 TEST_F(Checking, HelpAndVersion) {
   for (Arguments const& arguments :
-       {Arguments{"--help"}, Arguments{"run", "--help"}, Arguments{"--version"}}) {
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 0);
-    EXPECT_EQ(outcome.errors, "");
-    EXPECT_NE(outcome.output, "");
-  }
+       {Arguments{"--help"}, Arguments{"run", "--help"}, Arguments{"--version"}})
+    EXPECT_NE(output_of(arguments), "");
 }
 
 // RKMK4 on parts of 8 rows and 16 planes in the middle: (10 * 18 + 12 * 20 + 14 * 22) / 3 of 8
 // * 16.
 TEST_F(Checking, SaysWhatRanksRepeat) {
-  std::string const scene = R"([system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [5, 32, 64]
-boundary = "periodic"
-[field]
-exchange = 1.0
-[initial]
-uniform = [1, 0, 0]
-[integrator]
-method = "rkmk4"
-dt = 0.01
-steps = 1
-)";
+  Arguments const periodic =
+      set("lattice={shape=[5,32,64],boundary='periodic'}", "field={exchange=1.0}",
+          "initial={uniform=[1,0,0]}", "integrator={method='rkmk4',dt=0.01,steps=1}");
   auto const repeated = [&](std::string const& parts, std::string const& more) {
-    return check(scene, {"--ranks", parts, "--set", more}).at("repeated").get<double>();
+    return check(chain_scene(), joined(joined({"--ranks", parts}, periodic), set(more)))
+        .at("repeated")
+        .get<double>();
   };
   std::string const same = "integrator.steps=1";
   EXPECT_DOUBLE_EQ(repeated("4,4", same),
@@ -274,15 +214,12 @@ steps = 1
   EXPECT_DOUBLE_EQ(repeated("1,2", "lattice.boundary='open'"), (33. + 34 + 35 + 32) / (4 * 32) - 1);
   EXPECT_EQ(repeated("1,1", same), 0);
   EXPECT_EQ(repeated("2,2", "integrator.method='euler'"), 0);
-  EXPECT_FALSE(check(scene).contains("repeated"));
-  for (std::string const parts : {"4", "0,4", "4,4,4", "9,1", "1,17"}) {
-    auto const outcome = start({"check", "scene.toml", "--ranks", parts});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(is_one_line(outcome.errors));
-    EXPECT_TRUE(contains(outcome.errors, "--ranks " + parts + ": accepted:"));
-  }
-  auto const text = start({"check", "scene.toml", "--ranks", "1,2"}).output;
-  EXPECT_TRUE(contains(text, "ranks       each repeats 9.38 % of its work"));
+  EXPECT_FALSE(check(chain_scene(), periodic).contains("repeated"));
+  for (std::string const parts : {"4", "0,4", "4,4,4", "9,1", "1,17"})
+    expect_refused(joined({"check", "chain.toml", "--ranks", parts}, periodic),
+                   "--ranks " + parts + ": accepted:");
+  EXPECT_TRUE(contains(output_of(joined({"check", "chain.toml", "--ranks", "1,2"}, periodic)),
+                       "ranks       each repeats 9.38 % of its work"));
 }
 
 }  // namespace

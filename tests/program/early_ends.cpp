@@ -7,17 +7,21 @@
 namespace cayspin::program::test {
 namespace {
 
-using EarlyEnd = ProgramTest;
+class EarlyEnd : public ProgramTest {
+ protected:
+  /// A run of the chain that is interrupted a while after it began to write `file`.
+  Outcome interrupt(std::string const& file, Arguments const& more) const {
+    return start(joined({"run", "chain.toml", "--quiet", "--output", file}, more),
+                 {.interrupt_after = 0.2, .interrupt_when = in_folder(file)});
+  }
+};
 
 TEST_F(EarlyEnd, InterruptLeavesAWholeFile) {
-  write("chain.toml", chain_scene());
-  auto const outcome =
-      start({"run", "chain.toml", "--quiet", "--set", "integrator.steps=1000000000"},
-            {.interrupt_after = 0.2, .interrupt_when = in_folder("chain.h5")});
+  auto const outcome = interrupt("chain.h5", set("integrator.steps=1000000000"));
   EXPECT_EQ(outcome.status, 130);
   EXPECT_TRUE(is_one_line(outcome.errors));
   EXPECT_TRUE(contains(outcome.errors, "interrupted"));
-  auto const info = io::read_info(in_folder("chain.h5"));
+  auto const info = info_of("chain.h5");
   EXPECT_FALSE(info.complete);
   ASSERT_GT(info.frames, 0);
   EXPECT_TRUE(contains(outcome.errors,
@@ -28,27 +32,22 @@ TEST_F(EarlyEnd, InterruptLeavesAWholeFile) {
 
 // Steps are counted from the start of the run that it goes on from.
 TEST_F(EarlyEnd, InterruptAfterARestartNamesTheStepOfTheFile) {
-  write("chain.toml", chain_scene());
-  EXPECT_EQ(start({"run", "chain.toml", "--quiet", "--set", "integrator.steps=500"}).status, 0);
+  output_of({"run", "chain.toml", "--quiet", "--set", "integrator.steps=500"});
   auto const outcome =
-      start({"run", "chain.toml", "--quiet", "--set", "integrator.steps=1000000000", "--restart",
-             "chain.h5", "--output", "on.h5"},
-            {.interrupt_after = 0.2, .interrupt_when = in_folder("on.h5")});
+      interrupt("on.h5", {"--set", "integrator.steps=1000000000", "--restart", "chain.h5"});
   EXPECT_EQ(outcome.status, 130);
-  auto const step = std::to_string(io::read_info(in_folder("on.h5")).frame_steps.back());
+  auto const step = std::to_string(info_of("on.h5").frame_steps.back());
   EXPECT_TRUE(contains(outcome.errors, "interrupted after step " + step + " of 1000000000; "));
   EXPECT_TRUE(contains(outcome.errors, "on.h5 (step " + step + ", t = "));
 }
 
 // Without a dt of the scene, too.
 TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
-  write("chain.toml", chain_scene());
-  auto const outcome = start({"run", "chain.toml", "--quiet", "--set",
-                              "integrator={method='tsit5',tolerance=1e-8,end=2e5}", "--set",
-                              "output.checkpoint_every=0", "--set", "output.every=128"},
-                             {.interrupt_after = 0.2, .interrupt_when = in_folder("chain.h5")});
+  auto const outcome =
+      interrupt("chain.h5", set("integrator={method='tsit5',tolerance=1e-8,end=2e5}",
+                                "output.checkpoint_every=0", "output.every=128"));
   EXPECT_EQ(outcome.status, 130) << outcome.errors;
-  auto const info = io::read_info(in_folder("chain.h5"));
+  auto const info = info_of("chain.h5");
   EXPECT_FALSE(info.complete);
   EXPECT_EQ(info.frames, 2);
   EXPECT_GT(info.frame_times.back(), 0);
@@ -56,8 +55,8 @@ TEST_F(EarlyEnd, InterruptEndsAdaptiveSteps) {
 }
 
 TEST_F(EarlyEnd, RestEndsARun) {
-  auto const info = run(macrospin_scene(), {"--set", "integrator.end=1000.0", "--set",
-                                            "integrator.until_torque=1e-6"});
+  auto const info =
+      run(macrospin_scene(), set("integrator.end=1000.0", "integrator.until_torque=1e-6"));
   // sin(theta) falls as exp(-damping t), from about 1.
   EXPECT_GT(info.frame_times.back(), std::log(1e6) / 0.5 - 2);
   EXPECT_LT(info.frame_times.back(), std::log(1e6) / 0.5 + 4);
@@ -68,13 +67,13 @@ TEST_F(EarlyEnd, RestEndsARun) {
 }
 
 TEST_F(EarlyEnd, RestAtTheTopOfTheEnergyDoesNotEndARun) {
-  auto const info = run(macrospin_scene(), {"--set", "initial.uniform=[0,0,-1]", "--set",
-                                            "integrator.until_torque=1e-6"});
+  auto const info =
+      run(macrospin_scene(), set("initial.uniform=[0,0,-1]", "integrator.until_torque=1e-6"));
   EXPECT_EQ(info.frame_steps.back(), 50);
 }
 
 TEST_F(EarlyEnd, NoStepsIsOneFrame) {
-  auto const info = run(macrospin_scene(), {"--set", "integrator={method='euler',dt=0.1,steps=0}"});
+  auto const info = run(macrospin_scene(), set("integrator={method='euler',dt=0.1,steps=0}"));
   EXPECT_EQ(info.frames, 1);
   EXPECT_EQ(info.samples, 1);
   EXPECT_EQ(info.cost.evaluations, 0);

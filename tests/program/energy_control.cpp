@@ -9,26 +9,9 @@ namespace {
 
 struct ControlledEnergy : ProgramTest {
   double drift(std::string const& integrator) const {
-    auto const outcome = start({"run", write("scene.toml", R"toml([system]
-kind = "llg"
-damping = 0.0
-[lattice]
-shape = [4, 4, 4]
-boundary = "periodic"
-[field]
-exchange = 1.0
-[initial]
-random = { seed = 7 }
-[integrator]
-method = "rkmk4"
-dt = 0.05
-end = 20.0
-[output]
-every = 10
-)toml"),
-                                "--quiet", "--output", "out.h5", "--overwrite", "--set",
-                                "integrator={dt=0.05,end=20.0," + integrator + "}"});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    end_of(chain_scene(), set("system.damping=0", "lattice={shape=[4,4,4],boundary='periodic'}",
+                              "field={exchange=1.0}", "initial.random.seed=7",
+                              "integrator={dt=0.05,end=20.0," + integrator + "}"));
     auto const energies = read_dataset("out.h5", "/energy").values;
     double largest = 0;
     for (double const energy : energies)

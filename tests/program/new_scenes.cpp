@@ -3,44 +3,31 @@
 #include "program_test.hpp"
 
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 
 namespace cayspin::program::test {
 namespace {
 
-class NewScenes : public ProgramTest {
- protected:
-  std::string text_of(std::string const& name) const {
-    std::ifstream file(in_folder(name));
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
-};
+using NewScenes = ProgramTest;
 
 TEST_F(NewScenes, OfEveryKindAreCommentedAndValid) {
   for (std::string const kind : {"film", "chain", "crystal", "bodies", "standard_problem"}) {
     SCOPED_TRACE(kind);
-    auto const outcome = start({"new", kind});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    EXPECT_TRUE(contains(outcome.output, "cayspin run " + kind + ".toml"));
+    std::filesystem::remove(in_folder(kind + ".toml"));
+    EXPECT_TRUE(contains(output_of({"new", kind}), "cayspin run " + kind + ".toml"));
     auto const text = text_of(kind + ".toml");
     EXPECT_TRUE(text.starts_with("# "));
     EXPECT_EQ(text.find("scenes/"), std::string::npos) << text;
-    EXPECT_EQ(start({"check", kind + ".toml"}).status, 0);
+    output_of({"check", kind + ".toml"});
   }
 }
 
 TEST_F(NewScenes, ReplaceNoFileUnasked) {
   write("film.toml", "mine");
-  auto const outcome = start({"new", "film"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_TRUE(is_one_line(outcome.errors));
+  auto const outcome = expect_status(2, {"new", "film"});
   EXPECT_TRUE(outcome.errors.starts_with("film.toml: "));
   EXPECT_EQ(text_of("film.toml"), "mine");
-  EXPECT_EQ(start({"new", "film", "--output", "other.toml"}).status, 0);
-  EXPECT_EQ(start({"new", "film", "--overwrite"}).status, 0);
+  output_of({"new", "film", "--output", "other.toml"});
+  output_of({"new", "film", "--overwrite"});
   EXPECT_EQ(text_of("film.toml"), text_of("other.toml"));
 }
 
@@ -49,19 +36,16 @@ TEST_F(NewScenes, OfAnUnknownKindAreRefused) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_EQ(outcome.errors,
             "cayspin: new novel: accepted: film, chain, crystal, bodies, standard_problem\n");
-  EXPECT_FALSE(std::filesystem::exists(in_folder("novel.toml")));
+  EXPECT_FALSE(exists("novel.toml"));
 }
 
 #if !defined(CAYSPIN_HOST_DEVICE)
 TEST_F(NewScenes, TakeTwoCommandsToAPicture) {
-  start({"new", "film"});
-  EXPECT_EQ(start({"run", "film.toml", "--quiet"}).status, 0);
-  auto const outcome = start({"plot", "film.h5"});
-  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  output_of({"new", "film"});
+  output_of({"run", "film.toml", "--quiet"});
+  EXPECT_EQ(start({"plot", "film.h5"}).status, 0);
   EXPECT_EQ(text_of("film_texture.png").substr(0, 8), "\x89PNG\r\n\x1a\n");
-  auto const wrong = start({"plot", "film.toml"});
-  EXPECT_EQ(wrong.status, 2);
-  EXPECT_TRUE(is_one_line(wrong.errors));
+  expect_status(2, {"plot", "film.toml"});
 }
 #endif
 

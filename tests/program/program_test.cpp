@@ -13,20 +13,13 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 #include <thread>
 
 namespace cayspin::program::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string read_file(fs::path const& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 void limit(int resource, long value) {
   if (value < 0) return;
@@ -54,12 +47,24 @@ void limit(int resource, long value) {
   ::_exit(122);
 }
 
+// As Outcome::status.
+int status_of(int waited) {
+  return WIFEXITED(waited) ? WEXITSTATUS(waited) : 128 + WTERMSIG(waited);
+}
+
 }  // namespace
+
+Arguments joined(Arguments first, Arguments const& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
 
 ProgramTest::ProgramTest() {
   auto pattern = (fs::path(testing::TempDir()) / "cayspin_program_XXXXXX").string();
   if (!::mkdtemp(pattern.data())) throw std::runtime_error("cannot create " + pattern);
   folder_ = pattern;
+  write("chain.toml", chain_scene());
+  write("spin.toml", macrospin_scene());
 }
 
 ProgramTest::~ProgramTest() { fs::remove_all(folder_); }
@@ -68,18 +73,38 @@ Outcome ProgramTest::start(Arguments const& arguments, Treatment const& treatmen
   pid_t const child = ::fork();
   if (child == 0) become_program(folder_, arguments, treatment);
   if (!treatment.interrupt_when.empty()) {
-    auto const deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!fs::exists(treatment.interrupt_when) && std::chrono::steady_clock::now() < deadline)
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    eventually([&] { return fs::exists(treatment.interrupt_when); });
     std::this_thread::sleep_for(std::chrono::duration<double>(treatment.interrupt_after));
     ::kill(child, SIGINT);
   }
   int status = 0;
   rusage usage{};
   ::wait4(child, &status, 0, &usage);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-          read_file(folder_ / "stdout"), read_file(folder_ / "stderr"),
+  return {status_of(status), text_of("stdout"), text_of("stderr"),
           1024.0 * static_cast<double>(usage.ru_maxrss)};
+}
+
+Outcome ProgramTest::expect_status(int status, Arguments const& arguments,
+                                   Treatment const& treatment) const {
+  auto const outcome = start(arguments, treatment);
+  auto const asked = testing::PrintToString(arguments);
+  EXPECT_EQ(outcome.status, status) << asked << ": " << outcome.errors;
+  if (status == 0)
+    EXPECT_EQ(outcome.errors, "") << asked;
+  else
+    EXPECT_TRUE(is_one_line(outcome.errors)) << asked;
+  return outcome;
+}
+
+void ProgramTest::expect_refused(Arguments const& arguments, std::string const& part,
+                                 Treatment const& treatment) const {
+  auto const outcome = expect_status(2, arguments, treatment);
+  EXPECT_TRUE(contains(outcome.errors, part)) << testing::PrintToString(arguments);
+  EXPECT_EQ(outcome.output, "");
+}
+
+std::string ProgramTest::output_of(Arguments const& arguments) const {
+  return expect_status(0, arguments).output;
 }
 
 pid_t ProgramTest::begin(Arguments const& arguments, fs::path const& program) const {
@@ -94,7 +119,7 @@ int ProgramTest::end(pid_t process, int signal) {
   if (signal != 0) ::kill(process, signal);
   int status = 0;
   ::waitpid(process, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return status_of(status);
 }
 
 bool ProgramTest::eventually(std::function<bool()> const& is_so) {
@@ -106,11 +131,14 @@ bool ProgramTest::eventually(std::function<bool()> const& is_so) {
   return true;
 }
 
-io::TrajectoryInfo ProgramTest::run(std::string const& scene, Arguments const& arguments) const {
+Outcome ProgramTest::run_into(std::string const& file, std::string const& scene,
+                              Arguments const& more) const {
   write("scene.toml", scene);
-  Arguments all{"run", "scene.toml", "--quiet", "--overwrite", "--output", "out.h5"};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  auto const outcome = start(all);
+  return start(joined({"run", "scene.toml", "--quiet", "--overwrite", "--output", file}, more));
+}
+
+io::TrajectoryInfo ProgramTest::run(std::string const& scene, Arguments const& more) const {
+  auto const outcome = run_into("out.h5", scene, more);
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.errors, "");
   EXPECT_EQ(outcome.output, "");
@@ -119,9 +147,20 @@ io::TrajectoryInfo ProgramTest::run(std::string const& scene, Arguments const& a
   return info;
 }
 
+std::vector<double> ProgramTest::end_of(std::string const& scene, Arguments const& more) const {
+  auto const outcome = run_into("out.h5", scene, more);
+  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  return last_spins("out.h5");
+}
+
 fs::path ProgramTest::write(std::string const& name, std::string const& text) const {
   std::ofstream(folder_ / name) << text;
   return folder_ / name;
+}
+
+std::string ProgramTest::text_of(std::string const& name) const {
+  std::ifstream file(folder_ / name);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 Dataset ProgramTest::read_dataset(std::string const& name, std::string const& dataset) const {
@@ -162,9 +201,24 @@ testing::AssertionResult is_one_line(std::string const& text) {
   return testing::AssertionFailure() << "not one line: \"" << text << '"';
 }
 
+std::string behind_warning(std::string const& errors) {
+  auto const end = errors.find('\n') + 1;
+  auto const warning = errors.substr(0, end), behind = errors.substr(end);
+  EXPECT_TRUE(contains_all(warning, {"warning: ", "integrator.dt"}));
+  EXPECT_TRUE(is_one_line(behind));
+  return behind;
+}
+
 testing::AssertionResult contains(std::string const& text, std::string const& part) {
   if (text.find(part) != std::string::npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << '"' << text << "\" lacks \"" << part << '"';
+}
+
+testing::AssertionResult contains_all(std::string const& text,
+                                      std::vector<std::string> const& parts) {
+  for (auto const& part : parts)
+    if (auto const found = contains(text, part); !found) return found;
+  return testing::AssertionSuccess();
 }
 
 std::string chain_scene() {
@@ -204,6 +258,21 @@ uniform = [1, 0, 0.2]
 method = "rkmk4"
 dt = 0.1
 end = 5.0
+)";
+}
+
+std::string bodies_scene() {
+  return R"([system]
+kind = "rigid_body"
+inertia = [1.0, 2.0, 3.0]
+[lattice]
+shape = [5]
+[initial]
+random = { seed = 2 }
+[integrator]
+method = "rkmk4"
+dt = 0.05
+steps = 40
 )";
 }
 

@@ -16,6 +16,18 @@ namespace cayspin::program::test {
 
 using Arguments = std::vector<std::string>;
 
+/// One behind the other.
+Arguments joined(Arguments first, Arguments const& more);
+
+/// Each behind a "--set".
+template <class... Texts>
+Arguments set(Texts const&... assignments) {
+  Arguments all;
+  for (std::string const& one : {std::string(assignments)...})
+    all.insert(all.end(), {"--set", one});
+  return all;
+}
+
 /// The program's default space, and another word for one with the same bits.
 #if defined(CAYSPIN_HOST_DEVICE)
 inline std::string const default_space = "host_device", another_space = "host_device";
@@ -58,7 +70,8 @@ struct Treatment {
   std::filesystem::path program = CAYSPIN_PROGRAM;
 };
 
-/// Each test in a folder of its own, which is the program's working directory.
+/// Each test in a folder of its own, which is the program's working directory. It has chain.toml
+/// and spin.toml, the scenes below.
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest();
@@ -66,6 +79,15 @@ class ProgramTest : public testing::Test {
 
   /// Starts the program and waits.
   Outcome start(Arguments const& arguments, Treatment const& treatment = {}) const;
+
+  /// The same. It has to end with this status and, unless that is 0, one line on standard error.
+  Outcome expect_status(int status, Arguments const& arguments,
+                        Treatment const& treatment = {}) const;
+  /// It has to end with status 2, and one line that has `part`.
+  void expect_refused(Arguments const& arguments, std::string const& part,
+                      Treatment const& treatment = {}) const;
+  /// What it says on standard output. It has to succeed without a word on standard error.
+  std::string output_of(Arguments const& arguments) const;
 
   /// Starts the program and does not wait; what it says is lost.
   pid_t begin(Arguments const& arguments,
@@ -76,12 +98,23 @@ class ProgramTest : public testing::Test {
   /// Waits until something is so, at most a minute. False when it never was.
   static bool eventually(std::function<bool()> const& is_so);
 
-  /// Runs a scene that has to succeed without a word on standard error.
-  io::TrajectoryInfo run(std::string const& scene, Arguments const& arguments = {}) const;
+  /// Writes a scene, and runs it without words into a file in the folder.
+  Outcome run_into(std::string const& file, std::string const& scene,
+                   Arguments const& more = {}) const;
+  /// The same into out.h5. It has to succeed without a word on standard error.
+  io::TrajectoryInfo run(std::string const& scene, Arguments const& more = {}) const;
+  /// The same, its last spins. It may warn.
+  std::vector<double> end_of(std::string const& scene, Arguments const& more = {}) const;
 
   /// Writes FOLDER/name, returns its path.
   std::filesystem::path write(std::string const& name, std::string const& text) const;
   std::filesystem::path in_folder(std::string const& name) const { return folder_ / name; }
+  bool exists(std::string const& name) const { return std::filesystem::exists(in_folder(name)); }
+  io::TrajectoryInfo info_of(std::string const& name) const {
+    return io::read_info(in_folder(name));
+  }
+  /// All that a file in the folder has.
+  std::string text_of(std::string const& name) const;
 
   /// A dataset of a file in the folder.
   Dataset read_dataset(std::string const& name, std::string const& dataset) const;
@@ -97,11 +130,19 @@ double distance(std::vector<double> const& a, std::vector<double> const& b);
 
 /// Exactly one line, with a line end.
 testing::AssertionResult is_one_line(std::string const& text);
+
+/// Of two lines, the second; the first has to be a warning about integrator.dt.
+std::string behind_warning(std::string const& errors);
+
 testing::AssertionResult contains(std::string const& text, std::string const& part);
+testing::AssertionResult contains_all(std::string const& text,
+                                      std::vector<std::string> const& parts);
 
 /// A short run of a damped chain, with every kind of term.
 std::string chain_scene();
 /// A single spin that turns and falls towards z.
 std::string macrospin_scene();
+/// Free rigid bodies.
+std::string bodies_scene();
 
 }  // namespace cayspin::program::test

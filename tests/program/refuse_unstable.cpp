@@ -8,16 +8,15 @@ namespace {
 class RefuseUnstable : public ProgramTest {
  protected:
   Outcome run_with(std::string const& dt, std::string const& key) const {
-    return start({"run", write("scene.toml", macrospin_scene()), "--quiet", "--overwrite",
-                  "--output", in_folder("out.h5"), "--set",
-                  "integrator={method=\"rkmk4\",steps=1,dt=" + dt + key + "}"});
+    return run_into("out.h5", macrospin_scene(),
+                    set("integrator={method=\"rkmk4\",steps=1,dt=" + dt + key + "}"));
   }
 };
 
 TEST_F(RefuseUnstable, TurnsTheWarningIntoAnError) {
   auto const warned = run_with("1e3", "");
   EXPECT_TRUE(contains(warned.errors, "warning: ")) << warned.errors;
-  EXPECT_TRUE(std::filesystem::exists(in_folder("out.h5")));
+  EXPECT_TRUE(exists("out.h5"));
   std::filesystem::remove(in_folder("out.h5"));
 
   auto const refused = run_with("1e3", ",refuse_unstable=true");
@@ -26,7 +25,7 @@ TEST_F(RefuseUnstable, TurnsTheWarningIntoAnError) {
   EXPECT_FALSE(contains(refused.errors, "warning: "));
   auto const reason = refused.errors.substr(refused.errors.find("integrator.dt: "));
   EXPECT_TRUE(contains(warned.errors, reason)) << refused.errors;
-  EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5")));
+  EXPECT_FALSE(exists("out.h5"));
 }
 
 TEST_F(RefuseUnstable, TakesAStableStep) {

@@ -24,9 +24,7 @@ random = { seed = 3 }
 )toml";
 
   Outcome relax(std::string const& text, Arguments const& more = {}) const {
-    Arguments arguments{"relax", write("scene.toml", text), "--output", "out.h5"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return start(arguments);
+    return start(joined({"relax", write("scene.toml", text), "--output", "out.h5"}, more));
   }
 };
 
@@ -35,7 +33,7 @@ TEST_F(Relax, FindsTheStateOfAFilm) {
     auto const outcome = relax(scene, {"--precision", precision, "--overwrite"});
     EXPECT_EQ(outcome.status, 0) << outcome.errors;
     EXPECT_TRUE(contains(outcome.output, "1 of 1: converged after "));
-    auto const info = io::read_info(in_folder("out.h5"));
+    auto const info = info_of("out.h5");
     EXPECT_TRUE(info.complete);
     ASSERT_TRUE(info.cost.relaxed);
     EXPECT_TRUE(info.cost.relaxed->converged);
@@ -46,8 +44,7 @@ TEST_F(Relax, FindsTheStateOfAFilm) {
     EXPECT_NEAR(std::abs(info.frame_scalars[0].magnetization[0]), 1, 1e-6);
     EXPECT_EQ(last_spins("out.h5").size(), 360U);
   }
-  auto const info = start({"info", "out.h5"});
-  EXPECT_TRUE(contains(info.output, "at rest      yes, max |m x H| = "));
+  EXPECT_TRUE(contains(output_of({"info", "out.h5"}), "at rest      yes, max |m x H| = "));
 }
 
 // Along the easy axis a uniform film switches at |h| = K.
@@ -58,7 +55,7 @@ TEST_F(Relax, FollowsAHysteresis) {
                                      "initial={ uniform = [1, 0.02, 0] }"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_EQ(outcome.output, "");
-  auto const info = io::read_info(in_folder("out.h5"));
+  auto const info = info_of("out.h5");
   ASSERT_EQ(info.frames, 21);
   for (std::size_t frame = 0; frame < 21; ++frame) {
     double const h = 0.03 * (10 - static_cast<double>(frame));
@@ -91,7 +88,7 @@ slab_demag = { normal = [0, 0, 1] }
                              {"--torque", "1e-9"});
   EXPECT_EQ(outcome.status, 0) << outcome.errors;
   EXPECT_TRUE(contains(outcome.output, " T, energy "));
-  auto const info = io::read_info(in_folder("out.h5"));
+  auto const info = info_of("out.h5");
   EXPECT_LT(info.cost.relaxed->torque, 1e-9);
   EXPECT_NEAR(info.frame_scalars[0].magnetization[2], 0.5, 2e-4);
 }
@@ -101,7 +98,7 @@ TEST_F(Relax, SaysWhenItDoesNotConverge) {
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(is_one_line(outcome.errors));
   EXPECT_TRUE(contains(outcome.errors, "1 of 1 states not converged, the first for: evaluation"));
-  auto const info = io::read_info(in_folder("out.h5"));
+  auto const info = info_of("out.h5");
   EXPECT_TRUE(info.complete);
   EXPECT_FALSE(info.cost.relaxed->converged);
   EXPECT_GT(info.cost.relaxed->torque, 1e-6);
@@ -113,7 +110,7 @@ TEST_F(Relax, KeepsASaddleOnDemand) {
     Arguments options{"--overwrite", "--set", "initial={ uniform = [0, 1, 0] }"};
     if (keeps) options.push_back("--keep-saddles");
     EXPECT_EQ(relax(scene, options).status, 0);
-    auto const info = io::read_info(in_folder("out.h5"));
+    auto const info = info_of("out.h5");
     EXPECT_NEAR(info.frame_scalars[0].energy, keeps ? 0 : -0.05 * 120, 1e-6);
   }
 }
@@ -122,31 +119,29 @@ TEST_F(Relax, KeepsASaddleOnDemand) {
 TEST_F(Relax, LeavesNoCheckpointOfAnother) {
   write("out.checkpoint.h5", "of another run");
   EXPECT_EQ(relax(scene).status, 2);
-  EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5")));
+  EXPECT_FALSE(exists("out.h5"));
   EXPECT_EQ(relax(scene, {"--overwrite"}).status, 0);
-  EXPECT_FALSE(std::filesystem::exists(in_folder("out.checkpoint.h5")));
+  EXPECT_FALSE(exists("out.checkpoint.h5"));
 }
 
 // `check` says what relax would do with a scene that only relax takes.
 TEST_F(Relax, IsChecked) {
   std::string const list = "field.applied=[[0.3, 0, 0.001], [0, 0, 0.001], [-0.3, 0, 0.001]]";
   auto const file = write("scene.toml", scene);
-  auto const outcome = start({"check", file, "--set", list});
-  EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  for (std::string const part :
-       {"H = h in turn, 3 of them: h = (0.3, 0, 0.001) to (-0.3, 0, 0.001)",
-        "relax       L-BFGS preconditioned by exchange, to max |m x H| < --torque, each from",
-        "search ", "output      3 frames, "})
-    EXPECT_TRUE(contains(outcome.output, part)) << part << "\n" << outcome.output;
+  auto const said = output_of({"check", file, "--set", list});
+  EXPECT_TRUE(contains_all(
+      said, {"H = h in turn, 3 of them: h = (0.3, 0, 0.001) to (-0.3, 0, 0.001)",
+             "relax       L-BFGS preconditioned by exchange, to max |m x H| < --torque, each from",
+             "search ", "output      3 frames, "}));
   for (std::string const part : {"stable dt", "method", "per step"})
-    EXPECT_FALSE(contains(outcome.output, part)) << part;
-  auto const without =
-      start({"check", file, "--set", "field={ applied = [0.1, 0, 0] }", "--precision", "single"});
-  EXPECT_TRUE(contains(without.output, "relax       L-BFGS without exchange")) << without.errors;
-  EXPECT_TRUE(contains(without.output, "output      1 frame, "));
+    EXPECT_FALSE(contains(said, part)) << part;
+  auto const without = output_of(
+      {"check", file, "--set", "field={ applied = [0.1, 0, 0] }", "--precision", "single"});
+  EXPECT_TRUE(
+      contains_all(without, {"relax       L-BFGS without exchange", "output      1 frame, "}));
 
   auto const json = nlohmann::json::parse(
-      start({"check", file, "--json", "--set", list, "--set", "lattice.shape=[120, 100]"}).output);
+      output_of({"check", file, "--json", "--set", list, "--set", "lattice.shape=[120, 100]"}));
   EXPECT_EQ(json.at("states"), 3);
   EXPECT_EQ(json.at("sites"), 12000);
   EXPECT_TRUE(json.at("stable_dt").is_null());
@@ -155,25 +150,23 @@ TEST_F(Relax, IsChecked) {
   double const frames = 3 * 12000 * 3 * 8;
   EXPECT_GT(json.at("file_bytes").get<double>(), frames);
   EXPECT_LT(json.at("file_bytes").get<double>(), frames + 3 * 200);
-  ASSERT_EQ(relax(scene, {"--set", list, "--set", "lattice.shape=[120, 100]"}).status, 0);
+  ASSERT_EQ(relax(scene, set(list, "lattice.shape=[120, 100]")).status, 0);
   EXPECT_GT(static_cast<double>(std::filesystem::file_size(in_folder("out.h5"))), frames);
 
   // With [integrator] as without it: the list decides. Without a list it is a run.
   std::string const integrator = "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 50\n";
   auto const both = write("scene.toml", scene + integrator);
-  EXPECT_TRUE(contains(start({"check", both, "--set", list}).output, "output      3 frames, "));
-  EXPECT_TRUE(contains(start({"check", both}).output, "stable dt"));
+  EXPECT_TRUE(contains(output_of({"check", both, "--set", list}), "output      3 frames, "));
+  EXPECT_TRUE(contains(output_of({"check", both}), "stable dt"));
 }
 
 TEST_F(Relax, IsCheckedInSi) {
   auto const file = write("scene.toml", si_scene + R"toml([field]
 applied = [[0.02, 0.0, 0.0], [-0.05, 0.0, 0.0]]
 )toml");
-  auto const outcome = start({"check", file});
-  EXPECT_TRUE(
-      contains(outcome.output, "H = h T in turn, 2 of them: h = (0.02, 0, 0) to (-0.05, 0, 0)"))
-      << outcome.output << outcome.errors;
-  auto const json = nlohmann::json::parse(start({"check", file, "--json"}).output);
+  EXPECT_TRUE(contains(output_of({"check", file}),
+                       "H = h T in turn, 2 of them: h = (0.02, 0, 0) to (-0.05, 0, 0)"));
+  auto const json = nlohmann::json::parse(output_of({"check", file, "--json"}));
   EXPECT_EQ(json.at("units"), "SI");
   EXPECT_EQ(json.at("states"), 2);
 }
@@ -182,16 +175,10 @@ TEST_F(Relax, IsRefusedByCheck) {
   auto const file = write("scene.toml", scene);
   for (auto const& [more, says] : std::vector<std::pair<Arguments, std::string>>{
            {{"--ranks", "1,2"}, "--ranks 1,2: the scene is for cayspin relax, which runs on one"},
-           {{"--set", "thermal={ temperature = 1, seed = 2 }"}, "thermal.temperature: a state of"},
-           {{"--set", "field.applied=[[1, 0, 0], [0, 1]]"}, "field.applied[1]"},
-           {{"--set", "field.applied=[\"t\", 0, 0]"}, "field.applied: depends on t"}}) {
-    Arguments arguments{"check", file};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 2) << says;
-    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-    EXPECT_TRUE(contains(outcome.errors, says)) << outcome.errors;
-    EXPECT_EQ(outcome.output, "");
+           {set("thermal={ temperature = 1, seed = 2 }"), "thermal.temperature: a state of"},
+           {set("field.applied=[[1, 0, 0], [0, 1]]"), "field.applied[1]"},
+           {set("field.applied=[\"t\", 0, 0]"), "field.applied: depends on t"}}) {
+    expect_refused(joined({"check", file}, more), says);
   }
   // A rigid body is for `run` alone.
   auto const body = write("body.toml",
@@ -201,37 +188,28 @@ TEST_F(Relax, IsRefusedByCheck) {
 }
 
 TEST_F(Relax, RefusesInOneLine) {
-  struct Case {
-    std::string text;
-    Arguments more;
-    std::string says;
-  };
-  for (auto const& [text, more, says] : std::vector<Case>{
-           {scene, {"--set", "field.applied=[\"t\", 0, 0]"}, "field.applied: depends on t"},
-           {scene, {"--set", "field.applied=[[1, 0]]"}, "field.applied"},
-           {scene, {"--set", "field.applied=[[1, 0, 0], 2]"}, "field.applied"},
-           {scene,
-            {"--set", "system={ kind = \"rigid_body\", inertia = [1, 2, 3] }"},
-            "lattice.shape"},
-           {scene, {"--set", "integrator.dt=-1"}, "integrator"},
-           {scene, {"--torque", "0"}, "--torque 0; accepted: a number of at least 1e-150"},
-           {scene, {"--torque", "nan"}, "--torque nan; accepted: a number of at least 1e-150"},
-           {scene, {"--torque", "1e-200"}, "--torque 1e-200; accepted: a number of at least"}}) {
-    auto const outcome = relax(text, more);
-    EXPECT_EQ(outcome.status, 2) << says;
-    EXPECT_TRUE(is_one_line(outcome.errors));
-    EXPECT_TRUE(contains(outcome.errors, says));
-    EXPECT_FALSE(std::filesystem::exists(in_folder("out.h5"))) << says;
+  write("scene.toml", scene);
+  for (auto const& [more, part] : std::vector<std::pair<Arguments, std::string>>{
+           {set("field.applied=[\"t\", 0, 0]"), "field.applied: depends on t"},
+           {set("field.applied=[[1, 0]]"), "field.applied"},
+           {set("field.applied=[[1, 0, 0], 2]"), "field.applied"},
+           {set("system={ kind = \"rigid_body\", inertia = [1, 2, 3] }"), "lattice.shape"},
+           {set("integrator.dt=-1"), "integrator"},
+           {{"--torque", "0"}, "--torque 0; accepted: a number of at least 1e-150"},
+           {{"--torque", "nan"}, "--torque nan; accepted: a number of at least 1e-150"},
+           {{"--torque", "1e-200"}, "--torque 1e-200; accepted: a number of at least"}}) {
+    expect_refused(joined({"relax", "scene.toml", "--output", "out.h5"}, more), part);
+    EXPECT_FALSE(exists("out.h5")) << part;
   }
-  auto const missing = start({"run", write("scene.toml", scene), "--output", "out.h5"});
+  auto const missing = run_into("out.h5", scene);
   EXPECT_EQ(missing.status, 2);
-  EXPECT_TRUE(contains(missing.errors, "integrator: is missing")) << missing.errors;
-  EXPECT_TRUE(contains(missing.errors, "only cayspin relax goes without")) << missing.errors;
-  auto const listed = scene + "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 1\n";
-  auto const run = start({"run", write("scene.toml", listed), "--output", "out.h5", "--set",
-                          "field.applied=[[1, 0, 0]]"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_TRUE(contains(run.errors, "a list of fields is for cayspin relax"));
+  EXPECT_TRUE(
+      contains_all(missing.errors, {"integrator: is missing", "only cayspin relax goes without"}));
+  auto const listed =
+      run_into("out.h5", scene + "[integrator]\nmethod = \"rkmk4\"\ndt = 0.1\nsteps = 1\n",
+               set("field.applied=[[1, 0, 0]]"));
+  EXPECT_EQ(listed.status, 2);
+  EXPECT_TRUE(contains(listed.errors, "a list of fields is for cayspin relax"));
 }
 
 }  // namespace

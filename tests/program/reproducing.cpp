@@ -28,13 +28,8 @@ Row cells(std::string const& line) {
 
 class Reproducing : public ProgramTest {
  protected:
-  std::string output(Arguments arguments) const {
-    arguments.insert(arguments.begin(), "reproduce");
-    arguments.insert(arguments.end(), {"--output", "numbers"});
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 0);
-    EXPECT_EQ(outcome.errors, "");
-    return outcome.output;
+  std::string output(Arguments const& arguments) const {
+    return output_of(joined(joined({"reproduce"}, arguments), {"--output", "numbers"}));
   }
 
   std::vector<Row> rows(std::string const& name) const {
@@ -222,16 +217,11 @@ TEST_F(Reproducing, TheSameForTheSameSeed) {
 TEST_F(Reproducing, WrongUses) {
   for (Arguments const& arguments : {Arguments{"reproduce", "table5"},
                                      {"reproduce", "table1", "--bodies", "0"},
-                                     {"reproduce", "table1", "--seed", "a"}}) {
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(is_one_line(outcome.errors));
-    EXPECT_EQ(outcome.output, "");
-  }
+                                     {"reproduce", "table1", "--seed", "a"}})
+    expect_refused(arguments, "");
   write("taken", "");
-  auto const outcome = start({"reproduce", "table1", "--bodies", "10", "--output", "taken"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_TRUE(is_one_line(outcome.errors));
+  auto const outcome =
+      expect_status(2, {"reproduce", "table1", "--bodies", "10", "--output", "taken"});
   EXPECT_TRUE(contains(outcome.errors, "taken/table1.csv: cannot be written"));
 }
 

@@ -13,27 +13,18 @@ namespace {
 class Restarting : public ProgramTest {
  protected:
   /// The first `steps` of the scene's 25, in `file`.
-  void run_to(char const* steps, char const* file, Arguments more = {}) const {
-    Arguments arguments{
-        "run",   write("scene.toml", chain_scene()),      "--quiet", "--output", file,
-        "--set", std::string("integrator.steps=") + steps};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    EXPECT_EQ(outcome.errors, "");
+  void run_to(char const* steps, char const* file, Arguments const& more = {}) const {
+    output_of(joined({"run", "chain.toml", "--quiet", "--output", file, "--set",
+                      std::string("integrator.steps=") + steps},
+                     more));
   }
 
   void expect_refused(Arguments const& more, std::string const& part,
                       std::string const& output = "second.h5") const {
-    Arguments arguments{
-        "run",     write("scene.toml", chain_scene()), "--quiet", "--output", output, "--restart",
-        "first.h5"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-    EXPECT_TRUE(contains(outcome.errors, part));
-    EXPECT_FALSE(std::filesystem::exists(in_folder("second.h5")));
+    ProgramTest::expect_refused(
+        joined({"run", "chain.toml", "--quiet", "--output", output, "--restart", "first.h5"}, more),
+        part);
+    EXPECT_FALSE(exists("second.h5"));
   }
 };
 
@@ -43,24 +34,22 @@ TEST_F(Restarting, GivesTheBitsOfARunWithoutABreak) {
                          "field.applied=['0.3*cos(7*t)','0.1','0.2']"};
     run_to("25", "whole.h5", same);
     run_to("12", "first.h5", same);
-    auto more = same;
-    more.insert(more.end(), {"--restart", "first.h5"});
-    run_to("25", "second.h5", more);
+    run_to("25", "second.h5", joined(same, {"--restart", "first.h5"}));
     EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
-    auto const info = io::read_info(in_folder("second.h5"));
+    auto const info = info_of("second.h5");
     EXPECT_TRUE(info.complete);
     EXPECT_EQ(info.frame_steps, (std::vector<std::int64_t>{12, 20, 25}));
-    EXPECT_EQ(info.frame_times.back(), io::read_info(in_folder("whole.h5")).frame_times.back());
+    EXPECT_EQ(info.frame_times.back(), info_of("whole.h5").frame_times.back());
     EXPECT_EQ(info.cost.evaluations, 13 * 4);
   }
 }
 
 TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
   run_to("12", "first.h5");
-  expect_refused({"--set", "lattice.shape=[20,4]"}, "its lattice is 20 x 3 x 1");
+  expect_refused(set("lattice.shape=[20,4]"), "its lattice is 20 x 3 x 1");
   expect_refused({"--precision", "single"}, "accepted: --precision double");
-  expect_refused({"--set", "integrator.dt=0.01"}, "its step 12 is at t = 0.24");
-  expect_refused({"--set", "integrator.steps=12"}, "it ends at step 12, the scene at step 12");
+  expect_refused(set("integrator.dt=0.01"), "its step 12 is at t = 0.24");
+  expect_refused(set("integrator.steps=12"), "it ends at step 12, the scene at step 12");
   auto const before = last_spins("first.h5");
   expect_refused({"--overwrite"}, "another file for --output", "first.h5");
   EXPECT_EQ(last_spins("first.h5"), before);
@@ -70,25 +59,22 @@ TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
 
 /// What makes a run remember more than its spins.
 std::vector<Arguments> const memories{
-    {"--set", "integrator.method='ab2'"},
-    {"--set", "integrator.method='fx4'"},
+    set("integrator.method='ab2'"),
+    set("integrator.method='fx4'"),
     {"--set", "integrator.compensated=true", "--precision", "single"},
-    {"--set", "integrator.energy_control=true", "--set", "system.damping=0"},
-    {"--set", "integrator.until_torque=1e-9"},
-    {"--set", "integrator.method='euler'", "--set",
-     "integrator.isotropy='finite_difference_backward'"}};
+    set("integrator.energy_control=true", "system.damping=0"),
+    set("integrator.until_torque=1e-9"),
+    set("integrator.method='euler'", "integrator.isotropy='finite_difference_backward'")};
 
 TEST_F(Restarting, GoesOnFromTheCheckpointOfAMethodThatRemembers) {
   for (auto const& memory : memories) {
     SCOPED_TRACE(memory.back());
-    auto with = [&](Arguments more) {
-      more.insert(more.end(), memory.begin(), memory.end());
-      more.push_back("--overwrite");
-      return more;
+    auto const with = [&](Arguments const& more) {
+      return joined(joined(more, memory), {"--overwrite"});
     };
     run_to("25", "whole.h5", with({"--space", another_space}));
     run_to("12", "first.h5", with({"--threads", "1"}));
-    EXPECT_TRUE(std::filesystem::exists(in_folder("first.checkpoint.h5")));
+    EXPECT_TRUE(exists("first.checkpoint.h5"));
     run_to("25", "second.h5", with({"--threads", "2", "--restart", "first.h5"}));
     EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
     run_to("25", "third.h5", with({"--restart", "first.checkpoint.h5"}));
@@ -97,7 +83,7 @@ TEST_F(Restarting, GoesOnFromTheCheckpointOfAMethodThatRemembers) {
 }
 
 TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
-  Arguments const ab2{"--set", "integrator.method='ab2'"};
+  Arguments const ab2 = set("integrator.method='ab2'");
   run_to("12", "first.h5", ab2);
   auto const checkpoint = in_folder("first.checkpoint.h5");
   std::filesystem::rename(checkpoint, in_folder("kept.h5"));
@@ -115,22 +101,20 @@ TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
 TEST_F(Restarting, BeginsAnewByAnotherMethod) {
   run_to("12", "first.h5");
   run_to("25", "second.h5", {"--set", "integrator.method='ab2'", "--restart", "first.h5"});
-  run_to("25", "third.h5",
-         {"--set", "integrator.method='ab2'", "--set", "initial={file='first.h5'}"});
-  EXPECT_EQ(io::read_info(in_folder("second.h5")).frame_steps.front(), 12);
+  run_to("25", "third.h5", set("integrator.method='ab2'", "initial={file='first.h5'}"));
+  EXPECT_EQ(info_of("second.h5").frame_steps.front(), 12);
 }
 
 TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
-  run_to("12", "first.h5", {"--set", "output.checkpoint_every='5 steps'"});
-  EXPECT_FALSE(std::filesystem::exists(in_folder("first.checkpoint.h5"))) << "the last frame is it";
-  run_to("12", "never.h5",
-         {"--set", "integrator.method='ab2'", "--set", "output.checkpoint_every=0"});
-  EXPECT_FALSE(std::filesystem::exists(in_folder("never.checkpoint.h5")));
+  run_to("12", "first.h5", set("output.checkpoint_every='5 steps'"));
+  EXPECT_FALSE(exists("first.checkpoint.h5")) << "the last frame is it";
+  run_to("12", "never.h5", set("integrator.method='ab2'", "output.checkpoint_every=0"));
+  EXPECT_FALSE(exists("never.checkpoint.h5"));
   // One that a deleted trajectory left is in nobody's way.
-  run_to("12", "third.h5", {"--set", "integrator.method='ab2'"});
+  run_to("12", "third.h5", set("integrator.method='ab2'"));
   std::filesystem::remove(in_folder("third.h5"));
-  ASSERT_TRUE(std::filesystem::exists(in_folder("third.checkpoint.h5")));
-  run_to("5", "third.h5", {"--set", "integrator.method='ab2'"});
+  ASSERT_TRUE(exists("third.checkpoint.h5"));
+  run_to("5", "third.h5", set("integrator.method='ab2'"));
   EXPECT_EQ(io::CheckpointReader(in_folder("third.checkpoint.h5")).header().step, 5);
   write("second.checkpoint.h5", "kept");
   expect_refused({}, "second.checkpoint.h5: cannot write the file: it exists");
@@ -140,31 +124,23 @@ TEST_F(Restarting, CheckpointsAreStoredWhereTheyAreNeeded) {
 TEST_F(Restarting, GoesOnFromTheCheckpointOfAKilledRun) {
   for (std::string const method : {"rkmk4", "ab2", "dp5"}) {
     SCOPED_TRACE(method);
-    auto const run_into = [&](std::string const& file, Arguments const& more = {}) {
-      Arguments arguments{
-          "run", write("scene.toml", chain_scene()), "--quiet", "--overwrite", "--output", file};
-      for (std::string const set :
-           {"integrator.method='" + method + "'", std::string("integrator.dt=0.001"),
-            std::string("integrator.steps=60000"), std::string("output.every=60000")})
-        arguments.insert(arguments.end(), {"--set", set});
-      if (method == "dp5")
-        arguments.insert(arguments.end(), {"--set", "integrator.tolerance=1e-6"});
-      arguments.insert(arguments.end(), more.begin(), more.end());
-      return arguments;
+    std::string const integrator = "integrator={method='" + method + "',dt=0.001,steps=60000";
+    auto const run_of = [&](std::string const& file, Arguments const& more = {}) {
+      auto const changes =
+          set(integrator + (method == "dp5" ? ",tolerance=1e-6}" : "}"), "output.every=60000");
+      return joined(
+          joined({"run", "chain.toml", "--quiet", "--overwrite", "--output", file}, changes), more);
     };
     auto const checkpoint = in_folder("first.checkpoint.h5");
     std::filesystem::remove(checkpoint);
-    auto const process =
-        begin(run_into("first.h5", {"--set", "output.checkpoint_every='500 steps'"}));
+    auto const process = begin(run_of("first.h5", set("output.checkpoint_every='500 steps'")));
     EXPECT_TRUE(eventually([&] { return std::filesystem::exists(checkpoint); }));
     EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
     auto const step = io::CheckpointReader(checkpoint).header().step;
     ASSERT_GT(step, 0);
-    auto const second = start(run_into("second.h5", {"--restart", "first.h5"}));
-    EXPECT_EQ(second.status, 0) << second.errors;
-    auto const whole = start(run_into("whole.h5"));
-    EXPECT_EQ(whole.status, 0) << whole.errors;
-    EXPECT_EQ(io::read_info(in_folder("second.h5")).frame_steps.front(), step);
+    output_of(run_of("second.h5", {"--restart", "first.h5"}));
+    output_of(run_of("whole.h5"));
+    EXPECT_EQ(info_of("second.h5").frame_steps.front(), step);
     EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
   }
 }
@@ -173,12 +149,12 @@ TEST_F(Restarting, TakesTheMethodThatAutoChoseBefore) {
   auto const to = [](char const* steps) {
     return std::string("integrator={method='auto',error=1e-4,dt=0.1,steps=") + steps + "}";
   };
-  run_to("5", "first.h5", {"--set", to("5")});
-  auto const first = io::read_info(in_folder("first.h5")).header.resolved_scene;
+  run_to("5", "first.h5", set(to("5")));
+  auto const first = info_of("first.h5").header.resolved_scene;
   // What stands in the file is taken, whatever would be chosen.
   auto const before = io::parse_scene(first, "scene.toml").integrator;
   run_to("10", "second.h5", {"--set", to("10"), "--restart", "first.h5"});
-  auto const second = io::read_info(in_folder("second.h5"));
+  auto const second = info_of("second.h5");
   auto const after = io::parse_scene(second.header.resolved_scene, "scene.toml").integrator;
   EXPECT_EQ(after.method, before.method);
   EXPECT_EQ(after.dt, before.dt);

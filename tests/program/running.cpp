@@ -11,7 +11,7 @@ using Running = ProgramTest;
 using Steps = std::vector<std::int64_t>;
 
 TEST_F(Running, FramesAndSamplesAreWhereTheSceneAsks) {
-  auto const info = run(chain_scene(), {"--set", "output.scalars_every=2"});
+  auto const info = run(chain_scene(), set("output.scalars_every=2"));
   EXPECT_EQ(info.frame_steps, (Steps{0, 10, 20, 25}));
   EXPECT_EQ(info.samples, 14);  // 0, 2, .., 24 and 25
   ASSERT_EQ(info.frame_times.size(), 4u);
@@ -43,7 +43,7 @@ TEST_F(Running, AttributesSayWhatRan) {
 }
 
 TEST_F(Running, OverridesReachTheSceneText) {
-  auto const info = run(chain_scene(), {"--set", "integrator.steps=5"});
+  auto const info = run(chain_scene(), set("integrator.steps=5"));
   EXPECT_TRUE(contains(info.header.scene_text, "steps = 5"));
   EXPECT_EQ(info.frame_steps, (Steps{0, 5}));
 }
@@ -69,10 +69,9 @@ TEST_F(Running, ScalarsAreThoseOfTheFrames) {
 }
 
 TEST_F(Running, EnergyOfOneSpinIsTheFormula) {
-  auto const info =
-      run(macrospin_scene(), {"--set", "field.anisotropy={constant=0.7,axis=[1,0,1]}", "--set",
-                              "field.slab_demag={normal=[0,0,1],strength=0.4}", "--set",
-                              "field.mu0=2.0", "--set", "initial.uniform=[0.6,0,0.8]"});
+  auto const info = run(macrospin_scene(), set("field.anisotropy={constant=0.7,axis=[1,0,1]}",
+                                               "field.slab_demag={normal=[0,0,1],strength=0.4}",
+                                               "field.mu0=2.0", "initial.uniform=[0.6,0,0.8]"));
   double const anisotropy = -0.35 * 1.4 * 1.4 / 2, zeeman = -2 * 0.8, demag = 0.4 * 0.64;
   EXPECT_NEAR(info.frame_scalars[0].energy, anisotropy + zeeman + demag, 1e-15);
 }
@@ -89,16 +88,12 @@ TEST_F(Running, ComponentsThatDecayEndAtZero) {
 }
 
 TEST_F(Running, ProgressIsPlainLinesWithoutATerminal) {
-  write("chain.toml", chain_scene());
-  auto const outcome = start({"run", "chain.toml"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.errors, "");
-  EXPECT_TRUE(contains(outcome.output, "chain.h5: 25 steps, 4 frames"));
-  EXPECT_EQ(outcome.output.find('\r'), std::string::npos);
+  auto const output = output_of({"run", "chain.toml"});
+  EXPECT_TRUE(contains(output, "chain.h5: 25 steps, 4 frames"));
+  EXPECT_FALSE(contains(output, "\r"));
 }
 
 TEST_F(Running, DtAboveTheStableOneIsWarnedOf) {
-  write("spin.toml", macrospin_scene());
   auto const outcome = start({"run", "spin.toml", "--quiet", "--output", "out.h5", "--set",
                               "integrator.method='projected_euler'", "--set", "system.damping=0"});
   EXPECT_EQ(outcome.status, 0);
@@ -108,20 +103,14 @@ TEST_F(Running, DtAboveTheStableOneIsWarnedOf) {
 
 // Order 8 is stable up to dt 6 in this field. On a chain the fast modes are those of exchange.
 TEST_F(Running, TurnsBelowTheStableDtAreWarnedOfUnlessTheyAreThoseOfExchange) {
-  write("spin.toml", macrospin_scene());
   auto const warning = [&](char const* dt, Arguments const& more) {
-    Arguments arguments{
-        "run",      "spin.toml",
-        "--quiet",  "--overwrite",
-        "--output", "out.h5",
-        "--set",    std::string("integrator={method='projected_rk8',steps=4,dt=") + dt + "}",
-        "--set",    "system.damping=0.02"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return start(arguments).errors;
+    auto const method = std::string("integrator={method='projected_rk8',steps=4,dt=") + dt + "}";
+    return run_into("out.h5", macrospin_scene(), joined(set(method, "system.damping=0.02"), more))
+        .errors;
   };
   EXPECT_TRUE(contains(warning("3.5", {}), "turns spins by up to 3.5"));
   EXPECT_EQ(warning("2.5", {}), "");
-  Arguments const chain{"--set", "field.exchange=1", "--set", "lattice={shape=[16]}"};
+  Arguments const chain = set("field.exchange=1", "lattice={shape=[16]}");
   EXPECT_EQ(warning("0.9", chain), "");
   EXPECT_TRUE(contains(warning("1.5", chain), "is above the stable 1.2"));
 }

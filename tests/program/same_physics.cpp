@@ -35,15 +35,15 @@ TEST_F(SamePhysics, HostDemagIsTheDeviceOne) {
   for (std::string const axis : {"[1,0,0]", "[0,1,0]", "[0,0,1]"})
     for (std::string const average : {"", ",average='layer'"}) {
       auto const demag = "field.slab_demag={normal=" + axis + average;
-      EXPECT_LT(distance(spins(chain_scene(), {"--set", demag + "}"}),
-                         spins(chain_scene(), {"--set", demag + ",where='host'}"})),
+      EXPECT_LT(distance(spins(chain_scene(), set(demag + "}")),
+                         spins(chain_scene(), set(demag + ",where='host'}"))),
                 1e-13)
           << demag;
     }
 }
 
 TEST_F(SamePhysics, LayerAverageIsTheDemagOfUniformLayers) {
-  Arguments const start{"--set", "initial={expression=['0.3+x','0.5','cos(i)']}"};
+  Arguments const start = set("initial={expression=['0.3+x','0.5','cos(i)']}");
   auto const with = [&](std::string const& demag) {
     return spins(chain_scene(), {start[0], start[1], "--set", "field.slab_demag=" + demag});
   };
@@ -54,48 +54,31 @@ TEST_F(SamePhysics, LayerAverageIsTheDemagOfUniformLayers) {
 
 TEST_F(SamePhysics, ExpressionInTimeThatIsConstantIsTheConstant) {
   auto const expression = "field.applied=['0.3+0*t','-0.2','0.1']";
-  EXPECT_EQ(spins(chain_scene(), {"--set", expression}), spins(chain_scene(), {}));
+  EXPECT_EQ(spins(chain_scene(), set(expression)), spins(chain_scene(), {}));
 }
 
 TEST_F(SamePhysics, Mu0MultipliesAppliedAndDemag) {
-  auto const scaled = spins(chain_scene(), {"--set", "field.mu0=2.0"});
-  auto const spelled = spins(chain_scene(), {"--set", "field.applied=[0.6,-0.4,0.2]", "--set",
-                                             "field.slab_demag={normal=[1,0,0],strength=2.0}"});
+  auto const scaled = spins(chain_scene(), set("field.mu0=2.0"));
+  auto const spelled = spins(chain_scene(), set("field.applied=[0.6,-0.4,0.2]",
+                                                "field.slab_demag={normal=[1,0,0],strength=2.0}"));
   EXPECT_LT(distance(scaled, spelled), 1e-14);
 }
 
 TEST_F(SamePhysics, StartFromFileGoesOn) {
-  auto const whole = spins(chain_scene(), {"--set", "integrator.steps=20"});
-  run(chain_scene(), {"--set", "integrator.steps=10"});
+  auto const whole = spins(chain_scene(), set("integrator.steps=20"));
+  run(chain_scene(), set("integrator.steps=10"));
   std::filesystem::rename(in_folder("out.h5"), in_folder("half.h5"));
-  auto const second =
-      spins(chain_scene(), {"--set", "integrator.steps=10", "--set", "initial={file='half.h5'}"});
+  auto const second = spins(chain_scene(), set("integrator.steps=10", "initial={file='half.h5'}"));
   std::vector<double> const end(whole.end() - 180, whole.end());
   EXPECT_LT(distance({second.end() - 180, second.end()}, end), 1e-14);
 }
 
 // Exact: m turns about H by |H| t, right-handed. VALIDATION's rotating field is the library's test.
 TEST_F(SamePhysics, PrecessionIsRightHanded) {
-  auto const m =
-      spins(macrospin_scene(), {"--set", "system.damping=0", "--set", "initial.uniform=[1,0,0]",
-                                "--set", "integrator={method='rkmk4',dt=0.01,end=1.0}"});
+  auto const m = spins(macrospin_scene(), set("system.damping=0", "initial.uniform=[1,0,0]",
+                                              "integrator={method='rkmk4',dt=0.01,end=1.0}"));
   EXPECT_NEAR(m[3], std::cos(1.0), 1e-9);
   EXPECT_NEAR(m[4], std::sin(1.0), 1e-9);
-}
-
-std::string bodies_scene() {
-  return R"([system]
-kind = "rigid_body"
-inertia = [1.0, 2.0, 3.0]
-[lattice]
-shape = [5]
-[initial]
-random = { seed = 2 }
-[integrator]
-method = "rkmk4"
-dt = 0.05
-steps = 40
-)";
 }
 
 TEST_F(SamePhysics, InertiaFromFileIsTheInertia) {
@@ -104,11 +87,11 @@ TEST_F(SamePhysics, InertiaFromFileIsTheInertia) {
     tensors.insert(tensors.end(), {1, 0, 0, 0, 2, 0, 0, 0, body == 4 ? 2.5 : 3.0});
   io::test::write_dataset(in_folder("inertia.h5"), "/inertia", {5, 3, 3}, tensors);
   auto const one = spins(bodies_scene(), {});
-  auto const each = spins(bodies_scene(), {"--set", "system.inertia={file='inertia.h5'}"});
+  auto const each = spins(bodies_scene(), set("system.inertia={file='inertia.h5'}"));
   ASSERT_EQ(each.size(), 30u);
   EXPECT_LT(distance({one.begin(), one.end() - 3}, {each.begin(), each.end() - 3}), 1e-15);
   EXPECT_GT(distance({one.end() - 3, one.end()}, {each.end() - 3, each.end()}), 1e-3);
-  auto const info = io::read_info(in_folder("out.h5"));
+  auto const info = info_of("out.h5");
   EXPECT_NEAR(info.frame_scalars[0].energy, info.frame_scalars[1].energy, 1e-6);
 }
 
@@ -116,15 +99,14 @@ TEST_F(SamePhysics, OrthogonalConstantAndExponentialAgreeToTheMethodsOrder) {
   auto const reference = spins(chain_scene(), {});
   for (std::string const other :
        {"generator='orthogonal'", "isotropy={constant=0.7}", "rotation='exponential'"}) {
-    auto const difference =
-        distance(spins(chain_scene(), {"--set", "integrator." + other}), reference);
+    auto const difference = distance(spins(chain_scene(), set("integrator." + other)), reference);
     EXPECT_LT(difference, 1e-5) << other;
     EXPECT_GT(difference, 1e-12) << other;
   }
 }
 
 TEST_F(SamePhysics, MethodsAgreeToTheirOrder) {
-  auto const reference = spins(chain_scene(), {"--set", "integrator.method='rkmk8'"});
+  auto const reference = spins(chain_scene(), set("integrator.method='rkmk8'"));
   for (auto const& [method, tolerance] :
        std::vector<std::pair<std::string, double>>{{"euler", 0.2},
                                                    {"rkmk4_as_printed", 1e-4},
@@ -138,10 +120,9 @@ TEST_F(SamePhysics, MethodsAgreeToTheirOrder) {
                                                    {"projected_rk4", 1e-5},
                                                    {"projected_rk5", 1e-7},
                                                    {"projected_rk8", 5e-9}}) {
-    auto const difference =
-        distance(spins(chain_scene(), {"--set", "integrator.method='" + method + "'", "--set",
-                                       "integrator.energy_guard=false"}),
-                 reference);
+    auto const difference = distance(spins(chain_scene(), set("integrator.method='" + method + "'",
+                                                              "integrator.energy_guard=false")),
+                                     reference);
     EXPECT_LT(difference, tolerance) << method;
     EXPECT_GT(difference, 0) << method;
   }

@@ -79,19 +79,19 @@ TEST_F(SiScene, TheFileSaysItsUnits) {
   auto const u = units();
   EXPECT_EQ(info.header.units,
             (io::Units{true, u.time_unit(), u.length_unit(), u.field_unit(), u.energy_unit()}));
-  auto const said = start({"info", "out.h5"}).output;
+  auto const said = output_of({"info", "out.h5"});
   EXPECT_TRUE(contains(said,
                        "units        SI; one reduced unit is 6.15746661e-12 s, 4e-09 m, "
                        "1.00530965 T, 4.82548632e-20 J\n"));
   EXPECT_TRUE(contains(said, "step 1, t = 1e-13 s: energy "));
   EXPECT_EQ(run(macrospin_scene(), {"--overwrite"}).header.units, io::Units{});
-  EXPECT_TRUE(contains(start({"info", "out.h5"}).output, "units        reduced\n"));
+  EXPECT_TRUE(contains(output_of({"info", "out.h5"}), "units        reduced\n"));
 }
 
 TEST_F(SiScene, FilesOfOtherToolsAreInSi) {
   auto const info = run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 10", "[0, 0, 0.1]"),
-                        {"--set", "output.table=true", "--set", "output.xdmf=true"});
-  EXPECT_EQ(start({"export", "out.h5", "--ovf", "."}).status, 0);
+                        set("output.table=true", "output.xdmf=true"));
+  output_of({"export", "out.h5", "--ovf", "."});
   auto const field = io::read_ovf(in_folder("out_000001.ovf"));
   EXPECT_EQ(field.mesh.unit, "m");
   std::array const cell{4e-9, 5e-9, 3e-9};
@@ -110,8 +110,7 @@ TEST_F(SiScene, FilesOfOtherToolsAreInSi) {
   std::getline(table, line);
   std::getline(table, line);
   EXPECT_EQ(std::stod(line), info.frame_times[1]);
-  std::ifstream xdmf(in_folder("out.xdmf"));
-  EXPECT_TRUE(contains(std::string(std::istreambuf_iterator<char>(xdmf), {}), "4e-09"));
+  EXPECT_TRUE(contains(text_of("out.xdmf"), "4e-09"));
 }
 
 }  // namespace

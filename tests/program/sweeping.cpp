@@ -16,33 +16,16 @@ namespace fs = std::filesystem;
 
 class Sweeping : public ProgramTest {
  protected:
-  Sweeping() { write("chain.toml", chain_scene()); }
-
-  Arguments arguments(char const* file, Arguments const& more = {}) const {
-    Arguments all{"sweep",    "chain.toml",
-                  "--output", file,
-                  "--over",   "system.damping=0.1,0.3",
-                  "--over",   "field.applied=[0.3,-0.2,0.1],[0,0,0.5],['0.1*cos(t)',0,0]"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+  static Arguments sweep_into(char const* file, Arguments const& more) {
+    return joined({"sweep", "chain.toml", "--output", file}, more);
   }
-
-  /// Has to end with this status and, unless it is 0, one line on standard error.
-  Outcome expect_status(int status, Arguments const& all, Treatment const& treatment = {}) const {
-    auto const outcome = start(all, treatment);
-    EXPECT_EQ(outcome.status, status) << outcome.errors;
-    if (status == 0)
-      EXPECT_EQ(outcome.errors, "");
-    else
-      EXPECT_TRUE(is_one_line(outcome.errors));
-    return outcome;
+  /// Of six runs.
+  static Arguments arguments(char const* file, Arguments const& more = {}) {
+    return joined(sweep_into(file, {"--over", "system.damping=0.1,0.3", "--over",
+                                    "field.applied=[0.3,-0.2,0.1],[0,0,0.5],['0.1*cos(t)',0,0]"}),
+                  more);
   }
-
-  void expect_refused(Arguments const& all, std::string const& part) const {
-    auto const outcome = expect_status(2, all);
-    EXPECT_TRUE(contains(outcome.errors, part));
-    EXPECT_EQ(outcome.output, "");
-  }
+  io::SweepInfo sweep_in(char const* file) const { return io::read_sweep(in_folder(file)); }
 
   std::vector<double> spins(char const* file, std::int64_t run) const {
     return read_dataset(file, "/runs/" + io::swept_run_name(run) + "/spins").values;
@@ -50,23 +33,19 @@ class Sweeping : public ProgramTest {
 };
 
 TEST_F(Sweeping, RunsEveryCombination) {
-  auto const outcome = expect_status(0, arguments("all.h5", {"--jobs", "1", "--threads", "1"}));
-  EXPECT_TRUE(contains(outcome.output, "6 of 6  run 0005"));
-  EXPECT_TRUE(contains(outcome.output, "all.h5: 6 runs"));
-  EXPECT_FALSE(fs::exists(in_folder("all.h5.runs")));
-  auto const sweep = io::read_sweep(in_folder("all.h5"));
+  EXPECT_TRUE(contains_all(output_of(arguments("all.h5", {"--jobs", "1", "--threads", "1"})),
+                           {"6 of 6  run 0005", "all.h5: 6 runs"}));
+  EXPECT_FALSE(exists("all.h5.runs"));
+  auto const sweep = sweep_in("all.h5");
   EXPECT_TRUE(sweep.complete);
   EXPECT_TRUE(sweep.one_file);
   ASSERT_EQ(sweep.runs.size(), 6u);
   for (std::int64_t run = 0; run < 6; ++run) {
     Arguments one{"run", "chain.toml", "--quiet", "--overwrite", "--output", "one.h5"};
-    for (auto const& override : sweep.header.overrides(run)) {
-      one.emplace_back("--set");
-      one.push_back(override);
-    }
+    for (auto const& override : sweep.header.overrides(run)) one = joined(one, set(override));
     expect_status(0, one);
     EXPECT_EQ(spins("all.h5", run), read_dataset("one.h5", "/spins").values) << run;
-    auto const alone = io::read_info(in_folder("one.h5"));
+    auto const alone = info_of("one.h5");
     auto const& swept = sweep.runs[static_cast<std::size_t>(run)];
     EXPECT_EQ(swept.status, 0);
     EXPECT_EQ(swept.step, 25);
@@ -81,8 +60,8 @@ TEST_F(Sweeping, RunsEveryCombination) {
 }
 
 TEST_F(Sweeping, GivesTheSameBitsSideBySide) {
-  expect_status(0, arguments("one.h5", {"--jobs", "1", "--quiet"}));
-  expect_status(0, arguments("two.h5", {"--jobs", "2", "--quiet", "--threads", "2"}));
+  output_of(arguments("one.h5", {"--jobs", "1", "--quiet"}));
+  output_of(arguments("two.h5", {"--jobs", "2", "--quiet", "--threads", "2"}));
   for (std::int64_t run = 0; run < 6; ++run)
     EXPECT_EQ(spins("one.h5", run), spins("two.h5", run)) << run;
 }
@@ -90,11 +69,9 @@ TEST_F(Sweeping, GivesTheSameBitsSideBySide) {
 TEST_F(Sweeping, GoesOnAfterAKill) {
   // The runs with 200000 steps take long enough to be killed in one of them.
   auto const all = [](char const* file) {
-    return Arguments{
-        "sweep",       "chain.toml", "--output", file,
-        "--jobs",      "2",          "--over",   "integrator.steps=20,30,200000,200001",
-        "--threads",   "1",          "--set",    "output.every=500000",
-        "--precision", "single"};
+    return sweep_into(
+        file, {"--jobs", "2", "--over", "integrator.steps=20,30,200000,200001", "--threads", "1",
+               "--set", "output.every=500000", "--precision", "single"});
   };
   auto const file = in_folder("killed.h5");
   auto const sweep_process = begin(all("killed.h5"));
@@ -110,16 +87,16 @@ TEST_F(Sweeping, GoesOnAfterAKill) {
 
   // A reader who has it open is no obstacle.
   hid_t const reader = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  auto const outcome = expect_status(0, all("killed.h5"));
+  auto const output = output_of(all("killed.h5"));
   H5Fclose(reader);
-  EXPECT_TRUE(contains(outcome.output, "1 of 2  run 000"));
-  expect_status(0, all("whole.h5"));
+  EXPECT_TRUE(contains(output, "1 of 2  run 000"));
+  output_of(all("whole.h5"));
   auto const sweep = io::read_sweep(file);
   EXPECT_TRUE(sweep.complete);
   EXPECT_EQ(sweep.runs[0].cost.wall_seconds, early) << "it ran again";
   for (std::int64_t run = 0; run < 4; ++run)
     EXPECT_EQ(spins("killed.h5", run), spins("whole.h5", run)) << run;
-  EXPECT_FALSE(fs::exists(in_folder("killed.h5.runs")));
+  EXPECT_FALSE(exists("killed.h5.runs"));
 }
 
 // Flips a bit of the last spin in a run's file.
@@ -134,51 +111,41 @@ void damage_spins(fs::path const& file, std::vector<double> const& spins) {
 }
 
 TEST_F(Sweeping, RefusesADamagedRunUntilItIsDeleted) {
-  Arguments const all{"sweep",     "chain.toml",
-                      "--output",  "torn.h5",
-                      "--jobs",    "1",
-                      "--over",    "integrator.steps=20,30,200000",
-                      "--set",     "output.every=500000",
-                      "--threads", "1"};
+  auto const all = sweep_into("torn.h5", {"--jobs", "1", "--over", "integrator.steps=20,30,200000",
+                                          "--set", "output.every=500000", "--threads", "1"});
   auto const file = in_folder("torn.h5");
   auto const process = begin(all);
   EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(file, 2)); }));
   EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
   auto const right = read_dataset("torn.h5.runs/0000.h5", "/spins").values;
   damage_spins(io::swept_run_file(file, 0), right);
-  auto const outcome = expect_status(2, all);
+  auto const outcome = expect_status(2, all);  // the last one ran
   EXPECT_TRUE(contains(outcome.errors, "torn.h5.runs/0000.h5: "));
   EXPECT_TRUE(fs::exists(io::swept_run_file(file, 2)));
   fs::remove(io::swept_run_file(file, 0));
   fs::resize_file(io::swept_run_file(file, 1), 1000);  // noticed when the sweep goes on
-  auto const again = expect_status(0, all);
-  EXPECT_TRUE(contains(again.output, "2 of 2  run 0001"));
+  EXPECT_TRUE(contains(output_of(all), "2 of 2  run 0001"));
   EXPECT_EQ(spins("torn.h5", 0), right);
 }
 
 TEST_F(Sweeping, RunsNothingTwice) {
-  expect_status(0, arguments("all.h5", {"--quiet"}));
-  auto const before = io::read_sweep(in_folder("all.h5"));
-  auto const outcome = expect_status(0, arguments("all.h5"));
-  EXPECT_FALSE(contains(outcome.output, " of "));
-  auto const after = io::read_sweep(in_folder("all.h5"));
+  output_of(arguments("all.h5", {"--quiet"}));
+  auto const before = sweep_in("all.h5");
+  EXPECT_FALSE(contains(output_of(arguments("all.h5")), " of "));
+  auto const after = sweep_in("all.h5");
   for (std::size_t run = 0; run < 6; ++run)
     EXPECT_EQ(after.runs[run].cost.wall_seconds, before.runs[run].cost.wall_seconds);
-  expect_status(0, arguments("all.h5", {"--quiet", "--overwrite"}));
-  EXPECT_NE(io::read_sweep(in_folder("all.h5")).runs[0].cost.wall_seconds,
-            before.runs[0].cost.wall_seconds);
+  output_of(arguments("all.h5", {"--quiet", "--overwrite"}));
+  EXPECT_NE(sweep_in("all.h5").runs[0].cost.wall_seconds, before.runs[0].cost.wall_seconds);
 }
 
 TEST_F(Sweeping, RecordsARunThatFails) {
-  Arguments const all{"sweep",    "chain.toml",
-                      "--output", "failing.h5",
-                      "--over",   "integrator.dt=0.02,30.0,0.01",
-                      "--set",    "integrator.method='classical_euler'"};
+  auto const all = sweep_into("failing.h5", {"--over", "integrator.dt=0.02,30.0,0.01", "--set",
+                                             "integrator.method='classical_euler'"});
   auto const outcome = expect_status(3, all);
-  EXPECT_TRUE(contains(outcome.errors, "1 of 3 runs failed; run 0001, integrator.dt=30.0"));
-  EXPECT_TRUE(contains(outcome.errors, "not finite"));
-  EXPECT_TRUE(contains(outcome.errors, "failing.h5:/runs/0001"));
-  auto const sweep = io::read_sweep(in_folder("failing.h5"));
+  EXPECT_TRUE(contains_all(outcome.errors, {"1 of 3 runs failed; run 0001, integrator.dt=30.0",
+                                            "not finite", "failing.h5:/runs/0001"}));
+  auto const sweep = sweep_in("failing.h5");
   EXPECT_TRUE(sweep.complete);
   EXPECT_EQ(sweep.runs[0].status, 0);
   EXPECT_EQ(sweep.runs[1].status, 3);
@@ -191,26 +158,25 @@ TEST_F(Sweeping, RecordsARunThatFails) {
 }
 
 TEST_F(Sweeping, AnInterruptKeepsWhatIsDone) {
-  Arguments const all{"sweep",  "chain.toml", "--output", "stopped.h5",
-                      "--jobs", "1",          "--over",   "integrator.steps=10,1000000000,12"};
+  auto const all =
+      sweep_into("stopped.h5", {"--jobs", "1", "--over", "integrator.steps=10,1000000000,12"});
   auto const outcome = expect_status(
       130, all,
       {.interrupt_after = 0.1, .interrupt_when = io::swept_run_file(in_folder("stopped.h5"), 1)});
   EXPECT_TRUE(contains(outcome.errors, "interrupted with 2 of 3 runs to do"));
-  auto const sweep = io::read_sweep(in_folder("stopped.h5"));
+  auto const sweep = sweep_in("stopped.h5");
   EXPECT_FALSE(sweep.complete);
   EXPECT_EQ(sweep.runs[0].status, 0);
   EXPECT_EQ(sweep.runs[1].status, io::SweptRun::not_run);
   EXPECT_EQ(spins("stopped.h5", 0).size(), 2u * 3 * 20 * 3);  // by its link
-  auto const info = expect_status(0, {"info", "stopped.h5"});
-  EXPECT_TRUE(contains(info.output, "open"));
+  EXPECT_TRUE(contains(output_of({"info", "stopped.h5"}), "open"));
 }
 
 TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
-  expect_status(0, arguments("all.h5", {"--quiet"}));
+  output_of(arguments("all.h5", {"--quiet"}));
   expect_refused(arguments("all.h5", {"--over", "output.every=1,2"}), "it has a sweep over");
   expect_refused(arguments("all.h5", {"--precision", "single"}), "in double precision");
-  expect_refused(arguments("all.h5", {"--set", "integrator.dt=0.01"}), "of another scene");
+  expect_refused(arguments("all.h5", set("integrator.dt=0.01")), "of another scene");
   write("text.h5", "precious");
   expect_refused(arguments("text.h5"), "text.h5");
   run(chain_scene());
@@ -218,45 +184,38 @@ TEST_F(Sweeping, AnotherSweepInTheFileIsRefused) {
 }
 
 TEST_F(Sweeping, OnlyOneProcessHasAFile) {
-  Arguments const all{"sweep",  "chain.toml", "--output", "busy.h5",
-                      "--jobs", "1",          "--over",   "integrator.steps=1000000000"};
+  auto const all = sweep_into("busy.h5", {"--jobs", "1", "--over", "integrator.steps=1000000000"});
   auto const first = begin(all);
   EXPECT_TRUE(eventually([&] { return fs::exists(io::swept_run_file(in_folder("busy.h5"), 0)); }));
   expect_refused(all, "another sweep is writing it");
-  auto replacing = all;
-  replacing.emplace_back("--overwrite");
-  expect_refused(replacing, "another sweep is writing it");
+  expect_refused(joined(all, {"--overwrite"}), "another sweep is writing it");
   EXPECT_EQ(end(first, SIGTERM), 130);
 
   auto const run = begin({"run", "chain.toml", "--quiet", "--output", "run.h5", "--set",
                           "integrator.steps=1000000000"});
   EXPECT_TRUE(eventually([&] { return start({"watch", "run.h5", "--once"}).status == 0; }));
-  expect_refused(
-      {"sweep", "chain.toml", "--output", "run.h5", "--overwrite", "--over", "integrator.steps=1"},
-      "another program is writing it");
+  expect_refused(sweep_into("run.h5", {"--overwrite", "--over", "integrator.steps=1"}),
+                 "another program is writing it");
   end(run, SIGKILL);
 }
 
 TEST_F(Sweeping, WrongUsesAreOneLine) {
-  auto const over = [](Arguments const& more) {
-    Arguments all{"sweep", "chain.toml", "--output", "wrong.h5"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  };
-  expect_refused(over({}), "--over");
-  expect_refused(over({"--over", "system.damping"}), "not a key with values");
-  expect_refused(over({"--over", "system.damping="}), "not a list of values");
-  expect_refused(over({"--over", "field.applied=[0,0,1],[0,0"}), "not TOML");
-  expect_refused(over({"--over", "system.damping=0.1,0.1"}), "stands twice");
-  expect_refused(over({"--over", "system.dampng=0.1,0.2"}), "did you mean");
-  expect_refused(over({"--over", "system.damping=0.1,-0.2", "--over", "integrator.dt=0.02,0.01"}),
-                 "with system.damping=-0.2 integrator.dt=0.02: ");
-  expect_refused(over({"--over", "system.damping=0.1", "--over", "system.damping=0.2"}), "twice");
-  expect_refused(over({"--over", "system.damping=0.1", "--set", "system.damping=0.2"}), "--set");
-  expect_refused(over({"--over", "output.file='a.h5','b.h5'"}), "output.file");
-  expect_refused(over({"--over", "system.damping=0.1", "--jobs", "0"}), "--jobs");
-  EXPECT_FALSE(fs::exists(in_folder("wrong.h5")));
-  EXPECT_FALSE(fs::exists(in_folder("wrong.h5.runs")));
+  for (auto const& [more, part] : std::vector<std::pair<Arguments, std::string>>{
+           {{}, "--over"},
+           {{"--over", "system.damping"}, "not a key with values"},
+           {{"--over", "system.damping="}, "not a list of values"},
+           {{"--over", "field.applied=[0,0,1],[0,0"}, "not TOML"},
+           {{"--over", "system.damping=0.1,0.1"}, "stands twice"},
+           {{"--over", "system.dampng=0.1,0.2"}, "did you mean"},
+           {{"--over", "system.damping=0.1,-0.2", "--over", "integrator.dt=0.02,0.01"},
+            "with system.damping=-0.2 integrator.dt=0.02: "},
+           {{"--over", "system.damping=0.1", "--over", "system.damping=0.2"}, "twice"},
+           {{"--over", "system.damping=0.1", "--set", "system.damping=0.2"}, "--set"},
+           {{"--over", "output.file='a.h5','b.h5'"}, "output.file"},
+           {{"--over", "system.damping=0.1", "--jobs", "0"}, "--jobs"}})
+    expect_refused(sweep_into("wrong.h5", more), part);
+  EXPECT_FALSE(exists("wrong.h5"));
+  EXPECT_FALSE(exists("wrong.h5.runs"));
 }
 
 }  // namespace

@@ -38,38 +38,26 @@ every = 10
   }
 
   std::vector<double> end_of(std::string const& file, Arguments const& more) const {
-    Arguments all{"run", write("scene.toml", warm_scene()), "--quiet", "--overwrite", "--output",
-                  file};
-    all.insert(all.end(), more.begin(), more.end());
-    auto const outcome = start(all);
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    auto const outcome = run_into(file, warm_scene(), more);
+    EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.errors, "");
     return last_spins(file);
-  }
-
-  void expect_refused(Arguments arguments, std::string const& part) const {
-    arguments.insert(arguments.begin() + 1, write("scene.toml", warm_scene()));
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
-    EXPECT_TRUE(contains(outcome.errors, part));
   }
 };
 
 TEST_F(Thermal, BitsDependOnSeedAndTemperatureAlone) {
   for (std::string const precision : {"double", "single"}) {
-    auto const with = [&](Arguments more) {
-      more.insert(more.end(), {"--precision", precision});
-      return more;
+    auto const with = [&](Arguments const& more) {
+      return joined(more, {"--precision", precision});
     };
     auto const whole = end_of("whole.h5", with({}));
     for (Arguments const& other :
          std::vector<Arguments>{{"--threads", "1"},
                                 {"--space", default_space, "--threads", "2"},
                                 {"--space", another_space},
-                                {"--set", "output.every=1"},
-                                {"--set", "output.scalars_every=3"},
-                                {"--set", "output.checkpoint_every='4 steps'"}})
+                                set("output.every=1"),
+                                set("output.scalars_every=3"),
+                                set("output.checkpoint_every='4 steps'")})
       EXPECT_EQ(end_of("other.h5", with(other)), whole) << other[1];
     for (std::string const set : {"thermal.seed=13", "thermal.temperature=0.70001"})
       EXPECT_NE(end_of("other.h5", with({"--set", set})), whole) << set;
@@ -82,7 +70,7 @@ TEST_F(Thermal, GoesOnAfterAnyStep) {
     for (int const cut : {1, 2, 12, 24}) {
       auto const at = "integrator.steps=" + std::to_string(cut);
       end_of("first.h5", {"--precision", precision, "--set", at});
-      EXPECT_FALSE(std::filesystem::exists(in_folder("first.checkpoint.h5")));
+      EXPECT_FALSE(exists("first.checkpoint.h5"));
       EXPECT_EQ(end_of("second.h5", {"--precision", precision, "--restart", "first.h5"}), whole)
           << cut;
     }
@@ -93,8 +81,7 @@ TEST_F(Thermal, EveryOneStepMethodGoesAndKeepsLengths) {
   for (std::string const method :
        {"euler", "implicit_euler", "rkmk4", "rkmk64", "rkmk8", "cf4", "implicit_midpoint",
         "projected_heun", "red_black2", "red_black4"}) {
-    end_of("out.h5",
-           {"--set", "integrator.method='" + method + "'", "--set", "lattice.shape=[36,4,3]"});
+    end_of("out.h5", set("integrator.method='" + method + "'", "lattice.shape=[36,4,3]"));
     auto const defects = read_dataset("out.h5", "/norm_defect").values;
     EXPECT_LT(defects.back(), 1e-14) << method;
   }
@@ -102,63 +89,62 @@ TEST_F(Thermal, EveryOneStepMethodGoesAndKeepsLengths) {
 
 // At temperature 0 there is no pass of noise.
 TEST_F(Thermal, TemperatureZeroIsNoTemperature) {
-  EXPECT_EQ(end_of("zero.h5", {"--set", "thermal.temperature=0"}),
-            end_of("none.h5", {"--set", "thermal={temperature=0,seed=4}"}));
+  EXPECT_EQ(end_of("zero.h5", set("thermal.temperature=0")),
+            end_of("none.h5", set("thermal={temperature=0,seed=4}")));
   auto cold = warm_scene();
   cold.erase(cold.find("[thermal]"), cold.find("[output]") - cold.find("[thermal]"));
-  write("scene.toml", cold);
-  auto const outcome = start({"run", in_folder("scene.toml"), "--quiet", "--output", "cold.h5"});
-  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(run_into("cold.h5", cold).status, 0);
   EXPECT_EQ(last_spins("zero.h5"), last_spins("cold.h5"));
 }
 
 // From rest spins take up energy; that a number is not finite stops a run as ever.
 TEST_F(Thermal, TheGuardLetsEnergyRise) {
-  Arguments const from_rest{"--set", "initial={uniform=[0,0,1]}", "--set", "field={exchange=1.0}"};
+  Arguments const from_rest = set("initial={uniform=[0,0,1]}", "field={exchange=1.0}");
   end_of("out.h5", from_rest);
   auto const energies = read_dataset("out.h5", "/energy").values;
   EXPECT_GT(energies.back(), energies.front() + 10);
-  auto const outcome = start({"run", write("scene.toml", warm_scene()), "--quiet", "--output",
-                              "failing.h5", "--set", "integrator.dt=0.125", "--set",
-                              "integrator.steps=7", "--set", "field.applied=[0,0,'1/(t-0.25)']"});
+  auto const outcome = run_into(
+      "failing.h5", warm_scene(),
+      set("integrator.dt=0.125", "integrator.steps=7", "field.applied=[0,0,'1/(t-0.25)']"));
   EXPECT_EQ(outcome.status, 3) << outcome.errors;
   EXPECT_TRUE(contains(outcome.errors, "the last good frame is "));
 }
 
 TEST_F(Thermal, IsCheckedAndDescribed) {
   auto const scene = write("scene.toml", warm_scene());
-  auto outcome = start({"check", scene});
-  EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_TRUE(contains(outcome.output, "temperature 0.7, seed 12\n"));
-  EXPECT_TRUE(contains(outcome.output,
-                       "noise       damping x temperature x dt = 0.0042, turns a spin by 0.13 "
-                       "radians a step\n"));
-  outcome = start({"check", scene, "--json"});
-  auto const json = nlohmann::json::parse(outcome.output);
+  EXPECT_TRUE(contains_all(output_of({"check", scene}),
+                           {"temperature 0.7, seed 12\n",
+                            "noise       damping x temperature x dt = 0.0042, turns a spin by 0.13 "
+                            "radians a step\n"}));
+  auto const json = nlohmann::json::parse(output_of({"check", scene, "--json"}));
   EXPECT_EQ(json["temperature"], 0.7);
   EXPECT_NEAR(json["noise_turn"], 2 * std::sqrt(0.0042), 1e-15);
-  outcome = start({"check", scene, "--set", "thermal.temperature=70"});
-  EXPECT_TRUE(contains(outcome.output, "turns a spin by 1.3 radians a step, which is too large\n"));
-  outcome =
-      start({"run", scene, "--quiet", "--output", "out.h5", "--set", "thermal.temperature=70"});
+  EXPECT_TRUE(contains(output_of({"check", scene, "--set", "thermal.temperature=70"}),
+                       "turns a spin by 1.3 radians a step, which is too large\n"));
+  auto const outcome = run_into("out.h5", warm_scene(), set("thermal.temperature=70"));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
   EXPECT_TRUE(contains(outcome.errors, "integrator.dt: 0.02 lets noise turn spins by 1.3 radians"));
 }
 
 TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
-  for (std::string const method : {"ab2", "fx3", "fx4"})
-    expect_refused({"check", "--set", "integrator.method='" + method + "'"},
-                   "integrator.method: remembers steps");
-  expect_refused({"check", "--set", "integrator.method='euler'", "--set",
-                  "integrator.isotropy='finite_difference_backward'"},
-                 "integrator.method: remembers steps");
-  expect_refused({"check", "--set", "field.slab_demag={normal=[0,0,1],average='layer',dear=true}"},
-                 "thermal.temperature: noise does not go with a dear field");
-  expect_refused({"relax", "--output", "out.h5", "--set", "field.applied=[0.3,0.1,0.2]"},
-                 "thermal.temperature: a state of rest has no temperature");
-  expect_refused({"trade"}, "thermal.temperature: trajectories at a temperature are random");
-  expect_refused({"advise", "--error", "1e-4"}, "thermal.temperature: trajectories");
+  auto const scene = write("scene.toml", warm_scene()).string();
+  std::string const remembers = "integrator.method: remembers steps";
+  for (auto const& [arguments, part] : std::vector<std::pair<Arguments, std::string>>{
+           {{"check", scene, "--set", "integrator.method='ab2'"}, remembers},
+           {{"check", scene, "--set", "integrator.method='fx3'"}, remembers},
+           {{"check", scene, "--set", "integrator.method='fx4'"}, remembers},
+           {joined({"check", scene}, set("integrator.method='euler'",
+                                         "integrator.isotropy='finite_difference_backward'")),
+            remembers},
+           {{"check", scene, "--set",
+             "field.slab_demag={normal=[0,0,1],average='layer',dear=true}"},
+            "thermal.temperature: noise does not go with a dear field"},
+           {{"relax", scene, "--output", "out.h5", "--set", "field.applied=[0.3,0.1,0.2]"},
+            "thermal.temperature: a state of rest has no temperature"},
+           {{"trade", scene}, "thermal.temperature: trajectories at a temperature are random"},
+           {{"advise", scene, "--error", "1e-4"}, "thermal.temperature: trajectories"}})
+    expect_refused(arguments, part);
 }
 
 // m_z of atoms in a field B: Langevin's function of mu_s B / (kB T), here 2. Then an anisotropy K
@@ -181,18 +167,12 @@ TEST_F(Thermal, AtomsInKelvinFollowBoltzmann) {
   };
   constexpr double sites = 128 * 128;
   for (std::string const form : {"gilbert", "landau_lifshitz"}) {
-    auto outcome =
-        start({"run", write("scene.toml", scene(form, "", text("applied = [0, 0, ", tesla, "]"))),
-               "--quiet", "--overwrite"});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    ProgramTest::end_of(scene(form, "", text("applied = [0, 0, ", tesla, "]")));
     double const x = 2, langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
     EXPECT_NEAR(read_dataset("out.h5", "/magnetization").values.back(), langevin,
                 5 * std::sqrt((square - langevin * langevin) / sites) + 1e-3);
 
-    outcome =
-        start({"run", write("scene.toml", scene(form, text("K = ", K, "\naxis = [0, 0, 1]"), "")),
-               "--quiet", "--overwrite"});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
+    auto const spins = ProgramTest::end_of(scene(form, text("K = ", K, "\naxis = [0, 0, 1]"), ""));
     double weights = 0, squares = 0, fourths = 0;
     for (int i = 0; i < 1000; ++i) {
       double const z = (i + 0.5) / 1000, weight = std::exp(3 * z * z);
@@ -201,7 +181,6 @@ TEST_F(Thermal, AtomsInKelvinFollowBoltzmann) {
       fourths += weight * z * z * z * z;
     }
     double const expected = squares / weights;
-    auto const spins = last_spins("out.h5");
     double found = 0;
     for (std::size_t i = 2; i < spins.size(); i += 3) found += spins[i] * spins[i] / sites;
     EXPECT_NEAR(found, expected,
@@ -217,13 +196,9 @@ TEST_F(Thermal, KelvinAreTheReducedTemperatureOfTheScene) {
   auto const reduced =
       reduced_film(text("method = \"heun\"\ndt = ", u.time(1e-14), "\nsteps = 40"), "[0, 0, 0]") +
       text("[thermal]\nseed = 2\ntemperature = ", u.temperature(300), "\n");
-  for (auto const& scene : {in_si, reduced}) {
-    auto const outcome = start({"run", write("scene.toml", scene), "--quiet"});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  }
-  EXPECT_LT(distance(last_spins("si.h5"), last_spins("reduced.h5")), 1e-11);
-  auto const outcome = start({"check", write("scene.toml", in_si)});
-  EXPECT_TRUE(contains(outcome.output, "temperature 300 K (0.08583"));
+  EXPECT_LT(distance(ProgramTest::end_of(in_si), ProgramTest::end_of(reduced)), 1e-11);
+  EXPECT_TRUE(
+      contains(output_of({"check", write("scene.toml", in_si)}), "temperature 300 K (0.08583"));
 }
 
 }  // namespace

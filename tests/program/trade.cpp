@@ -45,15 +45,16 @@ dt = 0.1
 end = 4.0
 )toml";
   }
+  Trading() { write("scene.toml", scene()); }
   std::vector<double> end(Arguments const& more) const {
-    Arguments arguments{"run",     write("scene.toml", scene()),
-                        "--quiet", "--threads",
-                        "1",       "--output",
-                        "out.h5",  "--overwrite"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    return last_spins("out.h5");
+    return end_of(scene(), joined(more, {"--threads", "1"}));
+  }
+  nlohmann::json trade(Arguments const& more) const {
+    return nlohmann::json::parse(
+        output_of(joined({"trade", "scene.toml", "--json", "--threads", "1"}, more)));
+  }
+  std::string advise(std::string const& error, Arguments const& more = {}) const {
+    return output_of(joined({"advise", "scene.toml", "--error", error, "--threads", "1"}, more));
   }
   // Of out.h5.
   void expect_equal_times(char const* dataset, double apart, std::size_t count) const {
@@ -62,15 +63,11 @@ end = 4.0
     for (std::size_t i = 0; i < count; ++i)
       EXPECT_NEAR(times[i], apart * double(i), 1e-12) << dataset;
   }
-  std::vector<double> exact() const { return end({"--set", "integrator.dt=0.0005"}); }
+  std::vector<double> exact() const { return end(set("integrator.dt=0.0005")); }
 };
 
 TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
-  auto const outcome =
-      start({"trade", write("scene.toml", scene()), "--json", "--seconds", "2", "--threads", "1"});
-  ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_EQ(outcome.errors, "");
-  auto const all = nlohmann::json::parse(outcome.output);
+  auto const all = trade({"--seconds", "2"});
   EXPECT_EQ(all["horizon"], 4.0);
   EXPECT_LT(all["uncertainty"].get<double>(), 1e-10);
   std::set<std::string> names;
@@ -103,10 +100,8 @@ std::vector<std::string> table_below(std::string const& text, std::string const&
 }
 
 TEST_F(Trading, ItsTextHasEveryRungAndJudgesTheAdvice) {
-  auto const outcome = start({"trade", write("scene.toml", scene()), "--advice", "--precision",
-                              "double", "--seconds", "1", "--threads", "1", "--quiet"});
-  ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  auto const& text = outcome.output;
+  auto const text = output_of({"trade", "scene.toml", "--advice", "--precision", "double",
+                               "--seconds", "1", "--threads", "1", "--quiet"});
   EXPECT_TRUE(contains(text, "the last t = 4\n"));
 
   std::vector<double> errors;  // of rkmk4
@@ -143,11 +138,9 @@ TEST_F(Trading, ItsTextHasEveryRungAndJudgesTheAdvice) {
 
 // Of what is measured: error and evaluations of the same dt, run by itself.
 TEST_F(Trading, ARungIsARunOfTheScene) {
-  auto const outcome =
-      start({"trade", write("scene.toml", scene()), "--json", "--seconds", "2", "--threads", "1"});
   auto const reference = exact();
-  auto const trade = nlohmann::json::parse(outcome.output);
-  for (auto const& method : trade["methods"]) {
+  auto const all = trade({"--seconds", "2"});
+  for (auto const& method : all["methods"]) {
     if (method["method"] != "rkmk4") continue;
     auto const& rung = method["rungs"].front();
     auto const dt = rung["dt"].get<double>();
@@ -155,7 +148,7 @@ TEST_F(Trading, ARungIsARunOfTheScene) {
     std::ostringstream exactly;
     exactly.precision(17);
     exactly << "integrator={method='rkmk4',dt=" << dt << ",steps=" << steps << "}";
-    auto const numbers = end({"--set", exactly.str()});
+    auto const numbers = end(set(exactly.str()));
     EXPECT_EQ(rung["evaluations"], 4 * steps);
     // The largest of a dozen looks.
     EXPECT_GE(rung["error"].get<double>(), 0.9 * distance(numbers, reference));
@@ -168,46 +161,35 @@ TEST_F(Trading, AnAdvisedRunHasTheErrorAskedFor) {
   for (bool const fine : {false, true}) {
     std::string const error = fine ? "1e-6" : "1e-3";
     // The finer one of a scene with keys that not every method takes.
-    auto const outcome = start(
-        {"advise", write("scene.toml", scene()), "--error", error, "--threads", "1", "--set",
-         fine ? "integrator={method=\"tsit5\",generator=\"tangent\",tolerance=1e-4,dt=0.1,end=4.0}"
-              : "integrator.energy_guard=false",
-         "--set", "output={every=10,scalars_every=4}"});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
-    auto const arguments = advised_arguments(outcome.output);
-    ASSERT_FALSE(arguments.empty()) << outcome.output;
-    EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << outcome.output;
+    auto const advice = advise(
+        error,
+        set(fine
+                ? "integrator={method=\"tsit5\",generator=\"tangent\",tolerance=1e-4,dt=0.1,end=4.0}"
+                : "integrator.energy_guard=false",
+            "output={every=10,scalars_every=4}"));
+    auto const arguments = advised_arguments(advice);
+    ASSERT_FALSE(arguments.empty()) << advice;
+    EXPECT_LT(distance(end(arguments), reference), 2 * std::stod(error)) << advice;
     // As the scene has it, whatever the steps are.
     expect_equal_times("/time", 1.0, 5);
     expect_equal_times("/scalars/time", 0.4, 11);
-    auto const text = io::read_info(in_folder("out.h5")).header.scene_text;
+    auto const text = info_of("out.h5").header.scene_text;
     EXPECT_EQ(text.find("energy_guard = false") != text.npos, !fine) << text;
   }
 }
 
 /// A scene that is advised on, and seen at each of its frames.
 struct Watched : Trading {
-  Outcome run_it(std::string const& text, std::string const& name, Arguments const& more) const {
-    Arguments arguments{
-        "run",        write("scene.toml", text), "--quiet", "--threads", "1", "--output", name,
-        "--overwrite"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return start(arguments);
-  }
   /// Over that asked for: the largest at any frame.
   double error(std::string const& text, std::string const& asked) const {
-    auto const exact = run_it(text, "exact.h5", {});
-    EXPECT_EQ(exact.status, 0) << exact.errors;
-    auto const advice =
-        start({"advise", write("scene.toml", text), "--error", asked, "--threads", "1", "--quiet"});
-    EXPECT_EQ(advice.status, 0) << advice.errors;
-    auto const advised = run_it(text, "out.h5", advised_arguments(advice.output));
-    EXPECT_EQ(advised.status, 0) << advice.output << advised.errors;
-    EXPECT_EQ(read_dataset("out.h5", "/time").values.size(),
-              read_dataset("exact.h5", "/time").values.size());
-    return distance(read_dataset("out.h5", "/spins").values,
-                    read_dataset("exact.h5", "/spins").values) /
-           std::stod(asked);
+    auto const frames = [&](Arguments const& more) {
+      end_of(text, joined(more, {"--threads", "1"}));
+      return read_dataset("out.h5", "/spins").values;
+    };
+    auto const exact = frames({});
+    auto const advised = frames(advised_arguments(advise(asked, {"--quiet"})));
+    EXPECT_EQ(advised.size(), exact.size());
+    return distance(advised, exact) / std::stod(asked);
   }
 };
 
@@ -252,14 +234,13 @@ TEST_F(Trading, ARunOfMethodAutoHasTheErrorAskedFor) {
   auto const reference = exact();
   for (std::string const error : {"1e-3", "1e-6"}) {
     auto const numbers =
-        end({"--set", "integrator={method='auto',error=" + error + ",end=4.0,dt=0.5}", "--set",
-             "output.every=2"});
+        end(set("integrator={method='auto',error=" + error + ",end=4.0,dt=0.5}", "output.every=2"));
     EXPECT_LT(distance(numbers, reference), 2 * std::stod(error));
     expect_equal_times("/time", 1.0, 5);
-    auto const header = io::read_info(in_folder("out.h5")).header;
+    auto const header = info_of("out.h5").header;
     EXPECT_TRUE(contains(header.scene_text, "auto"));
-    auto const info = start({"info", "out.h5"}).output;
-    EXPECT_TRUE(contains(info, "scene as resolved:\n" + header.resolved_scene));
+    EXPECT_TRUE(
+        contains(output_of({"info", "out.h5"}), "scene as resolved:\n" + header.resolved_scene));
     auto const spins = read_dataset("out.h5", "/spins").values;
     auto const again = run(header.resolved_scene).header;
     EXPECT_EQ(read_dataset("out.h5", "/spins").values, spins);
@@ -268,7 +249,7 @@ TEST_F(Trading, ARunOfMethodAutoHasTheErrorAskedFor) {
 }
 
 TEST_F(Trading, AScenesStartAloneIsNoChoice) {
-  end({"--set", "integrator={method='auto',error=1e-3,steps=0,dt=0.5}"});
+  end(set("integrator={method='auto',error=1e-3,steps=0,dt=0.5}"));
   EXPECT_EQ(read_dataset("out.h5", "/time").values, std::vector<double>{0});
 }
 
@@ -276,45 +257,30 @@ TEST_F(Trading, AnAdvisedRunWarnsOfNothingThatTheAdviceDoesNotSay) {
   // A constant sigma is fast here, far above the dt that is stable for nearly uniform spins.
   std::string const disordered = "lattice={shape=[4,4,4],boundary=\"periodic\"}";
   for (std::string const refuse : {"false", "true"}) {
-    Arguments const changed{"--set", disordered,
-                            "--set", "initial={random={seed=1}}",
-                            "--set", "field={exchange=1.0}",
-                            "--set", "system.damping=0",
-                            "--set", "integrator.refuse_unstable=" + refuse};
-    Arguments arguments{
-        "advise", write("scene.toml", scene()), "--error", "1e-4", "--threads", "1", "--precision",
-        "double"};
-    arguments.insert(arguments.end(), changed.begin(), changed.end());
-    auto const advice = start(arguments);
-    ASSERT_EQ(advice.status, 0) << advice.errors;
-    Arguments again{"run", "scene.toml", "--quiet", "--output", "out.h5", "--overwrite"};
-    auto const advised = advised_arguments(advice.output);
-    again.insert(again.end(), advised.begin(), advised.end());
-    auto const outcome = start(again);
-    EXPECT_EQ(outcome.status, 0) << advice.output << outcome.errors;
-    EXPECT_EQ(contains(outcome.errors, "warning: "), contains(advice.output, "\nrun warns "))
-        << advice.output << outcome.errors;
+    auto const advice =
+        advise("1e-4", joined({"--precision", "double"},
+                              set(disordered, "initial={random={seed=1}}", "field={exchange=1.0}",
+                                  "system.damping=0", "integrator.refuse_unstable=" + refuse)));
+    auto const outcome = run_into("out.h5", scene(), advised_arguments(advice));
+    EXPECT_EQ(outcome.status, 0) << advice << outcome.errors;
+    EXPECT_EQ(contains(outcome.errors, "warning: "), contains(advice, "\nrun warns "))
+        << advice << outcome.errors;
     EXPECT_TRUE(refuse == "false" || outcome.errors.empty()) << outcome.errors;
   }
 }
 
 TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {
-  auto const outcome = start({"advise", write("scene.toml", scene()), "--error", "1e-6", "--budget",
-                              "0.000000001s", "--threads", "1"});
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  auto const outcome = expect_status(
+      3, {"advise", "scene.toml", "--error", "1e-6", "--budget", "0.000000001s", "--threads", "1"});
   EXPECT_TRUE(contains(outcome.errors, "beyond the budget"));
 }
 
 // Without --precision both are tried: here single precision is among the fastest.
 TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
   for (std::string const precision : {"double", "single"}) {
-    auto const outcome = start({"trade", write("scene.toml", scene()), "--json", "--seconds", "0.1",
-                                "--threads", "1", "--precision", precision});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
-    auto const trade = nlohmann::json::parse(outcome.output);
-    ASSERT_FALSE(trade["methods"].empty());
-    for (auto const& method : trade["methods"])
+    auto const methods = trade({"--seconds", "0.1", "--precision", precision})["methods"];
+    ASSERT_FALSE(methods.empty());
+    for (auto const& method : methods)
       EXPECT_EQ(method["method"].get<std::string>().find(", single") != std::string::npos,
                 precision == "single")
           << method["method"];
@@ -323,13 +289,11 @@ TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
 
 TEST_F(Trading, AdvisesInTheOnePrecisionThatIsAskedFor) {
   for (std::string const precision : {"double", "single"}) {
-    auto const outcome = start({"advise", write("scene.toml", scene()), "--error", "1e-3",
-                                "--threads", "1", "--precision", precision});
-    ASSERT_EQ(outcome.status, 0) << outcome.errors;
-    auto const command = outcome.output.substr(outcome.output.find("run it"));
+    auto const advice = advise("1e-3", {"--precision", precision});
+    auto const command = advice.substr(advice.find("run it"));
     EXPECT_EQ(command.find("--precision single") != std::string::npos, precision == "single")
-        << outcome.output;
-    std::istringstream lines(outcome.output.substr(outcome.output.find("next to it")));
+        << advice;
+    std::istringstream lines(advice.substr(advice.find("next to it")));
     std::string line;
     std::getline(lines, line);
     while (std::getline(lines, line))

@@ -21,10 +21,9 @@ struct Looks : ProgramTest {
   }
 
   json trade() const {
-    auto const outcome = start({"trade", write("scene.toml", at_rest()), "--json", "--seconds",
-                                "0.1", "--threads", "1", "--precision", "double"});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    return json::parse(outcome.output);
+    write("scene.toml", at_rest());
+    return json::parse(output_of({"trade", "scene.toml", "--json", "--seconds", "0.1", "--threads",
+                                  "1", "--precision", "double"}));
   }
   static json const& method(json const& trade, std::string const& name) {
     return *std::ranges::find_if(trade.at("methods"),
@@ -37,10 +36,8 @@ struct Looks : ProgramTest {
     integrator.precision(17);
     integrator << "integrator={method='rkmk4',dt=" << 20 / static_cast<double>(steps * finer)
                << ",steps=" << steps * finer << "}";
-    auto const outcome = start({"run", write("scene.toml", at_rest()), "--quiet", "--threads", "1",
-                                "--output", "out.h5", "--overwrite", "--set", integrator.str(),
-                                "--set", "output.every=" + std::to_string(finer)});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    end_of(at_rest(), {"--threads", "1", "--set", integrator.str(), "--set",
+                       "output.every=" + std::to_string(finer)});
     return read_dataset("out.h5", "/spins").values;
   }
 };
@@ -88,28 +85,14 @@ TEST_F(Looks, CostsOfErrorsLieBetweenTheRunsOfALadder) {
 
 // To this error of disordered spins it once took 40 s.
 TEST_F(Looks, AdviceTakesNoLongerThanItSays) {
-  std::string const disordered = R"toml([system]
-kind = "llg"
-damping = 0.1
-[lattice]
-shape = [8, 8, 8]
-boundary = "periodic"
-[field]
-exchange = 1.0
-applied = [0.0, 0.0, 0.5]
-[initial]
-random = { seed = 1 }
-[integrator]
-method = "rkmk4"
-dt = 0.05
-end = 20.0
-)toml";
+  auto const disordered =
+      set("lattice={shape=[8,8,8],boundary='periodic'}", "field={exchange=1.0,applied=[0,0,0.5]}",
+          "initial.random.seed=1", "integrator={method='rkmk4',dt=0.05,end=20.0}");
   auto const begin = std::chrono::steady_clock::now();
-  auto const outcome =
-      start({"advise", write("scene.toml", disordered), "--error", "1e-8", "--threads", "1"});
+  auto const output =
+      output_of(joined({"advise", "chain.toml", "--error", "1e-8", "--threads", "1"}, disordered));
   std::chrono::duration<double> const taken = std::chrono::steady_clock::now() - begin;
-  ASSERT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_TRUE(outcome.output.starts_with("trying methods for at most 2 s\n")) << outcome.output;
+  EXPECT_TRUE(output.starts_with("trying methods for at most 2 s\n")) << output;
   EXPECT_LT(taken.count(), address_sanitizer ? 20 : 5);
 }
 

@@ -14,47 +14,28 @@ namespace fs = std::filesystem;
 
 class Watching : public ProgramTest {
  protected:
-  Watching() { write("chain.toml", chain_scene()); }
-
   pid_t begin_run(std::string const& steps) const {
     return begin({"run", "chain.toml", "--quiet", "--overwrite", "--threads", "1", "--output",
                   "run.h5", "--set", "integrator.steps=" + steps, "--set", "output.every=50000",
                   "--set", "output.scalars_every=1000"});
   }
 
-  std::string look() const {
-    auto const outcome = start({"watch", "run.h5", "--once"});
-    EXPECT_EQ(outcome.status, 0) << outcome.errors;
-    EXPECT_EQ(outcome.errors, "");
-    return outcome.output;
-  }
+  std::string look() const { return output_of({"watch", "run.h5", "--once"}); }
 
   /// The step that a look tells, or -1.
   static std::int64_t step(std::string const& output) {
     auto const place = output.find("step ");
     return place == output.npos ? -1 : std::stoll(output.substr(place + 5));
   }
-
-  void expect_refused(Arguments const& arguments, std::string const& part) const {
-    auto const outcome = start(arguments);
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.output, "");
-    EXPECT_TRUE(is_one_line(outcome.errors));
-    EXPECT_TRUE(contains(outcome.errors, part));
-  }
-
-  bool exists() const { return fs::exists(in_folder("run.h5")); }
 };
 
 TEST_F(Watching, EndsWithTheRunAndChangesNoBit) {
   auto const process = begin_run("200000");
-  ASSERT_TRUE(eventually([&] { return exists(); }));
-  auto const outcome = start({"watch", "run.h5"});
+  ASSERT_TRUE(eventually([&] { return exists("run.h5"); }));
+  auto const output = output_of({"watch", "run.h5"});
   EXPECT_EQ(end(process, 0), 0);
-  EXPECT_EQ(outcome.status, 0) << outcome.errors;
-  EXPECT_EQ(outcome.errors, "");
-  EXPECT_TRUE(contains(outcome.output, "step 200000 of 200000 (100.0 %), t = 4000: energy "));
-  EXPECT_TRUE(outcome.output.ends_with("complete\n")) << outcome.output;
+  EXPECT_TRUE(contains(output, "step 200000 of 200000 (100.0 %), t = 4000: energy "));
+  EXPECT_TRUE(output.ends_with("complete\n")) << output;
 
   auto const watched = read_dataset("run.h5", "/spins").values;
   EXPECT_EQ(end(begin_run("200000"), 0), 0);
@@ -65,7 +46,7 @@ TEST_F(Watching, EndsWithTheRunAndChangesNoBit) {
 TEST_F(Watching, SeesARunMoveOnAndEndEarly) {
   auto const process = begin_run("1000000000");
   std::string output;
-  ASSERT_TRUE(eventually([&] { return exists() && step(output = look()) > 0; }));
+  ASSERT_TRUE(eventually([&] { return exists("run.h5") && step(output = look()) > 0; }));
   EXPECT_TRUE(contains(output, "under way"));
   EXPECT_TRUE(contains(output, "of 1000000000"));
   EXPECT_TRUE(contains(output, " left"));
@@ -78,53 +59,42 @@ TEST_F(Watching, SeesARunMoveOnAndEndEarly) {
   EXPECT_TRUE(contains(look(), "under way"));
 
   EXPECT_EQ(end(process, SIGINT), 130);
-  auto const outcome = start({"watch", "run.h5"});
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(is_one_line(outcome.errors));
+  auto const outcome = expect_status(3, {"watch", "run.h5"});
   EXPECT_TRUE(contains(outcome.errors, "run.h5: ended early: interrupted or failed"));
-  auto const info = io::read_info(in_folder("run.h5"));
+  auto const info = info_of("run.h5");
   EXPECT_EQ(step(outcome.output), info.frame_steps.back());
 }
 
 TEST_F(Watching, SpeaksAtMostEveryFiveSecondsWithoutATerminal) {
   auto const process = begin_run("1000000000");
-  ASSERT_TRUE(eventually([&] { return exists() && step(look()) > 0; }));
-  Treatment three_seconds;
-  three_seconds.interrupt_after = 3;
-  three_seconds.interrupt_when = in_folder("run.h5");
-  auto const outcome = start({"watch", "run.h5"}, three_seconds);
+  ASSERT_TRUE(eventually([&] { return exists("run.h5") && step(look()) > 0; }));
+  auto const outcome =
+      start({"watch", "run.h5"}, {.interrupt_after = 3, .interrupt_when = in_folder("run.h5")});
   EXPECT_TRUE(is_one_line(outcome.output)) << outcome.output;
   EXPECT_EQ(end(process, SIGINT), 130);
 }
 
 TEST_F(Watching, KnowsNoShareOfNoSteps) {
-  run(chain_scene(), {"--set", "integrator.steps=0"});
-  auto const outcome = start({"watch", "out.h5", "--once"});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_TRUE(contains(outcome.output, "step 0, t = 0"));
+  run(chain_scene(), set("integrator.steps=0"));
+  EXPECT_TRUE(contains(output_of({"watch", "out.h5", "--once"}), "step 0, t = 0"));
 }
 
 TEST_F(Watching, SaysThatARunWasKilled) {
   auto const process = begin_run("1000000000");
-  ASSERT_TRUE(eventually([&] { return exists() && step(look()) > 0; }));
+  ASSERT_TRUE(eventually([&] { return exists("run.h5") && step(look()) > 0; }));
   EXPECT_EQ(end(process, SIGKILL), 128 + SIGKILL);
   fs::last_write_time(in_folder("run.h5"),
                       fs::file_time_type::clock::now() - std::chrono::minutes(2));
-  auto const outcome = start({"watch", "run.h5"});
-  EXPECT_EQ(outcome.status, 3);
-  EXPECT_TRUE(is_one_line(outcome.errors));
+  auto const outcome = expect_status(3, {"watch", "run.h5"});
   EXPECT_TRUE(contains(outcome.errors, "nobody has written it for 2 min"));
 }
 
 TEST_F(Watching, TellsTheLastSampleOfACompleteRun) {
-  auto const info = run(chain_scene(), {"--set", "output.scalars_every=5"});
-  auto const outcome = start({"watch", "out.h5", "--once"});
-  EXPECT_EQ(outcome.status, 0);
-  auto const& last = info.frame_scalars.back();
-  for (auto const& part :
-       {std::string("complete"), std::string("step 25 of 25 (100.0 %), t = 0.5"),
-        std::string("20 x 3 x 1 sites"), testing::PrintToString(last.energy).substr(0, 6)})
-    EXPECT_TRUE(contains(outcome.output, part));
+  auto const info = run(chain_scene(), set("output.scalars_every=5"));
+  auto const energy = testing::PrintToString(info.frame_scalars.back().energy).substr(0, 6);
+  EXPECT_TRUE(
+      contains_all(output_of({"watch", "out.h5", "--once"}),
+                   {"complete", "step 25 of 25 (100.0 %), t = 0.5", "20 x 3 x 1 sites", energy}));
 }
 
 TEST_F(Watching, OtherFilesAreRefusedInOneLine) {
@@ -140,7 +110,8 @@ TEST_F(Watching, OtherFilesAreRefusedInOneLine) {
   whole.read(part.data(), 3000);
   write("part.h5", part);
   expect_refused({"watch", "part.h5"}, "truncated");
-  start({"sweep", "chain.toml", "--quiet", "--output", "all.h5", "--over", "system.damping=0.1"});
+  output_of(
+      {"sweep", "chain.toml", "--quiet", "--output", "all.h5", "--over", "system.damping=0.1"});
   expect_refused({"watch", "all.h5"}, "it has a sweep");
 }
 
