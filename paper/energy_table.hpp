@@ -13,7 +13,7 @@ namespace cayspin::paper {
 /// One method of a table, and what the paper prints for it, dt by dt. NaN: not recoverable.
 struct Column {
   std::string_view name;
-  Choice choice;
+  MethodChoice choice;
   std::vector<double> paper;
 };
 

@@ -38,7 +38,7 @@ class WatchEnergies : public HostObserver {
 
 }  // namespace
 
-io::Integrator integrator_of(Choice const& choice, double dt, double end) {
+io::Integrator integrator_of(MethodChoice const& choice, double dt, double end) {
   io::Integrator integrator;
   choice.put_into(integrator);
   integrator.dt = dt;
@@ -46,7 +46,7 @@ io::Integrator integrator_of(Choice const& choice, double dt, double end) {
   return integrator;
 }
 
-void run_bodies(std::vector<Body> const& bodies, Choice const& choice, double dt, double end,
+void run_bodies(std::vector<Body> const& bodies, MethodChoice const& choice, double dt, double end,
                 HostObserver& observer) {
   io::Scene scene;
   scene.system.kind = io::SystemKind::rigid_body;
@@ -61,7 +61,7 @@ void run_bodies(std::vector<Body> const& bodies, Choice const& choice, double dt
   run_on_host(scene, starts, tensors, observer);
 }
 
-EnsembleRun run_ensemble(std::vector<Body> const& bodies, Choice const& choice, double dt,
+EnsembleRun run_ensemble(std::vector<Body> const& bodies, MethodChoice const& choice, double dt,
                          double end) {
   WatchEnergies watch(bodies);
   run_bodies(bodies, choice, dt, end, watch);

@@ -3,14 +3,14 @@
 
 #include "host_job.hpp"
 #include "random_bodies.hpp"
-#include "simulation/choice.hpp"
+#include "simulation/method_choice.hpp"
 
 #include <vector>
 
 namespace cayspin::paper {
 
 /// The [integrator] of a choice that steps to `end`.
-io::Integrator integrator_of(Choice const& choice, double dt, double end);
+io::Integrator integrator_of(MethodChoice const& choice, double dt, double end);
 
 /// What became of each body.
 struct EnsembleRun {
@@ -19,9 +19,9 @@ struct EnsembleRun {
 };
 
 /// Runs the bodies side by side, by the program's own method, in double precision on the host.
-void run_bodies(std::vector<Body> const& bodies, Choice const& choice, double dt, double end,
+void run_bodies(std::vector<Body> const& bodies, MethodChoice const& choice, double dt, double end,
                 HostObserver& observer);
-EnsembleRun run_ensemble(std::vector<Body> const& bodies, Choice const& choice, double dt,
+EnsembleRun run_ensemble(std::vector<Body> const& bodies, MethodChoice const& choice, double dt,
                          double end);
 
 }  // namespace cayspin::paper

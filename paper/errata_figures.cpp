@@ -9,8 +9,8 @@
 namespace cayspin::paper {
 namespace {
 
-void figure_rows(Comparison& comparison, std::string_view name, Choice choice, Slab const& slab,
-                 SlabPath const& reference) {
+void figure_rows(Comparison& comparison, std::string_view name, MethodChoice choice,
+                 Slab const& slab, SlabPath const& reference) {
   std::vector<double> finest;
   for (double const sigma : {-10.0, 0.0, 10.0}) {
     choice.sigma = sigma;

@@ -7,7 +7,7 @@
 namespace cayspin::paper {
 namespace {
 
-double trajectory_order(std::vector<Body> const& bodies, Choice const& choice,
+double trajectory_order(std::vector<Body> const& bodies, MethodChoice const& choice,
                         std::vector<Vector> const& solution, double end) {
   auto const errors = [&](double dt) {
     auto const ends = run_ensemble(bodies, choice, dt, end).ends;
@@ -21,7 +21,7 @@ double trajectory_order(std::vector<Body> const& bodies, Choice const& choice,
 }
 
 // From dt = 1 to 0.1, of means of ten bodies, as the paper's Table 4 shows it.
-double table4_slope(std::vector<Body> const& bodies, Choice const& choice) {
+double table4_slope(std::vector<Body> const& bodies, MethodChoice const& choice) {
   auto const means = [&](double dt) {
     return means_of_ten(run_ensemble(bodies, choice, dt, 100).energy_errors);
   };
@@ -65,12 +65,12 @@ void erratum_series(Comparison& comparison) {
   auto const solution = run_ensemble(bodies, rkmk4_def, fine_dt / 16, end).ends;
   comparison.row("order of the trajectory", trajectory_order(bodies, sy4_orth, solution, end),
                  trajectory_order(bodies, sy4_orth_direct, solution, end));
-  auto const one_step = [&](Choice const& choice) {
+  auto const one_step = [&](MethodChoice const& choice) {
     return run_ensemble(bodies, choice, 0.2, 0.2).energy_errors;
   };
   comparison.row("energy error of one step of 0.2, over that of the second",
                  median_quotient(one_step(sy4_orth), one_step(sy4_orth_direct)), 1);
-  auto const table4 = [&](Choice const& choice) {
+  auto const table4 = [&](MethodChoice const& choice) {
     return means_of_ten(run_ensemble(bodies, choice, 0.1, 100).energy_errors);
   };
   auto const rkmk4 = table4(rkmk4_orth);

@@ -51,7 +51,7 @@ auto energy_error(double factor, int power) {
 struct Library {
   double error, order;
 };
-Library library(std::vector<Body> const& bodies, Choice const& choice) {
+Library library(std::vector<Body> const& bodies, MethodChoice const& choice) {
   auto const coarse = run_ensemble(bodies, choice, coarse_dt, end).energy_errors;
   auto const fine = run_ensemble(bodies, choice, fine_dt, end).energy_errors;
   return {quantile(coarse, 0.5),

@@ -20,7 +20,7 @@ constexpr Sweep strong{"strong field, [0, 0.1]", strong_damping_strong_field, 40
 
 struct Curve {
   std::string_view name;
-  Choice choice;
+  MethodChoice choice;
 };
 Curve const curves[]{
     {"Heun, default", choose("heun", Generator::standard, Isotropy::constant)},

@@ -104,7 +104,7 @@ std::vector<double> sigmas(std::vector<Vector> const& spins, std::vector<Vector>
 
 }  // namespace
 
-SlabPath run_slab(Slab const& slab, Choice const& choice, double dt, int looks) {
+SlabPath run_slab(Slab const& slab, MethodChoice const& choice, double dt, int looks) {
   auto scene = slab_scene(slab);
   scene.integrator = integrator_of(choice, dt, slab.end);
   SlabPath path;
@@ -160,7 +160,7 @@ double distance_at_end(SlabPath const& a, SlabPath const& b) {
 
 SlabPath reference_run(Slab const& slab) { return run_slab(slab, rkmk4_def, finest_dt, 1); }
 
-Convergence converge(Slab const& slab, Choice const& choice, SlabPath const& reference,
+Convergence converge(Slab const& slab, MethodChoice const& choice, SlabPath const& reference,
                      double coarsest) {
   Convergence convergence;
   for (int halvings = 0; halvings < 5; ++halvings) {

@@ -38,7 +38,7 @@ struct SlabPath {
 };
 
 /// Looks at `looks` equally spaced times besides the start; dt has to divide their distance.
-SlabPath run_slab(Slab const& slab, Choice const& choice, double dt, int looks);
+SlabPath run_slab(Slab const& slab, MethodChoice const& choice, double dt, int looks);
 
 /// Geometric Euler with sigma = -factor <dA_o, A_o x m>/|A_o|^2, dA_o by backward differences
 /// (forward at the first step), on plain numbers: factor 1 is right, -1 the paper's.
@@ -62,7 +62,7 @@ struct Convergence {
   double order_of_first_component() const;
   double order_of_finest_pair() const;
 };
-Convergence converge(Slab const& slab, Choice const& choice, SlabPath const& reference,
+Convergence converge(Slab const& slab, MethodChoice const& choice, SlabPath const& reference,
                      double coarsest = 0.02);
 
 /// rkmk4 at a much smaller step.

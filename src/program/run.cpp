@@ -48,7 +48,7 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
                           accepted + "or a normal along y or z on a host without where = \"host\"");
 }
 
-Restart restart_of(LeftBehind left, io::Scene const& scene, Plan const& plan,
+Restart restart_of(EarlierRun left, io::Scene const& scene, Plan const& plan,
                    RunOptions const& options) {
   auto const output = output_file(scene, options.output);
   try {
@@ -181,7 +181,7 @@ io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
 }
 
 // The method "auto" is chosen by the first rank, for all.
-io::Scene with_method(io::Scene const& typed, LeftBehind const* left, RunOptions const& options,
+io::Scene with_method(io::Scene const& typed, EarlierRun const* left, RunOptions const& options,
                       std::string const& space, Ranks& ranks) {
   auto const as_before =
       left ? trade::with_method_of(typed, left->scene_text(), left->resolved_scene())
@@ -209,7 +209,7 @@ int run_on_ranks(RunOptions const& options, Ranks& ranks) {
   auto const space = ranks.together([&] { return chosen_space(options.space); });
   KokkosSession const kokkos(space, threads_of_rank(options, ranks), options.device);
   auto left = ranks.together(
-      [&] { return options.restart ? std::make_unique<LeftBehind>(*options.restart) : nullptr; });
+      [&] { return options.restart ? std::make_unique<EarlierRun>(*options.restart) : nullptr; });
   auto const scene = with_method(typed, left.get(), options, space, ranks);
   if (typed.integrator.method->automatic && options.listener == Listener::user && ranks.is_first())
     fmt::print("method auto: {}, {}\n", describe_method(scene),

@@ -19,8 +19,7 @@ namespace {
 
 /// Sees nothing: between substeps nobody looks.
 template <class Simulation>
-class NobodyLooks final
-    : public RunObserver<typename Simulation::Exec, typename Simulation::Spins> {
+class NoLooks final : public RunObserver<typename Simulation::Exec, typename Simulation::Spins> {
   using Exec = typename Simulation::Exec;
   using Spins = typename Simulation::Spins;
   bool due(Step const&) const override { return false; }
@@ -52,7 +51,7 @@ class MethodOfScene {
   // Those of the simulation, all of them.
   template <class Exec, class Generator>
   void batch(Exec const&, Generator const&, spins_type&, double t, double dt, std::int64_t count) {
-    NobodyLooks<Simulation> nobody;
+    NoLooks<Simulation> nobody;
     simulation_.times = {t, dt, count};
     simulation_.observer = &nobody;
     evaluations_ += method_->advance().evaluations;

@@ -35,7 +35,7 @@ bool remembers(io::Scene const& scene, Plan const& plan) {
          scene.integrator.until_torque.has_value() || has_dear_field(scene);
 }
 
-LeftBehind::LeftBehind(std::filesystem::path of_run) : path(std::move(of_run)) {
+EarlierRun::EarlierRun(std::filesystem::path of_run) : path(std::move(of_run)) {
   if (io::is_checkpoint(path)) {
     checkpoint = std::make_unique<io::CheckpointReader>(path);
     return;
@@ -51,19 +51,19 @@ LeftBehind::LeftBehind(std::filesystem::path of_run) : path(std::move(of_run)) {
                     path.string(), beside.string()));
 }
 
-std::string const& LeftBehind::scene_text() const {
+std::string const& EarlierRun::scene_text() const {
   return trajectory ? trajectory->header.scene_text : checkpoint->header().scene_text;
 }
 
-std::string const& LeftBehind::resolved_scene() const {
+std::string const& EarlierRun::resolved_scene() const {
   return trajectory ? trajectory->header.resolved_scene : checkpoint->header().resolved_scene;
 }
 
-std::string const& LeftBehind::scene_as_run() const {
+std::string const& EarlierRun::scene_as_run() const {
   return resolved_scene().empty() ? scene_text() : resolved_scene();
 }
 
-Restart::Restart(LeftBehind from, io::Scene const& scene, Plan const& plan, Precision precision,
+Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
                  std::int64_t end)
     : from_(std::move(from)) {
   auto const refuse = [&](std::string const& wrong, std::string const& accepted) {

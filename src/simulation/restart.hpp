@@ -17,9 +17,9 @@ namespace cayspin::simulation {
 /// Does a run of this plan need more than its spins to go on with the same bits?
 bool remembers(io::Scene const& scene, Plan const& plan);
 
-/// What a run left behind for another one: a trajectory, the checkpoint beside it, or a checkpoint.
-struct LeftBehind {
-  explicit LeftBehind(std::filesystem::path path);
+/// What an earlier run left: a trajectory, the checkpoint beside it, or a checkpoint.
+struct EarlierRun {
+  explicit EarlierRun(std::filesystem::path path);
 
   /// The scene as it ran, with the method that was chosen where that is "auto".
   std::string const& scene_as_run() const;
@@ -38,7 +38,7 @@ class Restart {
   /// Throws UsageError when there is no such state: the lattice, the precision or the units are
   /// others, its time is not that of its step, no step is left before `end`, or the method
   /// remembers steps that are in no checkpoint.
-  Restart(LeftBehind from, io::Scene const& scene, Plan const& plan, Precision precision,
+  Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
           std::int64_t end);
 
   std::int64_t step() const { return step_; }
@@ -51,7 +51,7 @@ class Restart {
   std::vector<std::filesystem::path> files() const;
 
  private:
-  LeftBehind from_;
+  EarlierRun from_;
   std::int64_t step_ = 0;
   bool uses_checkpoint_ = false;
   io::CheckpointReader* memory_ = nullptr;

@@ -19,7 +19,7 @@
 namespace cayspin::simulation {
 
 /// A scene in memory with its method, the guard of its numbers, and what changes its spins between
-/// steps: the control of its energy, or the noise of its temperature. Whoever runs it looks at it.
+/// steps: the control of its energy, or the noise of its temperature.
 template <class Real, class Space>
 class RunningScene : public Simulation<Real, Space> {
   using Base = Simulation<Real, Space>;

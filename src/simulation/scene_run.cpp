@@ -157,7 +157,7 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
   auto const plan = plan_of(own, settings.precision);
   std::optional<Restart> restart;
   if (settings.restart)
-    restart.emplace(LeftBehind(*settings.restart), own, plan, settings.precision,
+    restart.emplace(EarlierRun(*settings.restart), own, plan, settings.precision,
                     std::numeric_limits<std::int64_t>::max());
   auto run = in_space(
       space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {

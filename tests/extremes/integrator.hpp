@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "simulation/choice.hpp"
+#include "simulation/method_choice.hpp"
 #include "simulation/variant.hpp"
 
 #include <string>
@@ -12,7 +12,7 @@ namespace cayspin::extremes {
 using namespace simulation;
 
 /// One integrator as a scene can ask for it.
-struct Integrator : Choice {
+struct Integrator : MethodChoice {
   bool of_rigid_bodies = false;
   bool relaxes = false;  // to a state of rest, by no method
 

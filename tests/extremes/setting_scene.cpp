@@ -21,7 +21,7 @@ std::string decimal(double number) {
   return std::isfinite(number) ? fmt::format("{:.17e}", number) : "inf";
 }
 
-std::string lines_of(Choice const& choice) {
+std::string lines_of(MethodChoice const& choice) {
   auto keys = choice.keys();
   std::ranges::replace(keys, ',', '\n');
   return keys;

@@ -11,7 +11,7 @@
 namespace cayspin::program::test {
 namespace {
 
-struct Choice {
+struct MethodChoice {
   io::Method const& method;
   io::Generator generator;
   io::Isotropy isotropy;
@@ -63,7 +63,7 @@ class AllMethods : public ProgramTest {
         for (auto const& isotropy : io::words<io::Isotropy>())
           for (auto const& rotation : io::words<io::Rotation>()) {
             if (method->is_baseline()) continue;
-            work(Choice{*method, generator.value, isotropy.value, rotation.value});
+            work(MethodChoice{*method, generator.value, isotropy.value, rotation.value});
           }
   }
 
@@ -72,7 +72,7 @@ class AllMethods : public ProgramTest {
                      double energy_tolerance) {
     auto const reference = end(scene, set("integrator.method='rkmk8'"), "0.0025");
     std::set<std::string_view> checked;
-    for_each_choice([&](Choice const& choice) {
+    for_each_choice([&](MethodChoice const& choice) {
       if (!choice.has_meaning(kind)) return;
       checked.insert(choice.method.word);
       auto const name = testing::PrintToString(choice.arguments());
@@ -93,7 +93,7 @@ class AllMethods : public ProgramTest {
       EXPECT_NEAR(energies.back(), energies.front(), energy_tolerance) << name;
     });
     for (auto const* const method : io::methods()) {
-      Choice const any{*method, {}, {}, {}};
+      MethodChoice const any{*method, {}, {}, {}};
       bool const expected = !method->is_baseline() && any.is_tried_here();
       EXPECT_EQ(checked.contains(method->word), expected) << method->word;
     }
@@ -163,7 +163,7 @@ TEST_F(AllMethods, OrderEightIsFarMoreAccurateThanOrderFive) {
 TEST_F(AllMethods, WithoutMeaningAreRefusedInOneLine) {
   auto const scene = write("scene.toml", tensor_bodies_scene());
   int refused = 0;
-  for_each_choice([&](Choice const& choice) {
+  for_each_choice([&](MethodChoice const& choice) {
     // One generator for the many that fail alike.
     if (choice.has_meaning(io::SystemKind::rigid_body) ||
         choice.generator == io::Generator::orthogonal)

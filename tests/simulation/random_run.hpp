@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "simulation/choice.hpp"
+#include "simulation/method_choice.hpp"
 #include "simulation/precision.hpp"
 #include "simulation/variant.hpp"
 
@@ -78,7 +78,7 @@ class RandomRun {
   }
 
   std::string integrator(Variant const& variant, bool bodies) {
-    Choice choice{.method = variant.method};
+    MethodChoice choice{.method = variant.method};
     choice.compensated = variant.compensated;
     choice.isotropy = variant.isotropy;
     if (choice.isotropy == io::Isotropy::zero && one_in(3)) {

@@ -22,8 +22,8 @@
 // The bonds of each site of a cell, seen from that site, in the order in which kernels sum them.
 namespace cayspin::inline v0_1::detail {
 
-/// A way in memory, in double and in single precision.
-struct WayInMemory {
+/// How far another site's numbers lie, in double and in single precision.
+struct OffsetInMemory {
   std::ptrdiff_t of_doubles, of_floats;
 
   template <class Real>
@@ -32,7 +32,7 @@ struct WayInMemory {
   }
 };
 /// The way to the other site.
-struct Bond : WayInMemory {
+struct Bond : OffsetInMemory {
   std::int32_t dx, dy, dz;
 };
 /// Bonds of one exchange.
@@ -80,7 +80,7 @@ struct BondTable {
   Shell const* shells;
   Bond const* bonds;
   BondTensor const* tensors;
-  WayInMemory const* rounds;
+  OffsetInMemory const* rounds;
   std::int32_t cell_sites;
   bool has_biquadratic;
 
@@ -99,7 +99,7 @@ class BondLists {
   std::vector<BondTensor> tensors;
   /// All bonds of a site, along x round a periodic lattice, as they are at the first reach.low[0]
   /// sites of a row and at the last reach.high[0].
-  std::vector<WayInMemory> rounds;
+  std::vector<OffsetInMemory> rounds;
   bool has_biquadratic = false;
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> field_bounds;
@@ -155,8 +155,8 @@ class BondLists {
     }
   };
 
-  static WayInMemory in_memory(Lattice const& lattice, std::int32_t x, std::int32_t y,
-                               std::int32_t z) {
+  static OffsetInMemory in_memory(Lattice const& lattice, std::int32_t x, std::int32_t y,
+                                  std::int32_t z) {
     return {RowLayout::of<double>(lattice).row_offset(y, z) + x,
             RowLayout::of<float>(lattice).row_offset(y, z) + x};
   }
@@ -299,7 +299,7 @@ class BondsOfSites {
   Table<Shell> shells_;
   Table<Bond> bonds_;
   Table<BondTensor> tensors_;
-  Table<WayInMemory> rounds_;
+  Table<OffsetInMemory> rounds_;
   bool has_biquadratic_;
 };
 

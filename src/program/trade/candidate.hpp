@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "simulation/choice.hpp"
+#include "simulation/method_choice.hpp"
 #include "simulation/plan.hpp"
 
 #include <cstdint>
@@ -17,7 +17,7 @@ using namespace simulation;
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// A choice in one precision, whose steps are still to be chosen.
-struct Candidate : Choice {
+struct Candidate : MethodChoice {
   Precision precision = Precision::double_precision;
 
   double least_tolerance() const;

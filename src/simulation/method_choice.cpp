@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "choice.hpp"
+#include "method_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 namespace cayspin::simulation {
 
-void Choice::put_into(io::Integrator& integrator) const {
+void MethodChoice::put_into(io::Integrator& integrator) const {
   integrator.method = method;
   integrator.generator = generator;
   integrator.isotropy = isotropy;
@@ -17,7 +17,7 @@ void Choice::put_into(io::Integrator& integrator) const {
   integrator.substeps = std::max<std::int64_t>(1, substeps);
 }
 
-std::string Choice::keys() const {
+std::string MethodChoice::keys() const {
   auto text = fmt::format("method=\"{}\"", method->word);
   if (generator != io::Generator::standard)
     text += fmt::format(",generator=\"{}\"", io::to_string(generator));

@@ -9,7 +9,7 @@
 namespace cayspin::simulation {
 
 /// What integrates a scene, its steps left open: the words of [integrator] that say so.
-struct Choice {
+struct MethodChoice {
   io::Method const* method = nullptr;
   io::Generator generator = io::Generator::standard;
   io::Isotropy isotropy = io::Isotropy::zero;
