@@ -23,8 +23,7 @@ def parse_arguments():
 
 def draw_paths(axes, geometric, classical, reference, site):
     under = None if reference is None else reference.site(site)
-    view = hodograph.View()
-    reach = max(hodograph.reach_of(view, run.site(site)) for run in (geometric, classical))
+    reach = max(hodograph.reach_of(run.site(site)) for run in (geometric, classical))
     for axis, run, color, title in zip(
         axes,
         (geometric, classical),
@@ -32,7 +31,7 @@ def draw_paths(axes, geometric, classical, reference, site):
         ("Geometric Euler: each step is a rotation", "Classical Euler: the spin leaves the sphere"),
     ):
         axis.set_title(title, color=color, weight="bold", loc="center")
-        hodograph.draw_hodograph(axis, run.site(site), color, view, under, reach)
+        hodograph.draw_hodograph(axis, run.site(site), color, under, reach)
 
 
 def draw_norms(axis, geometric, classical):

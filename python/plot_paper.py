@@ -31,14 +31,13 @@ def draw_trajectories(folder):
     table = read_table(folder / "trajectories.csv", ("body", "update", "path"),
                        ("time", "x", "y", "z"))
     figure = style.plt.figure(figsize=(11, 7.6), constrained_layout=True)
-    view = hodograph.View()
     panels = list(groups(table, "body", "update"))
     for place, ((body, update), panel) in enumerate(panels):
         axis = figure.add_subplot(2, (len(panels) + 1) // 2, place + 1)
         axis.set_title(f"{update}, {body}", loc="center")
-        hodograph.draw_sphere(axis, view, 1.27)
+        hodograph.draw_sphere(axis, 1.27)
         for number, (_, path) in enumerate(groups(panel, "path")):
-            hodograph.draw_path(axis, view, points(path), COLORS[number % len(COLORS)],
+            hodograph.draw_path(axis, points(path), COLORS[number % len(COLORS)],
                                 linewidth=0.8, fade=False)
     figure.suptitle("traj_plots  free rigid bodies over [0, 200], geometric Euler, dt = 0.1")
     style.save(figure, folder / "trajectories.png")
@@ -49,14 +48,12 @@ def draw_slab(folder, name, title):
     sigma = read_table(folder / f"sigma_{name}.csv", (), ("time", "sigma"))
     figure = style.plt.figure(figsize=(11, 5.4), constrained_layout=True)
     left, right = figure.subplots(1, 2)
-    view = hodograph.View()
     runs = dict(groups(table, "run"))
     paths = {run: points(runs[run]) for run in DRAWN if run in runs}
-    hodograph.draw_sphere(left, view,
-                          max(hodograph.reach_of(view, path) for path in paths.values()))
+    hodograph.draw_sphere(left, max(map(hodograph.reach_of, paths.values())))
     for run, path in paths.items():
-        hodograph.draw_path(left, view, path, DRAWN[run], fade=False)
-        hodograph.draw_ends(left, view, path, DRAWN[run])
+        hodograph.draw_path(left, path, DRAWN[run], fade=False)
+        hodograph.draw_ends(left, path, DRAWN[run])
         left.plot([], [], color=DRAWN[run], label=run)
     left.legend(loc="upper center", bbox_to_anchor=(0.5, 0.04), fontsize=9)
     left.set_title("spin 37", loc="center")

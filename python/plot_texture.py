@@ -37,12 +37,12 @@ def parse_arguments():
 
 def import_libraries():
     """After --help, which needs none of them."""
-    global h5py, require_undamaged_frame, style, texture
+    global checksum, h5py, style, texture
     import h5py
     from cayspin_plots import style
-    from cayspin_plots.read import require_undamaged_frame
 
     import texture  # of python/cayspin, which cayspin_plots has put on the path
+    from texture import checksum
 
 
 def movie_writer(path, fps):
@@ -62,7 +62,7 @@ def movie_writer(path, fps):
 def read(file, arguments, frame):
     """A frame and the options to draw it with."""
     shown, before = texture.of_file(file, frame, arguments.difference)
-    require_undamaged_frame(file, texture.frame_number(file, frame), shown.spins)
+    checksum.require_undamaged(file, texture.frame_number(file, frame), shown.spins[None])
     return shown, {"plane": arguments.plane, "before": before,
                    "quantity": "charge" if arguments.charge else "spins"}
 
@@ -113,7 +113,7 @@ def main():
     except ImportError as error:
         message = (f"cayspin plot: {sys.executable} has no {error.name}; accepted: a Python with "
                    "h5py and matplotlib in CAYSPIN_PYTHON")
-    except (OSError, KeyError, ValueError) as error:
+    except (OSError, KeyError, TypeError, ValueError) as error:
         message = f"{arguments.file}: {error.args[-1]}"
     except SystemExit as error:
         message = error.code

@@ -9,6 +9,8 @@ from cayspin_plots import components, hodograph, scalars, style
 from cayspin_plots.read import read_trajectory
 
 PANELS = ("components", "magnetization", "energy", "norm", "hodograph")
+OVER_TIME = {"energy": scalars.draw_energy, "norm": scalars.draw_norm_defect,
+             "magnetization": scalars.draw_magnetization}
 
 
 def parse_arguments():
@@ -35,12 +37,8 @@ def draw(trajectory, panels, site):
         components.draw_components(axes, trajectory)
     for place, panel in enumerate(narrow):
         axis = figure.add_subplot(grid[rows_of_components + place // 2, place % 2])
-        if panel == "energy":
-            scalars.draw_energy(axis, trajectory)
-        elif panel == "norm":
-            scalars.draw_norm_defect(axis, trajectory)
-        elif panel == "magnetization":
-            scalars.draw_magnetization(axis, trajectory)
+        if panel in OVER_TIME:
+            OVER_TIME[panel](axis, trajectory)
         else:
             axis.set_title(f"path of spin {site}", loc="center")
             hodograph.draw_hodograph(axis, trajectory.site(site), style.BLUE)

@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # Sphinx reads a copy of this file and of the pages, which build_site.py makes.
+import html
+import textwrap
+
+from docutils import nodes
+
 project = "cayspin"
 author = "the authors of cayspin"
 extensions = ["myst_parser"]
@@ -24,10 +29,15 @@ html_show_copyright = False
 
 
 def describe(app, pagename, templatename, context, doctree):
-    """The pages that have no source of their own."""
-    if "description" not in context.get("metatags", ""):
-        context["metatags"] = context.get("metatags", "") + (
-            '<meta name="description" content="Search the documentation of cayspin" />')
+    """For search engines: the title of a page and how its text begins."""
+    text = "Search the documentation of cayspin"
+    if doctree:
+        prose = (node.astext() for node in doctree.findall(nodes.paragraph)
+                 if isinstance(node.parent, nodes.section) and not node.next_node(nodes.image))
+        text = f"{app.env.titles[pagename].astext()}: {next(prose, 'of the source of cayspin')}"
+    text = html.escape(textwrap.shorten(text, 160, placeholder=" ..."))
+    context["metatags"] = context.get("metatags", "") + (
+        f'<meta name="description" content="{text}" />')
 
 
 def setup(app):

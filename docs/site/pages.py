@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""The sources of the site: the pages as they are, with descriptions and a tree, and a listing of
-each file of the repository that a page links to."""
+"""The sources of the site: the pages as they are, with a tree, and a listing of each file of the
+repository that a page links to."""
 
-import json
 import os
 import pathlib
 import re
@@ -28,26 +27,6 @@ LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".h": "c", ".c": "c", ".f90": "fortra
              ".sh": "sh"}
 TARGET = re.compile(r"\]\(([^()\s]+)\)")
 API = "\n<p><a href=\"../../api/index.html\">Every class and function</a></p>\n"
-
-
-def description_of(text):
-    """The title of a page and its first sentences, up to 160 characters."""
-    text = re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
-    title = re.search(r"^# (.*)$", text, re.MULTILINE).group(1)
-    prose = next((block for block in re.split(r"\n\s*\n", text)
-                  if re.match(r"[A-Z`*]", block.strip())))
-    whole = f"{title}: " + re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", " ".join(prose.split()))
-    whole = re.sub(r"[`*]", "", whole).rstrip(":")
-    if len(whole) <= 160:
-        return whole
-    sentences = re.match(r".{60,159}[.](?= )", whole)
-    return sentences.group(0) if sentences else whole[:157].rsplit(" ", 1)[0] + " ..."
-
-
-def head(description, *more):
-    """What MyST reads before a page."""
-    return "\n".join(["---", *more, "myst:", "  html_meta:",
-                      f"    description: {json.dumps(description)}", "---", "", ""])
 
 
 def toctrees():
@@ -77,7 +56,7 @@ class Writer:
             text += API
         if path == pathlib.Path("README.md"):
             path, text = pathlib.Path("index.md"), text + toctrees()
-        self.write(path, head(description_of(text)) + text)
+        self.write(path, text)
 
     def target(self, page, link):
         """Where a link of a page leads in the site."""
@@ -108,7 +87,7 @@ class Writer:
         else:
             code = (self.root / path).read_text(encoding="utf-8")
             text += f"``````{LANGUAGES[path.suffix]}\n{code}\n``````\n"
-        self.write(page, head(f"{path} of the source of cayspin", "orphan: true") + text)
+        self.write(page, f"---\norphan: true\n---\n\n{text}")
         return page
 
 

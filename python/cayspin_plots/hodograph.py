@@ -9,24 +9,20 @@ from matplotlib.patches import Circle
 from .style import GREY, INK
 
 
-class View:
-    """Orthographic projection; azimuth and elevation of the viewer in degrees."""
-
-    def __init__(self, azimuth=55, elevation=22):
-        a, e = np.radians([azimuth, elevation])
-        right = [-np.sin(a), np.cos(a), 0]
-        up = [-np.sin(e) * np.cos(a), -np.sin(e) * np.sin(a), np.cos(e)]
-        toward = [np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)]
-        self.axes = np.array([right, up, toward])
-
-    def project(self, points):
-        """(n, 3) -> positions on the page (n, 2) and whether the unit sphere hides them (n,)."""
-        seen = np.asarray(points, float) @ self.axes.T
-        hidden = (seen[:, 2] < 0) & (np.hypot(seen[:, 0], seen[:, 1]) < 1)
-        return seen[:, :2], hidden
+A, E = np.radians([55, 22])  # azimuth and elevation of the viewer
+RIGHT_UP_TOWARD = np.array([[-np.sin(A), np.cos(A), 0],
+                            [-np.sin(E) * np.cos(A), -np.sin(E) * np.sin(A), np.cos(E)],
+                            [np.cos(E) * np.cos(A), np.cos(E) * np.sin(A), np.sin(E)]])
 
 
-def draw_sphere(axis, view, reach=1.0):
+def project(points):
+    """(n, 3) -> positions on the page (n, 2) and whether the unit sphere hides them (n,)."""
+    seen = np.asarray(points, float) @ RIGHT_UP_TOWARD.T
+    hidden = (seen[:, 2] < 0) & (np.hypot(seen[:, 0], seen[:, 1]) < 1)
+    return seen[:, :2], hidden
+
+
+def draw_sphere(axis, reach=1.0):
     """A shaded unit sphere with circles of latitude and longitude; the page shows |x| <= reach."""
     ticks = np.linspace(-1, 1, 400)
     x, y = np.meshgrid(ticks, ticks)
@@ -41,38 +37,38 @@ def draw_sphere(axis, view, reach=1.0):
     for latitude in np.radians(np.arange(-60, 61, 30)):
         circle = [np.cos(latitude) * np.cos(angle), np.cos(latitude) * np.sin(angle),
                   np.full_like(angle, np.sin(latitude))]
-        _draw_grid_line(axis, view, np.transpose(circle))
+        _draw_grid_line(axis, np.transpose(circle))
     for longitude in np.radians(np.arange(0, 180, 30)):
         circle = [np.sin(angle) * np.cos(longitude), np.sin(angle) * np.sin(longitude),
                   np.cos(angle)]
-        _draw_grid_line(axis, view, np.transpose(circle))
+        _draw_grid_line(axis, np.transpose(circle))
     for name, direction in zip("xyz", np.eye(3)):
-        _draw_axis(axis, view, name, direction)
+        _draw_axis(axis, name, direction)
     axis.set_xlim(-reach, reach)
     axis.set_ylim(-reach, reach)
     axis.set_aspect("equal")
     axis.set_axis_off()
 
 
-def _draw_grid_line(axis, view, points):
-    page, hidden = view.project(points)
+def _draw_grid_line(axis, points):
+    page, hidden = project(points)
     page[hidden] = np.nan
     axis.plot(*page.T, color="white", linewidth=0.9, zorder=1)
 
 
-def _draw_axis(axis, view, name, direction):
-    (tip, end), _ = view.project([direction, 1.22 * direction])
+def _draw_axis(axis, name, direction):
+    (tip, end), _ = project([direction, 1.22 * direction])
     axis.annotate("", end, tip, zorder=4,
                   arrowprops={"arrowstyle": "-|>", "color": GREY, "linewidth": 1, "shrinkA": 0})
     label = end + 0.06 * end / max(np.hypot(*end), 1e-9)
     axis.text(*label, f"${name}$", color=GREY, ha="center", va="center", zorder=4)
 
 
-def draw_path(axis, view, path, color, linewidth=1.4, fade=True):
+def draw_path(axis, path, color, linewidth=1.4, fade=True):
     """A path (n, 3), pale where it begins and where the sphere hides it."""
     if len(path) < 2:
         return
-    page, hidden = view.project(path)
+    page, hidden = project(path)
     segments = np.stack([page[:-1], page[1:]], axis=1)
     colors = np.repeat(to_rgba_array(color), len(segments), axis=0)
     length = np.cumsum(np.hypot(*(segments[:, 1] - segments[:, 0]).T))
@@ -86,23 +82,22 @@ def draw_path(axis, view, path, color, linewidth=1.4, fade=True):
         axis.add_collection(lines)
 
 
-def draw_ends(axis, view, path, color):
+def draw_ends(axis, path, color):
     """An open circle at the begin of the path, a full one at its end."""
-    page, _ = view.project(path[[0, -1]])
+    page, _ = project(path[[0, -1]])
     axis.plot(*page[0], "o", markersize=6, markerfacecolor="white", markeredgecolor=INK, zorder=5)
     axis.plot(*page[1], "o", markersize=7, color=color, markeredgecolor="white", zorder=5)
 
 
-def reach_of(view, path):
+def reach_of(path):
     """How far the page has to show for the sphere, its axes and a path."""
-    return max(1.27, 1.05 * float(np.abs(view.project(path)[0]).max()))
+    return max(1.27, 1.05 * float(np.abs(project(path)[0]).max()))
 
 
-def draw_hodograph(axis, path, color, view=None, reference=None, reach=None):
+def draw_hodograph(axis, path, color, reference=None, reach=None):
     """The sphere with one path on it, or beside it, and a reference path under it."""
-    view = view or View()
-    draw_sphere(axis, view, reach or reach_of(view, path))
+    draw_sphere(axis, reach or reach_of(path))
     if reference is not None:
-        draw_path(axis, view, reference, INK, linewidth=0.8, fade=False)
-    draw_path(axis, view, path, color)
-    draw_ends(axis, view, path, color)
+        draw_path(axis, reference, INK, linewidth=0.8, fade=False)
+    draw_path(axis, path, color)
+    draw_ends(axis, path, color)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Reads a trajectory file into numpy arrays."""
 
+import contextlib
 import os
 from dataclasses import dataclass
 
@@ -38,6 +39,18 @@ class Trajectory:
         return self.spins.reshape(len(self.spins), -1, 3)[:, number]
 
 
+@contextlib.contextmanager
+def opened(path, what):
+    """An HDF5 file; what is wrong with it ends the program with one line."""
+    if not os.path.isfile(path):
+        raise SystemExit(f"{path}: there is no such file")
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except (OSError, KeyError, TypeError, ValueError) as error:
+        raise SystemExit(f"{path}: cannot read the {what}: {error.args[-1]}") from None
+
+
 def _dataset(file, name, rank, columns=()):
     """A dataset of numbers with `rank` extents, the last of them `columns` where it is given."""
     dataset = file[name]
@@ -55,54 +68,23 @@ def _series(file, group=""):
     return Series(*(column[:whole] for column in columns))
 
 
-def require_undamaged(file, frames, spins, first=0):
-    """Compares frames, the first of this number, with their checksums. Files of early versions have
-    none."""
-    if "checksum" not in file:
-        return
-    those = slice(first, first + len(spins))
-    stored, steps = (_dataset(file, name, 1)[those] for name in ("checksum", "step"))
-    sublattices = None
-    if spins.ndim == 6:
-        sublattices = _dataset(file, "sublattice_magnetization", 3, (spins.shape[1], 3))[those]
-    for i, frame in enumerate(spins):
-        numbers = (frames.time[i], frames.energy[i], frames.norm_defect[i],
-                   *frames.magnetization[i])
-        of_sites = None if sublattices is None else sublattices[i]
-        if checksum.of_frame(steps[i], numbers, frame, of_sites) != int(stored[i]):
-            raise ValueError(f"frame {first + i} is damaged: its checksum differs")
-
-
-def require_undamaged_frame(file, number, spins):
-    """The same of one frame."""
-    frames = _series(file)
-    require_undamaged(file, Series(*(column[number:] for column in vars(frames).values())),
-                      spins[None], number)
-
-
 def read_trajectory(path):
     """Whole frames only; a run that was killed or is unfinished has its complete flag at 0."""
-    if not os.path.isfile(path):
-        raise SystemExit(f"{path}: there is no such file")
-    try:
-        with h5py.File(path, "r") as file:
-            frames = _series(file)
-            rank = 6 if np.ndim(file["spins"]) == 6 else 5
-            spins = _dataset(file, "spins", rank, (3,))
-            count = min(len(spins), len(frames.time))
-            if count == 0:
-                raise SystemExit(f"{path}: it holds no frame")
-            samples = _series(file, "scalars/")
-            spins = spins[:count]
-            require_undamaged(file, frames, spins)
-            spins = spins.reshape(count, -1, *spins.shape[-3:])
-            return Trajectory(
-                path=str(path),
-                time=frames.time[:count],
-                spins=spins,
-                scalars=samples if len(samples.time) >= count else frames,
-                precision=file.attrs["precision"],
-                complete=bool(file.attrs["complete"]),
-            )
-    except (OSError, KeyError, ValueError) as error:
-        raise SystemExit(f"{path}: cannot read the trajectory: {error.args[-1]}") from None
+    with opened(path, "trajectory") as file:
+        frames = _series(file)
+        rank = 6 if np.ndim(file["spins"]) == 6 else 5
+        spins = _dataset(file, "spins", rank, (3,))
+        count = min(len(spins), len(frames.time))
+        if count == 0:
+            raise SystemExit(f"{path}: it holds no frame")
+        samples = _series(file, "scalars/")
+        spins = spins[:count]
+        checksum.require_undamaged(file, 0, spins)
+        return Trajectory(
+            path=str(path),
+            time=frames.time[:count],
+            spins=spins.reshape(count, -1, *spins.shape[-3:]),
+            scalars=samples if len(samples.time) >= count else frames,
+            precision=file.attrs["precision"],
+            complete=bool(file.attrs["complete"]),
+        )

@@ -25,15 +25,16 @@ def draw_norm_defect(axis, trajectory, **line):
     axis.set_xlabel("time")
 
 
-def draw_magnetization(axis, trajectory):
+def draw_means(axis, x, m, *line, **look):
+    """The three components of means (n, 3)."""
     for component, name in enumerate("xyz"):
-        axis.plot(
-            trajectory.scalars.time,
-            trajectory.scalars.magnetization[:, component],
-            color=COMPONENTS[component],
-            label=f"$\\langle m_{name} \\rangle$",
-        )
+        axis.plot(x, m[:, component], *line, color=COMPONENTS[component],
+                  label=f"$\\langle m_{name} \\rangle$", **look)
     axis.set_ylim(-1.08, 1.08)
+
+
+def draw_magnetization(axis, trajectory):
+    draw_means(axis, trajectory.scalars.time, trajectory.scalars.magnetization)
     axis.legend(ncol=3, loc="lower right", bbox_to_anchor=(1, 0.98), borderaxespad=0)
     axis.set_title("magnetization")
     axis.set_xlabel("time")

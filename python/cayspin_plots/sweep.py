@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """Reads the file of a sweep into numpy arrays."""
 
-import os
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
+
+from .read import opened
 
 
 @dataclass
@@ -28,29 +28,24 @@ def _distinct(values):
 
 def read_sweep(path):
     """Runs that failed or are still to do have done = False, and NaN as numbers."""
-    if not os.path.isfile(path):
-        raise SystemExit(f"{path}: there is no such file")
-    try:
-        with h5py.File(path, "r") as file:
-            if "sweep_format" not in file.attrs:
-                raise ValueError("it has no sweep")
-            keys = [name.decode() for name in file["keys"][:]]
-            columns = [[value.decode() for value in column] for column in file["values"][:].T]
-            values = [_distinct(column) for column in columns]
-            numbers = [_distinct(file["parameters"][key][:]) if key in file["parameters"] else None
-                       for key in keys]
-            shape = [len(value) for value in values]
-            done = file["status"][:].reshape(shape) == 0
-            magnetization = file["magnetization"][:].reshape(*shape, 3)
-            return Sweep(
-                path=str(path),
-                keys=keys,
-                values=values,
-                numbers=numbers,
-                done=done,
-                energy=np.where(done, file["energy"][:].reshape(shape), np.nan),
-                magnetization=np.where(done[..., None], magnetization, np.nan),
-                complete=bool(file.attrs["complete"]),
-            )
-    except (OSError, KeyError, ValueError) as error:
-        raise SystemExit(f"{path}: cannot read the sweep: {error.args[-1]}") from None
+    with opened(path, "sweep") as file:
+        if "sweep_format" not in file.attrs:
+            raise ValueError("it has no sweep")
+        keys = [name.decode() for name in file["keys"][:]]
+        columns = [[value.decode() for value in column] for column in file["values"][:].T]
+        values = [_distinct(column) for column in columns]
+        numbers = [_distinct(file["parameters"][key][:]) if key in file["parameters"] else None
+                   for key in keys]
+        shape = [len(value) for value in values]
+        done = file["status"][:].reshape(shape) == 0
+        magnetization = file["magnetization"][:].reshape(*shape, 3)
+        return Sweep(
+            path=str(path),
+            keys=keys,
+            values=values,
+            numbers=numbers,
+            done=done,
+            energy=np.where(done, file["energy"][:].reshape(shape), np.nan),
+            magnetization=np.where(done[..., None], magnetization, np.nan),
+            complete=bool(file.attrs["complete"]),
+        )

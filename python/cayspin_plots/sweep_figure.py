@@ -6,7 +6,7 @@ import pathlib
 
 import numpy as np
 
-from . import style
+from . import scalars, style
 
 MOST_ROWS = 12
 MOST_TICKS = 12
@@ -83,10 +83,7 @@ def _label(axis, sweep, key, positions, order):
 
 def _draw_curves(axes, sweep, key, energy, m, where):
     positions, order = _coordinates(sweep, key)
-    for component, name in enumerate("xyz"):
-        axes[0].plot(positions, m[order, component], "o-", markersize=4,
-                     color=style.COMPONENTS[component], label=f"$\\langle m_{name} \\rangle$")
-    axes[0].set_ylim(-1.08, 1.08)
+    scalars.draw_means(axes[0], positions, m[order], "o-", markersize=4)
     axes[0].legend(loc="best")
     axes[0].set_title(_title("magnetization at the end", where))
     axes[1].plot(positions, energy[order], "o-", markersize=4, color=style.BLUE)

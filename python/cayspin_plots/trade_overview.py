@@ -9,13 +9,13 @@ from cayspin_plots import style
 from cayspin_plots.trade_costs import ERRORS, gain, scene_name
 
 SLOWEST, FASTEST = 0.5, 8  # where colours end
+CHARACTERS = 21  # of full size that fit into a column
 
 
 def draw(trades, path):
     gains = [[gain(trade, error) for error in ERRORS] for trade in trades]
-    shares = np.array([[math.nan if g is None else
-                              math.log(min(max(g[0], SLOWEST), FASTEST)) for g in row]
-                             for row in gains])
+    shares = np.array([[math.nan if found is None else np.log(np.clip(found[0], SLOWEST, FASTEST))
+                        for found in row] for row in gains])
     figure, axis = style.plt.subplots(figsize=(9, 1.2 + 0.42 * len(trades)),
                                       constrained_layout=True)
     colors = style.plt.get_cmap("PuOr_r").copy()
@@ -26,8 +26,9 @@ def draw(trades, path):
         for j, found in enumerate(row):
             text = "-" if found is None else (f"{found[1]}  " + (
                 "alone" if math.isinf(found[0]) else f"{found[0]:.2f}"))
+            size = min(8.5, 8.5 * CHARACTERS / len(text))
             deep = found is not None and found[0] > 4
-            axis.text(j, i, text, ha="center", va="center", fontsize=8.5,
+            axis.text(j, i, text, ha="center", va="center", fontsize=size,
                       color="white" if deep else style.INK)
     axis.set_xticks(range(len(ERRORS)), [f"{error:.0e}" for error in ERRORS])
     axis.set_yticks(range(len(trades)), [scene_name(trade) for trade in trades])

@@ -58,9 +58,8 @@ class Averages(PackageTest):
 
     def test_wrong_calls(self):
         sim = cayspin.Simulation(SCENE)
-        self.assert_refused(cayspin.CayspinError, "window 0; accepted: at least 1", sim.averages, 1,
-                            0)
-        self.assert_refused(cayspin.CayspinError, "every 0 steps", sim.averages, 0)
+        for part, call in (("window 0; accepted: at least 1", (1, 0)), ("every 0 steps", (0,))):
+            self.assert_refused(cayspin.CayspinError, part, sim.averages, *call)
 
 
 if __name__ == "__main__":

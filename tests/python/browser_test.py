@@ -7,7 +7,8 @@ import time
 
 import matplotlib.image
 import numpy as np
-from view_test import Page, ViewTest
+from script_test import ScriptTest
+from view_test import Page
 
 try:
     from selenium import webdriver
@@ -25,7 +26,7 @@ def has_browser():
     return webdriver and shutil.which("chromium") and shutil.which("chromedriver")
 
 
-class Browser(ViewTest):
+class Browser(ScriptTest):
     @classmethod
     def setUpClass(cls):
         options = webdriver.ChromeOptions()

@@ -5,7 +5,7 @@ import unittest
 
 import cayspin
 import numpy as np
-from package_test import PackageTest
+from package_test import PackageTest, stepped
 
 TABLES = {
     "system": {"kind": "llg", "damping": 0.0},
@@ -56,30 +56,24 @@ class Arrays(PackageTest):
         shape = [7, 4, 3]
         site, k, j, i = np.indices(scene({"shape": shape}).shape)
         self.assertEqual(site.shape, (2, 3, 4, 7))
-        typed = scene({"shape": shape, "occupied": "i != 2 || s != 1 || k != 1",
-                       "frozen": "j == 0"},
-                      system={"kind": "llg", "damping": "0.1 + 0.02*j"},
-                      field={"couplings": {"shells": [0.5]},
-                             "anisotropy": [{"constant": 0.2, "axis": [0, 0, 1]},
-                                            {"constant": "0.1*i + s", "axis": [1, 0, 0]}]})
-        given = scene({"shape": shape, "occupied": (i != 2) | (site != 1) | (k != 1),
-                       "frozen": j == 0},
-                      system={"kind": "llg", "damping": 0.1 + 0.02 * j},
-                      field={"couplings": {"shells": [0.5]},
-                             "anisotropy": [{"constant": 0.2, "axis": [0, 0, 1]},
-                                            {"constant": 0.1 * i + site, "axis": [1, 0, 0]}]})
-        runs = [cayspin.Simulation(one) for one in (typed, given)]
-        for sim in runs:
-            sim.run()
-        np.testing.assert_array_equal(runs[0].spins, runs[1].spins)
-        vacant = (runs[1].spins == 0).all(-1)
+        typed, given = (
+            scene({"shape": shape, "occupied": occupied, "frozen": frozen},
+                  system={"kind": "llg", "damping": damping},
+                  field={"couplings": {"shells": [0.5]},
+                         "anisotropy": [{"constant": 0.2, "axis": [0, 0, 1]},
+                                        {"constant": constant, "axis": [1, 0, 0]}]})
+            for occupied, frozen, damping, constant in (
+                ("i != 2 || s != 1 || k != 1", "j == 0", "0.1 + 0.02*j", "0.1*i + s"),
+                ((i != 2) | (site != 1) | (k != 1), j == 0, 0.1 + 0.02 * j, 0.1 * i + site)))
+        spins = stepped(given, 40)
+        np.testing.assert_array_equal(stepped(typed, 40), spins)
+        vacant = (spins == 0).all(-1)
         np.testing.assert_array_equal(vacant, (i == 2) & (site == 1) & (k == 1))
         part = "an array as system.damping"
         self.assert_refused(cayspin.CayspinError, part, cayspin.advise, given, error=1e-3)
 
     def test_in_place_of_the_keys_of_a_file(self):
-        file = self.folder / "scene.toml"
-        file.write_text(scene().text, encoding="utf-8")
+        file = self.written(scene())
         mask = np.zeros(scene().shape)
         mask[1, 0, 4, 5] = 1
         sim = cayspin.Simulation(cayspin.Scene.from_file(file, lattice={"occupied": mask}))

@@ -9,6 +9,7 @@ import unittest
 
 import cayspin
 import h5py
+import numpy as np
 
 PROGRAM = os.environ["CAYSPIN_PROGRAM"]
 ON_DEVICE = os.environ.get("CAYSPIN_SPACE") == "host_device"
@@ -37,6 +38,18 @@ def scene(**tables):
     return cayspin.Scene(**changed)
 
 
+def random_spins(shape, seed):
+    m = np.random.default_rng(seed).standard_normal((*shape, 3))
+    return m / np.linalg.norm(m, axis=-1, keepdims=True)
+
+
+def stepped(of_scene, steps, precision="double"):
+    """The spins after so many steps."""
+    sim = cayspin.Simulation(of_scene, precision)
+    sim.step(steps)
+    return sim.spins
+
+
 class PackageTest(unittest.TestCase):
     programs = 0  # that ran
 
@@ -45,21 +58,32 @@ class PackageTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def run_program(self, of_scene, *options):
+    def written(self, of_scene, name="scene.toml"):
+        """The file of a scene."""
+        file = self.folder / name
+        file.write_text(of_scene.text, encoding="utf-8")
+        return file
+
+    def run_program(self, of_scene, *options, command="run"):
         """What `cayspin run` writes of a scene: the open file."""
         self.programs += 1
-        text = self.folder / f"program{self.programs}.toml"
+        text = self.written(of_scene, f"program{self.programs}.toml")
         output = text.with_suffix(".h5")
-        text.write_text(of_scene.text, encoding="utf-8")
-        subprocess.run([PROGRAM, "run", text, "--output", output, "--quiet", *options],
+        subprocess.run([PROGRAM, command, text, "--output", output, "--quiet", *options],
                        check=True)
         file = h5py.File(output)
         self.addCleanup(file.close)
         return file
 
     def assert_refused(self, error, part, call, /, *arguments, **options):
-        with self.assertRaises(error) as caught:
-            call(*arguments, **options)
-        message = str(caught.exception)
-        self.assertIn(part, message)
-        self.assertNotIn("\n", message)
+        with self.subTest(part):
+            with self.assertRaises(error) as caught:
+                call(*arguments, **options)
+            message = str(caught.exception)
+            self.assertIn(part, message)
+            self.assertNotIn("\n", message)
+
+    def assert_all_refused(self, error, calls):
+        """Of {part of the message: call}."""
+        for part, call in calls.items():
+            self.assert_refused(error, part, call)

@@ -9,6 +9,7 @@ import sys
 import tempfile
 import unittest
 
+import h5py
 import matplotlib.image
 import numpy as np
 
@@ -37,6 +38,30 @@ class ScriptTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+
+    def replace_spins(self, file, spins, **datasets):
+        with h5py.File(file, "r+") as data:
+            del data["spins"], data["checksum"]
+            data["spins"] = spins
+            for name, values in datasets.items():
+                data[name] = values
+
+    def film(self):
+        """A film of 10 x 8 with +x at the lower left, -x at the lower right, -z above and one
+        empty site; +y in the first frame."""
+        spins = np.zeros((20, 1, 8, 10, 3))
+        spins[..., :4, :5, 0], spins[..., :4, 5:, 0], spins[..., 4:, :, 2] = 1, -1, -1
+        spins[0] = [0, 1, 0]
+        spins[:, 0, 7, 9] = 0
+        file = write(self.folder / "film.h5")
+        self.replace_spins(file, spins)
+        return file, spins
+
+    def text_file(self, name="text.h5"):
+        """No trajectory."""
+        file = self.folder / name
+        file.write_text("not a trajectory\n")
+        return file
 
     def run_script(self, name, *arguments):
         return subprocess.run([sys.executable, "-B", SCRIPTS / name, *map(str, arguments)],

@@ -9,7 +9,7 @@ import warnings
 
 import cayspin
 import numpy as np
-from package_test import PackageTest, scene
+from package_test import PackageTest, scene, stepped
 
 METHODS = {
     "rkmk4": {},
@@ -17,6 +17,10 @@ METHODS = {
     "tsit5": {"method": "tsit5", "tolerance": 1e-5},
     "compensated": {"compensated": True},
     "lagged": {"method": "euler", "isotropy": "finite_difference_backward"},
+}
+SCENES = {name: {"integrator": keys} for name, keys in METHODS.items()} | {
+    "temperature": {"thermal": {"temperature": 0.4, "seed": 5}},
+    "energy control": {"system": {"damping": 0}, "integrator": {"energy_control": True}},
 }
 
 
@@ -35,14 +39,15 @@ class Warnings(PackageTest):
 
 class Bits(PackageTest):
     def test_pieces_are_one_run_and_the_program(self):
-        for name, keys in METHODS.items():
+        for name, tables in SCENES.items():
             for precision in ("double", "single"):
                 with self.subTest(name, precision=precision):
-                    of = scene(integrator=keys)
+                    of = scene(**tables)
                     whole, pieces = (cayspin.Simulation(of, precision) for _ in range(2))
                     whole.step(40)
-                    for _ in range(40):
-                        pieces.step()
+                    for steps in (1, 2, 7, *[1] * 30):
+                        pieces.step(steps)
+                        pieces.energy()
                     ran = self.run_program(of, "--precision", precision)["spins"][-1]
                     self.assertEqual(ran.dtype, {"double": "f8", "single": "f4"}[precision])
                     np.testing.assert_array_equal(whole.spins, ran)
@@ -50,9 +55,9 @@ class Bits(PackageTest):
                     self.assertEqual(pieces.evaluations, whole.evaluations)
 
     def test_saved_and_restarted(self):
-        for name, keys in METHODS.items():
+        for name, tables in SCENES.items():
             with self.subTest(name):
-                of = scene(integrator=keys)
+                of = scene(**tables)
                 whole = cayspin.Simulation(of)
                 whole.step(17)
                 file = self.folder / "run.checkpoint.h5"
@@ -62,41 +67,24 @@ class Bits(PackageTest):
                 for sim in (whole, again):
                     sim.step(23)
                 np.testing.assert_array_equal(again.spins, whole.spins)
-        with self.assertRaisesRegex(cayspin.CayspinError, "missing.h5"):
-            cayspin.Simulation(of, restart="missing.h5")
+        self.assert_refused(cayspin.CayspinError, "missing.h5", cayspin.Simulation, of,
+                            restart="missing.h5")
 
-    def test_noise_of_a_temperature(self):
+    def test_noise_is_that_of_the_seed(self):
         for precision in ("double", "single"):
-            of = scene(thermal={"temperature": 0.4, "seed": 5})
-            whole, pieces = (cayspin.Simulation(of, precision) for _ in range(2))
-            whole.step(40)
-            for steps in (1, 2, 7, 30):
-                pieces.step(steps)
-                pieces.energy()
-            ran = self.run_program(of, "--precision", precision)["spins"][-1]
-            np.testing.assert_array_equal(whole.spins, ran)
-            np.testing.assert_array_equal(pieces.spins, ran)
-            other = cayspin.Simulation(scene(thermal={"temperature": 0.4, "seed": 6}), precision)
-            other.step(40)
-            self.assertGreater(np.abs(other.spins - ran).max(), 0.1)
+            one, other = (stepped(scene(thermal={"temperature": 0.4, "seed": seed}), 40, precision)
+                          for seed in (5, 6))
+            self.assertGreater(np.abs(other - one).max(), 0.1)
 
     def test_run_leaves_a_checkpoint(self):
         of = scene(integrator={"method": "ab2"}, output={"checkpoint_every": "7 steps"})
-        whole, first = cayspin.Simulation(of), cayspin.Simulation(of)
-        whole.step(40)
+        first = cayspin.Simulation(of)
         first.observe(23, lambda sim: True)
         first.run(output=self.folder / "first.h5")
         second = cayspin.Simulation(of, restart=self.folder / "first.h5")
         self.assertEqual(second.steps, 23)
         second.step(17)
-        np.testing.assert_array_equal(second.spins, whole.spins)
-
-    def test_energy_control_in_pieces(self):
-        of = scene(system={"damping": 0}, integrator={"energy_control": True})
-        sim = cayspin.Simulation(of)
-        for _ in range(8):
-            sim.step(5)
-        np.testing.assert_array_equal(sim.spins, self.run_program(of)["spins"][-1])
+        np.testing.assert_array_equal(second.spins, stepped(of, 40))
 
     def test_many_small_steps(self):
         of = scene(lattice={"shape": [5], "spacing": 1, "boundary": "open"},
@@ -174,8 +162,6 @@ class OtherThreads(PackageTest):
         self.assertEqual(counts[-1], (40, whole.time, whole.evaluations))
 
     def test_two_simulations_in_two_threads(self):
-        alone = cayspin.Simulation(scene())
-        alone.step(40)
         sims = [cayspin.Simulation(scene()) for _ in range(2)]
         threads = [threading.Thread(target=lambda sim=sim: [sim.step() for _ in range(40)])
                    for sim in sims]
@@ -184,7 +170,7 @@ class OtherThreads(PackageTest):
         for thread in threads:
             thread.join()
         for sim in sims:
-            np.testing.assert_array_equal(sim.spins, alone.spins)
+            np.testing.assert_array_equal(sim.spins, stepped(scene(), 40))
 
 
 class Interrupt(PackageTest):
@@ -199,12 +185,11 @@ class Interrupt(PackageTest):
             for shape in ([7, 3, 2], [24, 24, 24]):
                 with self.subTest(keys, shape=shape):
                     of = scene(lattice={"shape": shape}, integrator={"steps": None, **keys})
-                    sim, whole = cayspin.Simulation(of), cayspin.Simulation(of)
+                    sim = cayspin.Simulation(of)
                     self.interrupted(lambda: sim.step(10**9))
                     self.assertGreater(sim.steps, 0)
                     sim.step(3)
-                    whole.step(sim.steps)
-                    np.testing.assert_array_equal(sim.spins, whole.spins)
+                    np.testing.assert_array_equal(sim.spins, stepped(of, sim.steps))
 
     def test_file_is_whole(self):
         sim = cayspin.Simulation(scene(integrator={"steps": 10**9}, output={"every": 10**8}))

@@ -1,22 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 """A sweep, read and drawn as a user does: sweep.py FOLDER_OF_SCRIPTS PROGRAM."""
 
-import os
-import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import h5py
 import matplotlib.image
 import numpy as np
+from script_test import BLUE, ScriptTest
 
-SCRIPTS, PROGRAM = map(pathlib.Path, sys.argv[1:3])
-sys.path.insert(0, str(SCRIPTS))
+from cayspin_plots import sweep_figure
+from cayspin_plots.sweep import read_sweep
 
-from cayspin_plots import sweep_figure  # noqa: E402  the folder has to be known before
-from cayspin_plots.sweep import read_sweep  # noqa: E402
+PROGRAM = sys.argv[2]
 
 # m_z = tanh(damping t) from the equator, by the closed form of one damped spin.
 SCENE = """
@@ -37,15 +34,10 @@ end = 1.0
 DAMPING = [0.8, 0.1, 0.4]
 
 
-class Sweep(unittest.TestCase):
-    fonts = tempfile.TemporaryDirectory()  # Matplotlib makes a list of them once
-
-    @classmethod
-    def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.temporary.cleanup)
-        cls.folder = pathlib.Path(cls.temporary.name)
-        (cls.folder / "scene.toml").write_text(SCENE)
+class Sweep(ScriptTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "scene.toml").write_text(SCENE)
 
     def sweep(self, name, *over, status=0):
         file = self.folder / name
@@ -55,25 +47,16 @@ class Sweep(unittest.TestCase):
         self.assertEqual((result.returncode, result.stdout), (status, ""), result.stderr)
         return file
 
-    def plot(self, *arguments):
-        return subprocess.run([sys.executable, "-B", SCRIPTS / "plot_sweep.py",
-                               *map(str, arguments)],
-                              env=os.environ | {"MPLCONFIGDIR": self.fonts.name},
-                              capture_output=True, text=True)
-
-    def assert_drawn(self, file, *options, rows=1):
+    def plot(self, file, *options, rows=1):
+        """The pixels of its picture."""
         png = file.with_suffix(".png")
-        result = self.plot(file, *options)
-        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, f"{png}\n", ""))
-        pixels = matplotlib.image.imread(png)
-        self.assertEqual(pixels.shape[:2], (round(160 * (0.5 + 4.2 * rows)), 1760))
-        return np.round(255 * pixels[..., :3]).astype(int)
+        result = self.run_script("plot_sweep.py", file, *options)
+        self.assert_drawn(png, (11, 0.5 + 4.2 * rows), (), result)
+        return np.round(255 * matplotlib.image.imread(png)[..., :3]).astype(int)
 
-    def assert_refused(self, part, *arguments):
-        result = self.plot(*arguments)
-        self.assertEqual((result.returncode, result.stdout), (1, ""))
-        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
-        self.assertIn(part, result.stderr)
+    def assert_no_picture(self, part, file, *options):
+        self.assert_refused(self.folder / "none.png", file, part,
+                            self.run_script("plot_sweep.py", file, *options))
 
     def test_the_numbers_are_those_of_the_closed_form(self):
         file = self.sweep("one.h5", "system.damping=" + ",".join(map(str, DAMPING)))
@@ -85,8 +68,8 @@ class Sweep(unittest.TestCase):
         with h5py.File(file) as data:
             self.assertEqual(data["runs/0001/spins"].shape, (2, 1, 1, 1, 3))
             self.assertEqual(data["runs/0001"].attrs["complete"], 1)
-        pixels = self.assert_drawn(file)
-        blue = np.all(abs(pixels - (0x1B, 0x5F, 0xA7)) <= 2, axis=-1)
+        pixels = self.plot(file)
+        blue = np.all(abs(pixels - BLUE) <= 2, axis=-1)
         self.assertGreater(blue[:, :880].sum(), 300)
         self.assertGreater(blue[:, 880:].sum(), 300)
 
@@ -100,17 +83,17 @@ class Sweep(unittest.TestCase):
         self.assertTrue(np.isnan(sweep.energy[1, 1]).all())
         self.assertTrue(sweep.done[0, [0, 2]].all())
         np.testing.assert_allclose(sweep.magnetization[0, 2, :, 2], np.tanh(1.0), rtol=1e-8)
-        pixels = self.assert_drawn(file, rows=2)
+        pixels = self.plot(file, rows=2)
         self.assertGreater(np.all(pixels == (0xD9, 0xDC, 0xDF), axis=-1).sum(), 10000)
-        self.assert_drawn(file, "--keys", "field.applied", rows=4)
+        self.plot(file, "--keys", "field.applied", rows=4)
         self.assertEqual(sweep_figure.choose_keys(sweep, ["lattice.shape"]), [2])
-        self.assert_refused("it has no key field", file, "--keys", "field")
+        self.assert_no_picture("it has no key field", file, "--keys", "field")
 
     def test_other_files_are_refused(self):
-        self.assert_refused("there is no such file", self.folder / "none.h5")
+        self.assert_no_picture("there is no such file", self.folder / "none.h5")
         with h5py.File(self.folder / "other.h5", "w"):
             pass
-        self.assert_refused("it has no sweep", self.folder / "other.h5")
+        self.assert_no_picture("it has no sweep", self.folder / "other.h5")
 
 
 if __name__ == "__main__":

@@ -181,7 +181,7 @@ class Controls(Browser):
         self.assertEqual(self.shown(), 1)  # one that is looked at stays
         self.element("stop").click()
         self.wait(lambda: self.element("state").text == "ended early")
-        self.assertFalse(self.element("pause").is_displayed())
+        self.wait(lambda: not self.element("pause").is_displayed())
         self.assertIn("interrupted", self.element("message").text)
 
 

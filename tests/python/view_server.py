@@ -10,8 +10,8 @@ import unittest
 
 import h5py
 import numpy as np
-from script_test import SCRIPTS, write
-from view_test import LONG_SCENE, Page, ViewTest
+from script_test import SCRIPTS, ScriptTest, write
+from view_test import LONG_SCENE, Page
 
 import cayspin_plots  # noqa: F401  puts `texture` on the path
 from texture import checksum
@@ -21,7 +21,7 @@ def state_of(pid):
     return pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
 
 
-class Refusals(ViewTest):
+class Refusals(ScriptTest):
     def setUp(self):
         super().setUp()
         self.page = Page(self, write(self.folder / "chain.h5"))
@@ -90,7 +90,7 @@ class Refusals(ViewTest):
         self.assertEqual(listening, [f"0100007F:{port}"])
 
 
-class Start(ViewTest):
+class Start(ScriptTest):
     def assert_no_page(self, part, *arguments):
         page = Page(self, *arguments)
         page.process.wait(timeout=20)
@@ -101,8 +101,7 @@ class Start(ViewTest):
 
     def test_wrong_files(self):
         self.assert_no_page("none.h5: there is no such file", "none.h5")
-        (self.folder / "text.h5").write_text("not a trajectory\n")
-        self.assert_no_page("text.h5: cannot be read", "text.h5")
+        self.assert_no_page("text.h5: cannot be read", self.text_file())
         h5py.File(self.folder / "other.h5", "w").close()
         self.assert_no_page("no trajectory, it has no spins", "other.h5")
         chain = write(self.folder / "chain.h5")
@@ -135,7 +134,7 @@ class Start(ViewTest):
         self.assertEqual(Page(self, "--port", port, write(self.folder / "a.h5")).port, port)
 
 
-class Data(ViewTest):
+class Data(ScriptTest):
     def test_a_film(self):
         file, spins = self.film()
         page = Page(self, file)
@@ -246,7 +245,7 @@ class Data(ViewTest):
         self.assertEqual(Page(self, file).news()["state"], "ended early")
 
 
-class Steering(ViewTest):
+class Steering(ScriptTest):
     def test_a_run(self):
         (self.folder / "scene.toml").write_text(LONG_SCENE)
         page = Page(self, "scene.toml")

@@ -8,9 +8,7 @@ import subprocess
 import sys
 import urllib.parse
 
-import h5py
-import numpy as np
-from script_test import SCRIPTS, ScriptTest, write
+from script_test import SCRIPTS
 
 PROGRAM = sys.argv[3]
 
@@ -76,25 +74,3 @@ class Page:
         self.process.terminate()
         output, errors = self.process.communicate(timeout=20)
         return self.process.returncode, output, errors
-
-
-class ViewTest(ScriptTest):
-    def replace_spins(self, file, spins, scene=None, **datasets):
-        with h5py.File(file, "r+") as data:
-            del data["spins"], data["checksum"]
-            data["spins"] = spins
-            for name, values in datasets.items():
-                data[name] = values
-            if scene is not None:
-                data.attrs["scene"] = scene
-
-    def film(self):
-        """A film of 10 x 8 with +x at the lower left, -x at the lower right, -z above and one
-        empty site; +y in the first frame."""
-        spins = np.zeros((20, 1, 8, 10, 3))
-        spins[..., :4, :5, 0], spins[..., :4, 5:, 0], spins[..., 4:, :, 2] = 1, -1, -1
-        spins[0] = [0, 1, 0]
-        spins[:, 0, 7, 9] = 0
-        file = write(self.folder / "film.h5")
-        self.replace_spins(file, spins, "[lattice]\nshape = [10, 8]\n")
-        return file, spins

@@ -6,7 +6,6 @@ import subprocess
 import sys
 import time
 import unittest
-import urllib.error
 import urllib.request
 
 import cayspin
@@ -35,7 +34,7 @@ class Views(PackageTest):
         sim.run(output=self.folder / "other.h5")
         view.close()
         view.close()
-        self.assertRaises(urllib.error.URLError, answer, view.address)
+        self.assertRaises(OSError, answer, view.address)
 
     def test_other_files(self):
         self.assert_refused(cayspin.CayspinError, "none.h5: there is no such file", cayspin.view,
@@ -47,10 +46,9 @@ class Views(PackageTest):
 
     def test_a_scene_and_a_kernel_that_is_killed(self):
         output = self.folder / "long.h5"
-        file = self.folder / "scene.toml"
         endless = scene(integrator={"steps": 1000000000}, output={"every": 1000,
                                                                   "file": str(output)})
-        file.write_text(endless.text)
+        file = self.written(endless)
         kernel = subprocess.run(
             [sys.executable, "-B", "-c", "import cayspin, os, sys\n"
              "print(cayspin.view(sys.argv[1]).address, flush=True)\nos.kill(os.getpid(), 9)", file],
@@ -65,7 +63,7 @@ class Views(PackageTest):
             except cayspin.CayspinError as error:
                 self.assertLess(time.monotonic(), end, error)
                 time.sleep(0.1)
-        self.assertRaises(urllib.error.URLError, answer, kernel.stdout.strip())
+        self.assertRaises(OSError, answer, kernel.stdout.strip())
 
     def test_the_package_has_the_page(self):
         folder = pathlib.Path(cayspin.__file__).parent / "view" / "page"

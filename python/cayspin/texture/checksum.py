@@ -38,3 +38,18 @@ def of_frame(step, numbers, spins, sublattices=None):
         of_row = _mixed(of_row, fletcher32(np.asarray(sublattices, "<f8").tobytes()))
     halves = [max(1, total & 0xFFFFFFFF) for total in (of_row, of_spins)]
     return halves[0] << 32 | halves[1]
+
+
+def require_undamaged(file, first, spins):
+    """Compares frames of an open trajectory file, the first of this number, with their checksums,
+    which files of early versions have none of. Raises ValueError."""
+    if "checksum" not in file:
+        return
+    those = slice(first, first + len(spins))
+    stored, steps = file["checksum"][those], file["step"][those]
+    numbers = np.column_stack([file[name][those] for name in (
+        "time", "energy", "norm_defect", "magnetization")])
+    means = file["sublattice_magnetization"][those] if spins.ndim == 6 else [None] * len(spins)
+    for number, (known, *parts) in enumerate(zip(stored, steps, numbers, spins, means), first):
+        if of_frame(*parts) != int(known):
+            raise ValueError(f"frame {number} is damaged: its checksum differs")

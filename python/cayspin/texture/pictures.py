@@ -20,7 +20,7 @@ class _Picture:
 
     def __init__(self, texture, plane, quantity, colors, before, limit):
         self.plane = plane
-        self.spins = plane.cut(texture.spins)[..., plane.axes]
+        self.spins = plane.vectors(texture.spins)
         self.field, self.label, self.painter = None, "", None
         self.has_arrows = before is None and quantity == "spins"
         self.is_charge = quantity == "charge"
@@ -29,7 +29,7 @@ class _Picture:
         if plane.of > 1:
             title.append(f"plane {normal}={plane.number} of {plane.of}")
         if before is not None:
-            change = plane.cut(before)[..., plane.axes].astype(np.float64) - self.spins
+            change = plane.vectors(before).astype(np.float64) - self.spins
             self.field = np.where(there, np.sqrt((change**2).sum(-1)), np.nan)
             self._paint("difference", "|difference of m|", 0, limit)
         elif self.is_charge:
@@ -142,20 +142,14 @@ def _draw_crystal(axes, picture, texture):
     from matplotlib.collections import EllipseCollection
 
     plane = picture.plane
-    if texture.positions is None:
-        raise ValueError("the sites of the crystal have no positions; accepted: a file of a scene")
-    places = plane.cut(texture.positions)[..., plane.axes]
+    flat, apart = plane.sites(texture.positions)
     factor, unit = _length_unit(np.ptp(texture.positions.reshape(-1, 3), axis=0).max(), texture.si)
-    places = (places * factor).reshape(-1, *places.shape[-3:])
-    sites, up, right = places.shape[:3]
-    edges = [places[0, 0, min(1, right - 1)] - places[0, 0, 0],
-             places[0, min(1, up - 1), 0] - places[0, 0, 0]]
-    area = abs(edges[0][0] * edges[1][1] - edges[0][1] * edges[1][0])
-    apart = np.sqrt(area / sites) or np.linalg.norm(edges, axis=1).max() or factor
-    flat = places.reshape(-1, 3)
+    flat, apart = flat * factor, apart * factor
     lowest, highest = flat[:, :2].min(0) - 0.7 * apart, flat[:, :2].max(0) + 0.7 * apart
     axes = _new_axes(*(highest - lowest)) if axes is None else axes
     axes.set(xlim=(lowest[0], highest[0]), ylim=(lowest[1], highest[1]), aspect="equal")
+    up, right = picture.spins.shape[-3:-1]
+    sites = len(flat) // (up * right)
     spins, rgb = picture.spins.reshape(-1, 3), picture.rgb.reshape(-1, 3)
     there = spins.any(-1)
     upwards = np.argsort(flat[:, 2], kind="stable")
@@ -168,7 +162,7 @@ def _draw_crystal(axes, picture, texture):
     if picture.has_arrows:
         steps = _steps(axes, (right, up), highest - lowest)
         cells = np.zeros((sites, up, right), bool)
-        cells[np.ix_(range(sites), _middles(up, steps[1]), _middles(right, steps[0]))] = True
+        cells[:, _middles(up, steps[1])[:, None], _middles(right, steps[0])] = True
         chosen = cells.ravel() & there
         _draw_arrows(axes, flat[chosen, 0], flat[chosen, 1], spins[chosen], rgb[chosen],
                      0.85 * apart * (min(steps) if sites == 1 else 1))
@@ -218,7 +212,7 @@ def _picture(texture, plane, quantity, colors, before, limit):
     if before is not None and (quantity == "charge" or before.shape != texture.spins.shape):
         raise ValueError(f"a difference to spins of shape {before.shape} with quantity "
                          f'"{quantity}"; accepted: {texture.spins.shape} with "spins"')
-    chosen = plane_of(texture, plane)
+    chosen = plane_of(texture.spins.shape, plane)
     up, right = chosen.cut(texture.spins).shape[-3:-1]
     kind = "chain" if min(up, right) == 1 < max(up, right) else "film"
     if texture.positions is not None or texture.spins.ndim == 5:

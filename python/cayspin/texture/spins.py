@@ -43,10 +43,30 @@ class Plane:
         """Components along right, up and the normal."""
         return [self.right, self.up, self.normal]
 
+    def vectors(self, values: np.ndarray) -> np.ndarray:
+        """The same with components along right, up and the normal."""
+        return self.cut(values)[..., self.axes]
 
-def plane_of(texture: Texture, plane: str | None) -> Plane:
-    """The plane of a text such as "z=0", or for None the middle one across the shortest axis."""
-    extents = texture.spins.shape[-2:-5:-1]
+    def sites(self, positions: np.ndarray | None) -> tuple[np.ndarray, float]:
+        """Positions (n, 3) of the sites of a crystal along right, up and the normal, and about how
+        far sites are apart."""
+        if positions is None:
+            raise ValueError("the sites of the crystal have no positions; accepted: a file of a "
+                             "scene")
+        places = self.vectors(positions)
+        places = places.reshape(-1, *places.shape[-3:])
+        sites, up, right = places.shape[:3]
+        edges = [places[0, 0, min(1, right - 1)] - places[0, 0, 0],
+                 places[0, min(1, up - 1), 0] - places[0, 0, 0]]
+        area = abs(edges[0][0] * edges[1][1] - edges[0][1] * edges[1][0])
+        apart = np.sqrt(area / sites) or np.linalg.norm(edges, axis=1).max() or 1.0
+        return places.reshape(-1, 3), apart
+
+
+def plane_of(shape: Sequence[int], plane: str | None) -> Plane:
+    """The plane of a text such as "z=0", or for None the middle one across the shortest axis.
+    `shape`: (..., nz, ny, nx, 3)."""
+    extents = shape[-2:-5:-1]
     if plane is None:
         normal = min((2, 1, 0), key=lambda axis: extents[axis])
         number = extents[normal] // 2

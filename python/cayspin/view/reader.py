@@ -11,7 +11,7 @@ from typing import Any, Callable
 import h5py
 import numpy as np
 
-from ..texture import Texture, checksum, lattice_of, plane_of, require_trajectory
+from ..texture import checksum, lattice_of, plane_of, require_trajectory
 
 OF_FRAMES = ("spins", "time", "step", "energy", "norm_defect", "magnetization")
 OF_SAMPLES = ("time", "energy", "magnetization")
@@ -19,16 +19,9 @@ MOST_ROWS = 20000  # in one answer
 
 
 def _undamaged(file, number):
-    """The spins of a frame that agree with their checksum, which early versions have none of."""
-    spins = file["spins"][number]
-    if "checksum" in file:
-        row = [file[name][number] for name in ("time", "energy", "norm_defect")]
-        means = file["sublattice_magnetization"][number] if spins.ndim == 5 else None
-        found = checksum.of_frame(file["step"][number], [*row, *file["magnetization"][number]],
-                                  spins, means)
-        if found != int(file["checksum"][number]):
-            raise ValueError(f"frame {number} is damaged: its checksum differs; accepted: another")
-    return spins
+    spins = file["spins"][number:number + 1]
+    checksum.require_undamaged(file, number, spins)
+    return spins[0]
 
 
 def _small(spins):
@@ -38,12 +31,6 @@ def _small(spins):
     largest = np.maximum(np.maximum(right, up), normal)
     scale = 127 / np.where(largest > 0, largest, 1)
     return np.rint(spins * scale[..., None]).astype(np.int8)
-
-
-def _cut(values, plane):
-    """Values of a plane, with components along right, up and the normal."""
-    cut = plane_of(Texture(values), plane)
-    return cut.cut(values)[..., cut.axes]
 
 
 def _is_locked(path):
@@ -113,14 +100,12 @@ class Reader:
         return self._read(read)
 
     def _about(self, file):
-        shape, scene = file["spins"].shape[1:-1], file.attrs.get("scene", "")
-        has_positions = "positions" in file
-        if len(shape) == 4 and not has_positions:
-            raise ValueError("the sites of the crystal have no positions; accepted: a file of a "
-                             "scene")
+        shape, scene = file["spins"].shape[1:], file.attrs.get("scene", "")
+        plane, has_positions = plane_of(shape, None), "positions" in file
+        if len(shape) == 5:
+            plane.sites(file.get("positions"))
         spacing, _, si = lattice_of(scene)
-        plane = plane_of(Texture(np.empty((*shape, 0))), None)
-        return {"name": self.path.name, "scene": scene, "extents": shape[:-4:-1], "si": si,
+        return {"name": self.path.name, "scene": scene, "extents": shape[-2:-5:-1], "si": si,
                 "spacing": spacing, "crystal": has_positions, "normal": plane.normal,
                 "plane": plane.number}
 
@@ -131,18 +116,21 @@ class Reader:
             raise ValueError(f"frame {number}; accepted: {accepted}")
         if self._kept[0] != number:
             self._kept = number, self._read(lambda file: _small(_undamaged(file, number)))
-        return _cut(self._kept[1], plane).tobytes()
+        return plane_of(self._kept[1].shape, plane).vectors(self._kept[1]).tobytes()
 
     def positions(self, plane: str) -> bytes:
         """Of the sites of a crystal, 3 floats each, in the order of `frame`."""
-        return self._read(lambda file: _cut(file["positions"][:], plane)).astype("<f4").tobytes()
+        def read(file):
+            positions = file["positions"][:]
+            return plane_of(positions.shape, plane).vectors(positions)
+        return self._read(read).astype("<f4").tobytes()
 
     def path_of(self, place: int, plane: str, first: int) -> bytes:
         """A site's spins from a frame on, 3 floats each; `place` counts the sites of `frame`."""
         def read(file):
             shape = file["spins"].shape[1:-1]
             numbers = np.arange(np.prod(shape)).reshape(*shape, 1)
-            numbers = plane_of(Texture(numbers), plane).cut(numbers).ravel()
+            numbers = plane_of(numbers.shape, plane).cut(numbers).ravel()
             if place >= len(numbers):
                 raise ValueError(f"place {place}; accepted: 0 to {len(numbers) - 1}")
             last = max(first, min(self.frames, first + 500))

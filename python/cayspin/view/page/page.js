@@ -12,9 +12,14 @@ window.onerror = text => say("page", text);
 const spins = new Spins($("spins"));
 let news, about, laidOut, playing = 0, place = null, path = [];
 
+// What changes on the page is drawn anew, which takes time that a run may want.
+function write(id, text) {
+  if ($(id).textContent !== text) $(id).textContent = text;
+}
+
 function say(who, text) {
   problems[who] = text;
-  $("message").textContent = Object.values(problems).filter(Boolean).join(" ");
+  write("message", Object.values(problems).filter(Boolean).join(" "));
 }
 
 async function ask(what, parameters, method = "GET") {
@@ -152,11 +157,11 @@ const readNews = lastOf("news", async () => {
     $("plane").max = about.extents[about.normal] - 1;
     $("plane").value = about.plane;
   }
-  $("frame").max = Math.max(times.length - 1, 0);
-  if (wasLast) $("frame").value = times.length - 1;
-  $("state").textContent = news.run === "paused" ? "paused" : news.state;
+  if (news.times.length) $("frame").max = times.length - 1;
+  if (news.times.length && wasLast) $("frame").value = times.length - 1;
+  write("state", news.run === "paused" ? "paused" : news.state);
   $("pause").hidden = $("stop").hidden = !news.run || news.run === "ended";
-  $("pause").textContent = news.run === "paused" ? "Go on" : "Pause";
+  write("pause", news.run === "paused" ? "Go on" : "Pause");
   say("run", news.message);
   if (news.times.length && wasLast) await show();
   else if (news.rows.length) drawGraphs();
@@ -169,7 +174,7 @@ async function follow() {
     const start = about ? performance.now() : Infinity; // the first look takes long
     if (!document.hidden) await readNews();
     const took = performance.now() - start;
-    if (!news?.more) await sleep(Math.min(Math.max(2000, 50 * took), 10000));
+    if (!news?.more) await sleep(Math.min(Math.max(3000, 50 * took), 10000));
   }
 }
 
