@@ -47,7 +47,8 @@ class Lbfgs {
   Direction find(Exec const& exec, Spins const& spins, Moves const& moves,
                  SearchArrays<Spins> const& search, double torque) {
     using Products = ProductsOfPairs<Real>;
-    int const count = static_cast<int>(pairs_.count());
+    std::size_t const count = pairs_.count();
+    auto const count_of_kernel = static_cast<int>(count);
     auto const m = spins.array(), gradient = search.gradient.array();
     auto const steps = pairs_.steps(), changes = pairs_.changes();
     auto const& [x, y, z] = preconditioner_.couplings();
@@ -55,36 +56,36 @@ class Lbfgs {
     if (count > 0) {
       p = reduce_sites<Sum, Products::count_of_values>(
           exec, "cayspin::minimize::products", spins.layout(),
-          Products{m, gradient, steps, changes, count, {x, y, z}});
+          Products{m, gradient, steps, changes, count_of_kernel, {x, y, z}});
       preconditioner_.follow_curvature(pairs_.product(count - 1), p.back(), step_square_, torque);
     }
 
     OfPairs<double> alpha{}, weights{};
     OfPairs<Real> alpha_of_kernel{};
-    for (int i = count; i-- > 0;) {
+    for (std::size_t i = count; i-- > 0;) {
       double sum = p[i];
-      for (int j = i + 1; j < count; ++j) sum -= alpha[j] * p[Products::of(i, j)];
+      for (std::size_t j = i + 1; j < count; ++j) sum -= alpha[j] * p[Products::of(i, j)];
       alpha[i] = sum / pairs_.product(i);
       alpha_of_kernel[i] = static_cast<Real>(alpha[i]);
     }
     for_each_site<Real>(exec, "cayspin::minimize::without_changes", spins.layout(),
-                        WithoutChanges<Real>{m, gradient, changes, alpha_of_kernel, count,
+                        WithoutChanges<Real>{m, gradient, changes, alpha_of_kernel, count_of_kernel,
                                              changes_left_.output(false)});
 
     double const scale = count > 0 ? scale_of_preconditioner(exec, spins) : 1;
     preconditioner_.apply(exec, changes_left_, preconditioned_);
     if (count > 0) {
       auto const along = products_with_changes(exec, spins);
-      for (int i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < count; ++i) {
         double beta = scale * along[i];
-        for (int j = 0; j < i; ++j) beta += weights[j] * p[Products::of(j, i)];
+        for (std::size_t j = 0; j < i; ++j) beta += weights[j] * p[Products::of(j, i)];
         weights[i] = alpha[i] - beta / pairs_.product(i);
       }
     }
     auto const [slope, square] = reduce_sites<SumsThenMaxima<1>, 2>(
         exec, "cayspin::minimize::direction", spins.layout(),
         DirectionWithSteps<Real>{m, gradient, preconditioned_.array(), moves.array(), steps,
-                                 weights, scale, count, search.direction.array()});
+                                 weights, scale, count_of_kernel, search.direction.array()});
     return {slope, std::sqrt(square)};
   }
 

@@ -28,8 +28,9 @@ template <class Real>
 struct ProductsOfPairs {
   static constexpr int pairs = static_cast<int>(pairs_kept);
   static constexpr int count_of_values = pairs + pairs * (pairs - 1) / 2 + 1;
-  KOKKOS_FORCEINLINE_FUNCTION static constexpr int of(int i, int j) {
-    return pairs + j * (j - 1) / 2 + i;
+  template <class Index>
+  KOKKOS_FORCEINLINE_FUNCTION static constexpr Index of(Index i, Index j) {
+    return static_cast<Index>(pairs) + j * (j - 1) / 2 + i;
   }
 
   SiteArray<Real, 3> spins, gradient;

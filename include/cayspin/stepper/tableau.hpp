@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 // Explicit Butcher tableaux, as data: a new Runge-Kutta method is a struct like these.
@@ -189,19 +188,24 @@ struct FirstSameAsLast : Embedded {
   static constexpr int stages = Embedded::stages + 1;
 
  private:
-  using Row = std::array<double, std::size_t{stages}>;
+  template <class Entry>
+  struct Entries {  // indexed by int, as the arrays of the tableaux are
+    Entry entries[std::size_t{stages}];
+    constexpr Entry const& operator[](int i) const { return entries[i]; }
+  };
+  using Row = Entries<double>;
   static constexpr Row extended(double const (&row)[std::size_t{Embedded::stages}], double last) {
     Row all{};
-    for (int i = 0; i < Embedded::stages; ++i) all[i] = row[i];
-    all[Embedded::stages] = last;
+    for (int i = 0; i < Embedded::stages; ++i) all.entries[i] = row[i];
+    all.entries[Embedded::stages] = last;
     return all;
   }
 
  public:
-  static constexpr std::array<Row, std::size_t{stages}> a = [] {
-    std::array<Row, std::size_t{stages}> all{};
-    for (int i = 0; i < Embedded::stages; ++i) all[i] = extended(Embedded::a[i], 0);
-    all[Embedded::stages] = extended(Embedded::b, 0);
+  static constexpr Entries<Row> a = [] {
+    Entries<Row> all{};
+    for (int i = 0; i < Embedded::stages; ++i) all.entries[i] = extended(Embedded::a[i], 0);
+    all.entries[Embedded::stages] = extended(Embedded::b, 0);
     return all;
   }();
   static constexpr Row b = extended(Embedded::b, 0);
