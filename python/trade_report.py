@@ -157,7 +157,8 @@ def main():
         rows[title] = f"{ratio_row(title, medians)} {spread} |"
         print(rows[title], flush=True)
         trade_figure.draw(trades[title], ROOT / f"docs/images/trade_{name}.png")
-    trade_overview.draw(list(trades.values()), ROOT / "docs/images/trade_overview.png")
+    named = [trade | {"name": HEADINGS.get(title, title)} for title, trade in trades.items()]
+    trade_overview.draw(named, ROOT / "docs/images/trade_overview.png")
     PAGE.write_text(with_tables(PAGE.read_text(), trades, rows))
 
 
