@@ -76,7 +76,7 @@ class RunningScene : public Simulation<Real, Space> {
     return found;
   }
 
-  /// The spins are others now.
+  /// For after the spins were replaced: forgets what was known of the earlier ones.
   void begin_again(io::Scene const& scene) {
     guard_ = Guard(scene, epsilon);
     if (control_) control_->reset();

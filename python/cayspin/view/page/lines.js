@@ -2,11 +2,10 @@
 // Numbers over time, and the path of one spin on its sphere.
 const ink = name => getComputedStyle(document.body).getPropertyValue(`--${name}`);
 
-// Without a graphics card a canvas is cheaper to draw in ordinary memory.
-const penOf = canvas => canvas.getContext("2d", {willReadFrequently: true});
-
 function begin(canvas) {
-  const {clientWidth: width, clientHeight: height} = canvas, pen = penOf(canvas);
+  const {clientWidth: width, clientHeight: height} = canvas;
+  // Without a graphics card a canvas is cheaper to draw in ordinary memory.
+  const pen = canvas.getContext("2d", {willReadFrequently: true});
   [canvas.width, canvas.height] = [width * devicePixelRatio, height * devicePixelRatio];
   pen.scale(devicePixelRatio, devicePixelRatio);
   pen.font = "11px system-ui, sans-serif";
