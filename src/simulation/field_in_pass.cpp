@@ -10,6 +10,7 @@
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/detail/table.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/scalars.hpp>
 

@@ -306,6 +306,8 @@ inline constexpr auto method_list = [] {
           {.word = "projected_rk4",
            .compensated = true,
            .trials = {plain, single_precision, compensated_single_precision}}),
+      baseline<ProjectedRungeKutta, tableau::Damped54>(
+          {.word = "projected_rk54", .trials = {plain}}),
       baseline<ProjectedRungeKutta, tableau::Oscillatory64>(
           {.word = "projected_rk64", .trials = {plain}}),
       baseline<ProjectedRungeKutta, tableau::Oscillatory74>(

@@ -153,10 +153,10 @@ class Tree:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
     def check_members_without_address(self):
-        """Plain ones have another size in device code: see detail/execution.hpp."""
+        """Plain ones have another size in device code: see detail/attributes.hpp."""
         for name in self.includes:
             text = (self.root / name).read_text(encoding="utf-8")
-            if "[[no_unique_address]]" in text and not name.endswith("/detail/execution.hpp"):
+            if "[[no_unique_address]]" in text and not name.endswith("/detail/attributes.hpp"):
                 self.problems.append(f"{name}: write CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS, for nvcc")
 
 

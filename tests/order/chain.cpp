@@ -59,6 +59,10 @@ TEST_P(ChainOrder, SixAndSevenStagesOfOrder4) {
   expect_on_group_chart_and_sphere<tableau::Oscillatory74>(slab.natural());
 }
 
+TEST_P(ChainOrder, FiveStagesOfOrder4) {
+  expect_on_group_chart_and_sphere<tableau::Damped54>(slab.natural());
+}
+
 TEST(ChainsOfStages, TakeLongSteps) {
   // Made for stability along the imaginary axis: up to 0.82 of dt omega per stage, RK4 0.71.
   expect_stable_per_stage<StereographicRungeKutta<Spins, tableau::Oscillatory64>>(
@@ -68,8 +72,15 @@ TEST(ChainsOfStages, TakeLongSteps) {
       {{0, 0.7886}, {0.02, 0.8088}, {0.1, 0.7939}, {0.3, 0.6147}}, 0.0005);
 }
 
-TEST(ChainsOfStages, SatisfyTheConditionsOfOrder4) {
+TEST(Damped54, TakesAsLongStepsOfDecayAsRk4) {
+  using Stepper = ProjectedRungeKutta<Spins, tableau::Damped54>;
+  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1, false) / 5, 0.701, 0.001);
+  EXPECT_NEAR(largest_stable_step<ProjectedRk4<Spins>>(1, 1, false) / 4, 0.696, 0.001);
+}
+
+TEST(Tableaux, SatisfyTheConditionsOfOrder4) {
   expect_conditions<tableau::Classical4>("RK4", 0x1p-50);
+  expect_conditions<tableau::Damped54>("five stages", 0x1p-50);
   expect_conditions<tableau::Oscillatory64>("six stages", 3e-14);
   expect_conditions<tableau::Oscillatory74>("seven stages", 0x1p-50);
 }

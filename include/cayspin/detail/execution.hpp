@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/attributes.hpp>
+
 #include <Kokkos_Core.hpp>
 
 #include <cstddef>
@@ -8,21 +10,6 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
-#include <vector>
-
-#if defined(__GNUC__)
-#define CAYSPIN_DETAIL_NOINLINE [[gnu::noinline]]
-#else
-#define CAYSPIN_DETAIL_NOINLINE
-#endif
-
-// A member without an address of its own. The device code of nvcc 13.0 takes what holds one for
-// larger than its host code does, and finds nothing in its place: there it has an address.
-#if defined(KOKKOS_ENABLE_CUDA)
-#define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS
-#else
-#define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS [[no_unique_address]]
-#endif
 
 namespace cayspin::inline v0_1::detail {
 
@@ -103,17 +90,6 @@ void for_each_task(Exec const& exec, std::string const& label, std::int64_t coun
     run_tasks(exec, label, count, sites, HostTask::of(body));
   else
     Kokkos::parallel_for(label, Kokkos::RangePolicy<Exec, TaskIndex>(exec, 0, count), body);
-}
-
-/// The elements in a memory space; waits.
-template <class MemorySpace, class Element>
-Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
-                                             std::vector<Element> const& elements) {
-  Kokkos::View<Element*, MemorySpace> table(Kokkos::view_alloc(Kokkos::WithoutInitializing, label),
-                                            elements.size());
-  Kokkos::deep_copy(table, Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
-                               elements.data(), elements.size()));
-  return table;
 }
 
 template <class Exec, class MemorySpace>

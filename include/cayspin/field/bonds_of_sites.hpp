@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cayspin/coupling.hpp>
-#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/pack.hpp>
 #include <cayspin/detail/row_layout.hpp>
+#include <cayspin/detail/table.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
 

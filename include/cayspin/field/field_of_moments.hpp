@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/row_fields.hpp>
+#include <cayspin/detail/table.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/local_part.hpp>

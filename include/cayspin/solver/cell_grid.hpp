@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/attributes.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/narrowing_store.hpp>
 #include <cayspin/detail/row_layout.hpp>
@@ -11,17 +12,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-
-// In front of a loop over the cells of a row, none of which is written and read.
-#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__)
-#define CAYSPIN_DETAIL_INDEPENDENT
-#elif defined(__clang__)
-#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#elif defined(__GNUC__)
-#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("GCC ivdep")
-#else
-#define CAYSPIN_DETAIL_INDEPENDENT
-#endif
 
 namespace cayspin::inline v0_1::detail {
 

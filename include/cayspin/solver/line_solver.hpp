@@ -94,6 +94,9 @@ class LineSolver {
       return {static_cast<Real>(value.real()), static_cast<Real>(value.imag())};
   }
 
+  // std::complex divides slowly, for the sake of numbers beyond 1e154.
+  static Number inverse_of(Number const& value) { return std::conj(value) / std::norm(value); }
+
   Kept const& factors_of(double c, Scalar b) {
     for (Kept const& kept : kept_)
       if (kept.c == c && kept.b == b) return kept;
@@ -111,18 +114,18 @@ class LineSolver {
     std::vector<Number> inverse(half), ratio(half), closing(half);
     Number reduced = count_ > 1 ? c + e : c;  // the diagonal, less what elimination takes from it
     for (std::size_t i = 0; i < half; ++i) {
-      inverse[i] = 1.0 / reduced;
+      inverse[i] = inverse_of(reduced);
       ratio[i] = beside * inverse[i];
       reduced = c + 2.0 * e - beside * ratio[i];
     }
     LineFactors<Scalar>& factors = kept.factors;
     Number const last = half > 0 ? ratio.back() : 0;
     if (count_ % 2 == 1) {
-      Number const middle = 1.0 / (reduced - beside * last);
+      Number const middle = inverse_of(reduced - beside * last);
       factors.middle = scalar(middle);
       factors.same = factors.other = scalar(beside * middle);
     } else {
-      Number const other = 1.0 / (1.0 - last * last);
+      Number const other = inverse_of(1.0 - last * last);
       factors.other = scalar(other);
       factors.same = scalar(last * other);
     }

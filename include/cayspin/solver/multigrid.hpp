@@ -51,14 +51,21 @@ class Multigrid {
   /// Where the right side has to be; numbers beside its rows are zero.
   Right const& right() const { return levels_.front().right; }
 
-  /// Does not wait.
+  /// `same_directions`: coarse grids keep theirs of the call before. Does not wait.
   template <class Exec, class OutReal>
-  void solve(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out) const {
-    if (!runs_inside<Exec>(0)) return cycle(exec, LaunchEach<Exec>{exec}, b, out, 0);
-    run_inside(exec, b, out, 0);
+  void solve(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out,
+             bool same_directions = false) const {
+    Shift const shift{b, same_directions};
+    if (!runs_inside<Exec>(0)) return cycle(exec, LaunchEach<Exec>{exec}, shift, out, 0);
+    run_inside(exec, shift, out, 0);
   }
 
  private:
+  struct Shift {
+    Coefficient b;
+    bool same_directions;
+  };
+
   template <class Exec>
   bool runs_inside(std::size_t number) const {
     return is_synchronous<Exec> && sites_worth(levels_[number].layout) <= calling_thread_sites;
@@ -67,20 +74,22 @@ class Multigrid {
   template <class OutReal>
   struct CoarseCycle {
     Multigrid const* multigrid;
-    Coefficient b;
+    Shift shift;
     CellArray<OutReal, 3> out;
     std::size_t number;
 
-    void operator()(std::int64_t) const { multigrid->cycle(Inside{}, RunInside{}, b, out, number); }
+    void operator()(std::int64_t) const {
+      multigrid->cycle(Inside{}, RunInside{}, shift, out, number);
+    }
   };
   struct Inside {};
 
   template <class Exec, class OutReal>
-  void run_inside(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out,
+  void run_inside(Exec const& exec, Shift const& shift, CellArray<OutReal, 3> const& out,
                   std::size_t number) const {
     if constexpr (is_synchronous<Exec>)
       for_each_task(exec, coarse_label_, 1, sites_worth(levels_[number].layout),
-                    CoarseCycle<OutReal>{this, b, out, number});
+                    CoarseCycle<OutReal>{this, shift, out, number});
   }
 
   // What the last relaxation reads, and where coarser grids leave their solution.
@@ -99,9 +108,10 @@ class Multigrid {
   }
 
   template <class Exec, class Launch, class OutReal>
-  void cycle(Exec const& exec, Launch const& launch, Coefficient b,
+  void cycle(Exec const& exec, Launch const& launch, Shift const& shift,
              CellArray<OutReal, 3> const& out, std::size_t number) const {
     Level const& level = levels_[number];
+    Coefficient const b = shift.b;
     if (level.coarsened.empty()) return relax_zero(launch, level, Operation::relaxing(b, 0), out);
     if (level.largest * std::abs(b) <= 1) {
       auto const at = [&](int k) { return relaxation(b, 0, level.largest, 3, k); };
@@ -122,18 +132,20 @@ class Multigrid {
         std::swap(u, free);
       }
       relax<true>(launch, level, at(0), *u, cells_of<3>(*free));
-      restrict_to(launch, level, *free, next.right);
+      restrict_to<right_components>(launch, level, *free, next.right);
+    } else if (shift.same_directions) {
+      restrict_to<3>(launch, level, level.right, next.right);
     } else {
-      restrict_to(launch, level, level.right, next.right);
+      restrict_to<right_components>(launch, level, level.right, next.right);
     }
     auto const correction = cells_of<3>(result_of(next));
     if constexpr (std::is_same_v<Exec, Inside>) {
-      cycle(exec, launch, b, correction, number + 1);
+      cycle(exec, launch, shift, correction, number + 1);
     } else {
       if (runs_inside<Exec>(number + 1))
-        run_inside(exec, b, correction, number + 1);
+        run_inside(exec, shift, correction, number + 1);
       else
-        cycle(exec, launch, b, correction, number + 1);
+        cycle(exec, launch, shift, correction, number + 1);
     }
     interpolate_from(launch, level, result_of(next));
     if constexpr (right_components == 6)
@@ -167,11 +179,10 @@ class Multigrid {
                                                        level.grid.periodic[0]});
   }
 
-  template <class Launch, int Components>
-  void restrict_to(Launch const& launch, Level const& level,
-                   SiteField<Real, Components, MemorySpace> const& fine,
-                   SiteField<Real, Components, MemorySpace> const& coarse) const {
-    SiteField<Real, Components, MemorySpace> const* from = &fine;
+  template <int Components, class Launch>
+  void restrict_to(Launch const& launch, Level const& level, Right const& fine,
+                   Right const& coarse) const {
+    Right const* from = &fine;
     for (std::size_t i = 0; i < level.coarsened.size(); ++i) {
       auto const& to = i < level.between.size() ? level.rights_between[i] : coarse;
       int const axis = level.coarsened[i];

@@ -208,6 +208,7 @@ struct ScaleCells {
 
 /// to = (r x m, m) with m of length 1, or 0 where there is no spin: the right side of
 /// ShiftedSpinWaves whose solution d makes m x d of r. Six components of r are r' + sign m x r''.
+/// `same_directions`: m is there already.
 template <int Components, class FromReal, class Real>
 struct TurnRightSide {
   std::int32_t nx;
@@ -215,6 +216,7 @@ struct TurnRightSide {
   CellArray<FromReal, Components> r;
   CellArray<FromReal, 3> m;
   CellArray<Real, 6> to;
+  bool same_directions;
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(CellPlace const& place) const {
@@ -225,7 +227,7 @@ struct TurnRightSide {
     if constexpr (Components == 6)
       right = multiply_add(as_value<Value>(sign), r.template load<Value>(place, 3), right);
     to.store(right, place, nx);
-    to.store(n, place, nx, 3);
+    if (!same_directions) to.store(n, place, nx, 3);
   }
 };
 

@@ -16,7 +16,7 @@ namespace cayspin::inline v0_1::detail {
 /// Approximates v with v + b K v = r across the directions m, where i of the complex b stands for
 /// m x, and K = -J Lap over the neighbours of a lattice. Where one axis alone couples, by lines,
 /// which are exact for parallel m. Otherwise by one multigrid cycle in single precision, which
-/// follows m and leaves about a tenth.
+/// follows m and leaves a tenth to three tenths.
 template <class Real, class MemorySpace>
 class SpinWaveSolver {
   using Vectors = SiteField<Real, 3, MemorySpace>;
@@ -36,13 +36,16 @@ class SpinWaveSolver {
       multigrid_ = {name, lattice, couplings};
   }
 
-  /// z = (v', v'') with v = v' + m x v''. Always by lines, or never: v' is not written by
-  /// multigrid, and has to be zero. A right side of 6 components is (r', r'') likewise, or
-  /// (r', -r'') where it is `conjugated`. Does not wait.
+  /// Is v' of every solution zero?
+  bool solves_for_turned_alone() const { return !lines_; }
+
+  /// z = (v', v'') with v = v' + m x v''. Always by lines, or never: multigrid leaves v' as it is.
+  /// A right side of 6 components is (r', r'') likewise, or (r', -r'') where it is `conjugated`.
+  /// `same_directions`: near enough to those of the call before, which stay in use. Does not wait.
   template <class Exec, int RightComponents>
   void solve(Exec const& exec, std::complex<double> b,
              SiteField<Real, RightComponents, MemorySpace> const& r, Vectors const& m,
-             Solution const& z, bool conjugated = false) {
+             Solution const& z, bool conjugated = false, bool same_directions = false) {
     if (lines_)
       return lines_->solve(
           exec, 1, Kokkos::complex<Real>(static_cast<Real>(b.real()), static_cast<Real>(b.imag())),
@@ -52,14 +55,14 @@ class SpinWaveSolver {
         turn_label_, right.layout(),
         TurnRightSide<RightComponents, Real, float>{
             right.layout().nx, conjugated ? Real(-1) : Real(1), cells_of<RightComponents>(r),
-            cells_of<3>(m), cells_of<6>(right)});
-    multigrid_.solve(exec, b, cells_of<3>(z, 3));
+            cells_of<3>(m), cells_of<6>(right), same_directions});
+    multigrid_.solve(exec, b, cells_of<3>(z, 3), same_directions);
   }
 
  private:
   std::string turn_label_;
   std::optional<LineSolver<Kokkos::complex<Real>, MemorySpace>> lines_;
-  Multigrid<ShiftedSpinWaves<float>, 5, false, float, MemorySpace> multigrid_;
+  Multigrid<ShiftedSpinWaves<float>, 4, false, float, MemorySpace> multigrid_;
 };
 
 }  // namespace cayspin::inline v0_1::detail

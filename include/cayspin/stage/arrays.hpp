@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/attributes.hpp>
 #include <cayspin/detail/device_site.hpp>
-#include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 #include <cayspin/detail/unrolled.hpp>

@@ -162,7 +162,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
       change = correct<Shifted>(exec, generator, spins, t, dt);
       if (!(change < 1)) return false;  // out of the reach of its solution, or not a number
       if (i == 0) {
-        tolerance = tolerance_of(generator, has_history ? history : nullptr, change);
+        tolerance = tolerance_of(generator, history, change);
         // Only a second correction can tell how fast they converge.
         bool const measures = !has_history || contraction_ > 0.1 || ++unmeasured_ >= 16;
         if (!measures && contraction_ * change <= tolerance) return true;
@@ -186,9 +186,12 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if (solving_.tolerance > 0) return solving_.tolerance;
     if constexpr (requires { generator.is_conservative(); })
       if (generator.is_conservative()) return 4 * epsilon;
-    if (history != nullptr) return history->tolerance(first);
-    // It is the whole rotation.
-    return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, Order + 1)), 16 * epsilon);
+    int const known = history != nullptr ? history->known() : 0;
+    if (known == History::fields) return history->tolerance(first);
+    // `first` is of this order in the rotation: of none known it is the whole.
+    double const of_rotation = 1 + known;
+    return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
+                    16 * epsilon);
   }
 
   template <class Exec>
@@ -212,6 +215,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
     kernel.spins = spins.array();
     kernel.end = end_.array();
     kernel.dt = static_cast<Real>(dt);
+    kernel.turned_alone = solver_.solves_for_turned_alone();
     std::complex<double> const step(dt * exchange_.damping, -dt * exchange_.precession);
     for (std::size_t s = 0; s < count; ++s) {
       auto b = step * (s == 0 ? Gauss::eigenvalue : std::conj(Gauss::eigenvalue));
@@ -223,7 +227,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
           kernel.imaginary = static_cast<Real>(factor.imag());
         }
       }
-      solver_.solve(exec, b, residual_, stage_[0], solution_[s], s == 1);
+      bool const same_directions = s == 1 || corrections_ > 1;
+      solver_.solve(exec, b, residual_, stage_[0], solution_[s], s == 1, same_directions);
       kernel.solution[s] = solution_[s].array();
       kernel.x[s] = x_[s].array();
       kernel.stage[s] = stage_[s].array();

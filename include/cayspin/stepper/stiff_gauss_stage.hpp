@@ -71,6 +71,7 @@ struct CorrectStage {
   SiteArray<Real, 6> solution[std::size_t{Stages}];
   SiteArray<Real, 3> spins, x[std::size_t{Stages}], stage[std::size_t{Stages}], end;
   Real dt, real, imaginary;  // parts of the factor
+  bool turned_alone;         // what is not m x is zero in all solutions
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
@@ -97,6 +98,7 @@ struct CorrectStage {
   KOKKOS_FORCEINLINE_FUNCTION void corrections(Site const& site,
                                                Vec3<Value> (&v)[std::size_t{Stages}]) const {
     auto const loaded = [&](int s, int c) {
+      if (turned_alone && c == 0) return zero<Value>();
       return Vec3<Value>{site.load(solution[s], c), site.load(solution[s], c + 1),
                          site.load(solution[s], c + 2)};
     };

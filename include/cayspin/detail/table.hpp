@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <string>
+#include <vector>
+
+namespace cayspin::inline v0_1::detail {
+
+/// The elements in a memory space; waits.
+template <class MemorySpace, class Element>
+Kokkos::View<Element*, MemorySpace> table_of(std::string const& label,
+                                             std::vector<Element> const& elements) {
+  Kokkos::View<Element*, MemorySpace> table(Kokkos::view_alloc(Kokkos::WithoutInitializing, label),
+                                            elements.size());
+  Kokkos::deep_copy(table, Kokkos::View<Element const*, Kokkos::HostSpace, Kokkos::MemoryUnmanaged>(
+                               elements.data(), elements.size()));
+  return table;
+}
+
+}  // namespace cayspin::inline v0_1::detail
