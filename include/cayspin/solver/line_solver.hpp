@@ -95,7 +95,12 @@ class LineSolver {
   }
 
   // std::complex divides slowly, for the sake of numbers beyond 1e154.
-  static Number inverse_of(Number const& value) { return std::conj(value) / std::norm(value); }
+  static Number inverse_of(Number const& value) {
+    if constexpr (parts == 1)
+      return 1 / value.real();
+    else
+      return std::conj(value) / std::norm(value);
+  }
 
   Kept const& factors_of(double c, Scalar b) {
     for (Kept const& kept : kept_)
