@@ -78,10 +78,8 @@ Try FineSolution::measure(Candidate const& candidate, Steps const& steps, bool g
     measured.error =
         std::max(measured.error,
                  distance(outcome.states[i], at(looks.steps[i], adaptive ? parts : steps.count)));
-  // The many looks at an adaptive run take time of their own.
-  constexpr double long_enough = 0.3;
-  if (adaptive && measured.seconds < long_enough)
-    measured.seconds = pilot_->run(candidate, horizon_, steps, repeats).seconds();
+  // The many looks at an adaptive run take time of their own, on large lattices most of it.
+  if (adaptive) measured.seconds = pilot_->run(candidate, horizon_, steps, repeats).seconds();
   return measured;
 }
 
