@@ -186,10 +186,9 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if (solving_.tolerance > 0) return solving_.tolerance;
     if constexpr (requires { generator.is_conservative(); })
       if (generator.is_conservative()) return 4 * epsilon;
-    int const known = history != nullptr ? history->known() : 0;
-    if (known == History::fields) return history->tolerance(first);
+    if (history != nullptr && history->is_complete()) return history->tolerance(first);
     // `first` is of this order in the rotation: of none known it is the whole.
-    double const of_rotation = 1 + known;
+    double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
     return std::max(std::min(1e-3 * first, 0.01 * std::pow(first, (Order + 1) / of_rotation)),
                     16 * epsilon);
   }
