@@ -45,7 +45,7 @@ Plan make_plan(io::Scene const& scene, Precision precision);
 
 /// Why dt is too large, if it is: above the stable one; or so that a step turns spins by more than
 /// 2 radians, or 3 where a stable dt is known.
-std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units = {});
+std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
 /// The same as a line about the scene, which is thrown as io::SceneError where the scene refuses to
 /// be unstable.
 std::optional<std::string> dt_warning(io::Scene const& scene, Plan const& plan);

@@ -103,6 +103,10 @@ TEST_F(SiScene, MessagesHaveSeconds) {
   auto const outcome = start({"run", scene, "--quiet"});
   EXPECT_EQ(outcome.status, 3);
   EXPECT_TRUE(contains(outcome.errors, "integrator.dt: 5e-12 s is above the stable"));
+  auto const swept = start({"sweep", scene, "--output", "sweep.h5", "--over", "material.alpha=0.3",
+                            "--set", "integrator.refuse_unstable=true"});
+  EXPECT_EQ(swept.status, 2);
+  EXPECT_TRUE(contains(swept.errors, "integrator.dt: 5e-12 s is above the stable"));
   auto const failure = behind_warning(outcome.errors);
   EXPECT_TRUE(contains(failure, "e-12 s: the energy rose by") ||
               contains(failure, "e-11 s: the energy rose by"));

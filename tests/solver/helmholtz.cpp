@@ -42,10 +42,10 @@ class Helmholtz : public ::testing::Test {
   template <class Space = Exec>
   static Numbers solved_about(SpinWaves& solver, Problem const& problem, Numbers const& spins,
                               Number b, Numbers const& right, Space const& exec = {},
-                              bool same_directions = false) {
+                              detail::SpinWaveOptions const& options = {}) {
     typename SpinWaves::Solution z("z", problem.lattice);
     solver.solve(exec, b, field_of<Field>(problem.lattice, right),
-                 field_of<Field>(problem.lattice, spins), z, false, same_directions);
+                 field_of<Field>(problem.lattice, spins), z, options);
     exec.fence();
     auto v = numbers_from(z);
     for (std::size_t i = 0; i < v.size(); i += 3) {
@@ -148,7 +148,7 @@ TYPED_TEST(Helmholtz, DirectionsOfTheCallBeforeMayStayInUse) {
     auto const right = TestFixture::across(spins, random_numbers(problem, false, 2));
     auto const solve = [&](Numbers const& about, bool same_directions) {
       return TestFixture::solved_about(solver, problem, about, {0.1, -0.7}, right, {},
-                                       same_directions);
+                                       {.same_directions = same_directions});
     };
     auto const before = solve(spins, false);
     EXPECT_EQ(solve(spins, true), before);

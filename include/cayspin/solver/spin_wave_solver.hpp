@@ -13,6 +13,11 @@
 
 namespace cayspin::inline v0_1::detail {
 
+struct SpinWaveOptions {
+  bool conjugated = false;       ///< a right side of 6 components is (r', -r'')
+  bool same_directions = false;  ///< near enough to those of the call before, which stay in use
+};
+
 /// Approximates v with v + b K v = r across the directions m, where i of the complex b stands for
 /// m x, and K = -J Lap over the neighbours of a lattice. Where one axis alone couples, by lines,
 /// which are exact for parallel m. Otherwise by one multigrid cycle in single precision, which
@@ -40,23 +45,23 @@ class SpinWaveSolver {
   bool solves_for_turned_alone() const { return !lines_; }
 
   /// z = (v', v'') with v = v' + m x v''. Always by lines, or never: multigrid leaves v' as it is.
-  /// A right side of 6 components is (r', r'') likewise, or (r', -r'') where it is `conjugated`.
-  /// `same_directions`: near enough to those of the call before, which stay in use. Does not wait.
+  /// A right side of 6 components is (r', r'') likewise. Does not wait.
   template <class Exec, int RightComponents>
   void solve(Exec const& exec, std::complex<double> b,
              SiteField<Real, RightComponents, MemorySpace> const& r, Vectors const& m,
-             Solution const& z, bool conjugated = false, bool same_directions = false) {
+             Solution const& z, SpinWaveOptions const& options = {}) {
     if (lines_)
       return lines_->solve(
           exec, 1, Kokkos::complex<Real>(static_cast<Real>(b.real()), static_cast<Real>(b.imag())),
-          r, z, conjugated);
+          r, z, options.conjugated);
     auto const& right = multigrid_.right();
     LaunchEach<Exec>{exec}.template run<Real>(
         turn_label_, right.layout(),
-        TurnRightSide<RightComponents, Real, float>{
-            right.layout().nx, conjugated ? Real(-1) : Real(1), cells_of<RightComponents>(r),
-            cells_of<3>(m), cells_of<6>(right), same_directions});
-    multigrid_.solve(exec, b, cells_of<3>(z, 3), same_directions);
+        TurnRightSide<RightComponents, Real, float>{right.layout().nx,
+                                                    options.conjugated ? Real(-1) : Real(1),
+                                                    cells_of<RightComponents>(r), cells_of<3>(m),
+                                                    cells_of<6>(right), options.same_directions});
+    multigrid_.solve(exec, b, cells_of<3>(z, 3), options.same_directions);
   }
 
  private:

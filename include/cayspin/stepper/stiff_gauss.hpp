@@ -226,8 +226,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
           kernel.imaginary = static_cast<Real>(factor.imag());
         }
       }
-      bool const same_directions = s == 1 || corrections_ > 1;
-      solver_.solve(exec, b, residual_, stage_[0], solution_[s], s == 1, same_directions);
+      solver_.solve(exec, b, residual_, stage_[0], solution_[s],
+                    {.conjugated = s == 1, .same_directions = s == 1 || corrections_ > 1});
       kernel.solution[s] = solution_[s].array();
       kernel.x[s] = x_[s].array();
       kernel.stage[s] = stage_[s].array();

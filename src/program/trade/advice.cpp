@@ -116,7 +116,7 @@ class Search {
 
   bool is_refused(Candidate const& candidate, Steps const& steps) const {
     return pilot_.scene().integrator.refuse_unstable &&
-           dt_warning(pilot_.plan(candidate, horizon_.time, steps));
+           dt_warning(pilot_.plan(candidate, horizon_.time, steps), pilot_.scene().units);
   }
 
   double parts() const { return pilot_.end() / horizon_.time; }
