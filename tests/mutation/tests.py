@@ -62,6 +62,9 @@ PROGRAM = {
     "check": program("Checking*:RefuseUnstable*"),
     "describe": program("Checking*"),
     "watch": program("Watching*"),
+    "relax": program("Relax*"),
+    "new": program("NewScenes*"),
+    "terminal_picture": program("Terminal*:Checking*"),
     "": program("FailingRun*:EarlyEnd*:Running*:Restarting*:OutputFiles*:*WrongCommand*:Terminal*"),
 }
 
