@@ -104,13 +104,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   void take_step(Exec const& exec, Generator const& generator, double asked) {
     memory_.exchange_begin_and_end();
     double const begin_time = end_time_;
-    try {
-      take_own_step(
-          [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, asked)}; });
-    } catch (StepTooSmall const&) {
-      memory_.exchange_begin_and_end();
-      throw;
-    }
+    take_own_step(
+        [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, asked)}; });
     begin_time_ = begin_time;
     detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
   }
