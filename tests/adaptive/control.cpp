@@ -141,6 +141,18 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
 }
 
+TYPED_TEST(EveryAdaptive, AStepOfNoTimeAtRestSaysNothingOfTheNext) {
+  auto spins = make_spins(Lattice::chain(8), [](auto...) { return Vector{0, 0, 1}; });
+  auto const start = copy_to_host(spins);
+  LandauLifshitz const generator(EffectiveField(Exchange(spins.lattice(), 1), Zeeman{{0, 0, 1}}),
+                                 0.1);
+  TypeParam stepper(spins, {.tolerance = 1e-4});
+  for (double const dt : {0.0, 1.0}) {
+    stepper.step(Space(), generator, spins, 0, dt);
+    EXPECT_EQ(copy_to_host(spins), start) << dt;
+  }
+}
+
 TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
   auto spins = chain_start();
   for (StepOptions const& options :

@@ -156,7 +156,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
 
   template <class Exec>
   void deliver(Exec const& exec, Spins const& spins, double t) const {
-    double const share = 1 - (end_time_ - t) / dt_;
+    double const share = end_time_ > t ? 1 - (end_time_ - t) / dt_ : 1;
     if (share >= 1 - 1e-9) {
       Kokkos::deep_copy(exec, spins.allocation(), now_.allocation());
       return;

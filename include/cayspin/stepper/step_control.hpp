@@ -164,7 +164,7 @@ class OwnSteps {
     controller_.reset();
     next_dt_ = controller_.first_dt(rate, asked);
     end_time_ = t;
-    running_ = true;
+    running_ = next_dt_ > 0;  // it is 0 for spins at rest that are asked for no time
   }
 
   /// Takes the next own step: try_step(t, dt) returns a Try. Throws StepTooSmall.
