@@ -219,9 +219,10 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
       Kokkos::deep_copy(exec, spins.allocation(), memory_.end.allocation());
       return;
     }
-    detail::DenseOutput<Tableau, Update, Real> look(memory_.begin.array(), memory_.end.array(),
-                                                    memory_.last.array(), memory_.all_increments(),
-                                                    spins.output(false), dt_, fraction);
+    detail::DenseOutput<Tableau, Update, Real> look{memory_.begin.array(), memory_.end.array(),
+                                                    memory_.last.array(),  memory_.all_increments(),
+                                                    spins.output(false),   static_cast<Real>(dt_)};
+    look.set_fraction(fraction);
     detail::for_each_site<Real>(exec, dense_label_, spins.layout(), look);
     detail::update_ghosts(exec, this->lattice_, spins);
   }
