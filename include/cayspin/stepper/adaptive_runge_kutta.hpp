@@ -27,9 +27,8 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 template <class Spins, class Embedded, class Update, class Isotropy>
-using AdaptiveStages =
-    StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, Update, Isotropy,
-                  AdaptiveMemory<Spins, tableau::FirstSameAsLast<Embedded>, Update>>;
+using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, Update, Isotropy,
+                                     AdaptiveMemory<Spins, tableau::FirstSameAsLast<Embedded>>>;
 }  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
