@@ -114,6 +114,22 @@ TYPED_TEST(EveryAdaptive, NumbersThatAreNotFiniteAreRefusedAndTheSpinsKept) {
   EXPECT_NE(copy_to_host(spins), start);
 }
 
+// What tries of a step have left is not taken for the step before.
+TYPED_TEST(EveryAdaptive, AfterAFailureStepsBeginAnew) {
+  auto spins = chain_start();
+  FieldThatJumps const failing{0.5, {1, 0, 1}, {std::nan(""), 0, 1}};
+  LandauLifshitz const generator(EffectiveField(Exchange(spins.lattice(), 1), failing), 0.1);
+  StepOptions const options{.tolerance = 1e-4, .first_dt = 0.01};
+  TypeParam stepper(spins, options);
+  stepper.step(Space(), generator, spins, 0, 0.001);
+  EXPECT_THROW(stepper.step(Space(), generator, spins, 0.001, 1), StepTooSmall);
+  auto anew = copy_of(spins);
+  TypeParam other(anew, options);
+  stepper.step(Space(), generator, spins, 0.001, 0.001);
+  other.step(Space(), generator, anew, 0.001, 0.001);
+  EXPECT_EQ(copy_to_host(spins), copy_to_host(anew));
+}
+
 TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   Slab const slab = coupled_chain(0.05);
   auto seldom = chain_start(), often = chain_start();
@@ -123,6 +139,18 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   advance(many, slab.natural(), often, 2. / 256, 256);
   EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
+}
+
+TYPED_TEST(EveryAdaptive, AStepOfNoTimeAtRestSaysNothingOfTheNext) {
+  auto spins = make_spins(Lattice::chain(8), [](auto...) { return Vector{0, 0, 1}; });
+  auto const start = copy_to_host(spins);
+  LandauLifshitz const generator(EffectiveField(Exchange(spins.lattice(), 1), Zeeman{{0, 0, 1}}),
+                                 0.1);
+  TypeParam stepper(spins, {.tolerance = 1e-4});
+  for (double const dt : {0.0, 1.0}) {
+    stepper.step(Space(), generator, spins, 0, dt);
+    EXPECT_EQ(copy_to_host(spins), start) << dt;
+  }
 }
 
 TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {

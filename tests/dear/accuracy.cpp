@@ -13,30 +13,28 @@ namespace {
 
 Lattice const block{{5, 4, 3}, {1, 1.1, 0.9}, {Boundary::periodic, Boundary::open, Boundary::open}};
 
+constexpr std::array ladder{20, 40, 80, 160};
+
 template <int Order, class Inner>
-double order_of(std::array<int, 4> const& steps, std::int64_t substeps) {
+void expect_order_of(char const* what, std::int64_t substeps, double order) {
   Spins const start = random_spins(block, 5);
   auto const dear = dear_long_range(start, 0.4);
   auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
   Spins const exact = run<Rkmk4<Spins>>(generator, start, 1e-3, 1000);
-  std::vector<double> dts, errors;
-  for (int const count : steps) {
+  expect_convergence(what, 1, ladder, order, 0.15, [&](int steps, double dt) {
     Spins spins = copy_of(start);
     auto stepper = multirate<Order, Spins, Inner>(spins, dear, substeps);
-    advance(stepper, generator, spins, 1. / count, count);
-    dts.push_back(1. / count);
-    errors.push_back(largest_distance(spins, exact));
-  }
-  return fitted_order(dts, errors);
+    advance(stepper, generator, spins, dt, steps);
+    return largest_distance(spins, exact);
+  });
 }
 
 TEST(Dear, Orders) {
-  std::array<int, 4> const ladder{20, 40, 80, 160};
-  expect_order("order 2", order_of<2, Rkmk4<Spins>>(ladder, 2), 2, 0.15);
-  expect_order("order 3", order_of<3, Rkmk4<Spins>>(ladder, 2), 3, 0.15);
-  expect_order("order 4", order_of<4, Rkmk4<Spins>>(ladder, 2), 4, 0.15);
-  expect_order("order 3, one substep", order_of<3, Rkmk4<Spins>>(ladder, 1), 3, 0.15);
-  expect_order("order 4 between steps of Heun", order_of<4, LieHeun<Spins>>(ladder, 3), 2, 0.15);
+  expect_order_of<2, Rkmk4<Spins>>("order 2", 2, 2);
+  expect_order_of<3, Rkmk4<Spins>>("order 3", 2, 3);
+  expect_order_of<4, Rkmk4<Spins>>("order 4", 2, 4);
+  expect_order_of<3, Rkmk4<Spins>>("order 3, one substep", 1, 3);
+  expect_order_of<4, LieHeun<Spins>>("order 4 between steps of Heun", 3, 2);
   static_assert(decltype(multirate<4, Spins, LieHeun<Spins>>(
                     std::declval<Spins>(), std::declval<DearLongRange<Spins>>(), 1))::order == 2);
 }
@@ -46,8 +44,7 @@ TEST(Dear, UnequalStepsKeepTheOrder) {
   auto const dear = dear_long_range(start, 0.4);
   auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
   Spins const exact = run<Rkmk4<Spins>>(generator, start, 1e-3, 1000);
-  std::vector<double> dts, errors;
-  for (int const pairs : {20, 40, 80, 160}) {
+  expect_convergence("unequal steps", 1, ladder, 3, 0.2, [&](int pairs, double) {
     Spins spins = copy_of(start);
     auto stepper = multirate(spins, dear, 2);
     double t = 0;
@@ -57,10 +54,8 @@ TEST(Dear, UnequalStepsKeepTheOrder) {
       t += dt;
     }
     EXPECT_EQ(stepper.dear_evaluations_done(), 2 * pairs + 1 + 2 * 4);
-    dts.push_back(1. / pairs);
-    errors.push_back(largest_distance(spins, exact));
-  }
-  expect_order("unequal steps", fitted_order(dts, errors), 3, 0.2);
+    return largest_distance(spins, exact);
+  });
 }
 
 /// Without the second pass: the dear field through its last two values alone.

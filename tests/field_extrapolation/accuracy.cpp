@@ -2,6 +2,8 @@
 // Orders, the local solve alone, the estimated error, and the largest stable step.
 #include "rotating_slab.hpp"
 
+#include <array>
+
 using namespace cayspin;
 using namespace cayspin::test;
 
@@ -22,14 +24,10 @@ struct Ladder {
 
   template <class Stepper>
   void expect(char const* what, double order) const {
-    std::vector<double> dts, errors;
-    for (int const steps : {40, 80, 160, 320}) {
-      dts.push_back(end_time / steps);
-      errors.push_back(
-          largest_distance(run<Stepper>(generator, start, dts.back(), steps), reference));
-    }
-    std::printf("    %-30s errors %.2e .. %.2e\n", what, errors.front(), errors.back());
-    expect_order(what, fitted_order(dts, errors), order, 0.15);
+    expect_convergence(
+        what, end_time, std::array{40, 80, 160, 320}, order, 0.15, [&](int steps, double dt) {
+          return largest_distance(run<Stepper>(generator, start, dt, steps), reference);
+        });
   }
 
   RotatingSlab generator;

@@ -2,6 +2,8 @@
 // What is kept from step to step: counts, new starts, jumps of the fields; precisions and spaces.
 #include "rotating_slab.hpp"
 
+#include <array>
+
 #if defined(KOKKOS_ENABLE_SERIAL) && \
     (defined(KOKKOS_ENABLE_OPENMP) || defined(KOKKOS_ENABLE_THREADS))
 #include "../backends/equal_bits.hpp"
@@ -67,8 +69,8 @@ TEST(FieldExtrapolation, UnequalStepsKeepTheOrder) {
   auto const generator = rotating_slab(hard_magnet(block, 0.1), 0.6);
   Spins const start = random_spins(block, 5);
   Spins const exact = run<Rkmk4<Spins>>(generator, start, 5e-4, 1000);
-  std::vector<double> dts, errors;
-  for (int const pairs : {20, 40, 80, 160}) {
+  std::array const ladder{20, 40, 80, 160};  // pairs
+  expect_convergence("unequal steps", 0.5, ladder, 4, 0.2, [&](int pairs, double) {
     Spins spins = copy_of(start);
     Plain stepper(spins);
     double t = 0;
@@ -77,11 +79,9 @@ TEST(FieldExtrapolation, UnequalStepsKeepTheOrder) {
       stepper.step(Space{}, generator, spins, t, dt);
       t += dt;
     }
-    dts.push_back(0.5 / pairs);
-    errors.push_back(largest_distance(spins, exact));
     EXPECT_EQ(stepper.starts(), 1);
-  }
-  expect_order("unequal steps", fitted_order(dts, errors), 4, 0.2);
+    return largest_distance(spins, exact);
+  });
 }
 
 /// The error at the end of a run whose exchange is doubled half way.

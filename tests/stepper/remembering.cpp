@@ -62,6 +62,29 @@ TYPED_TEST(Remembering, StateBefore) {
   EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(slab.natural(), start, 0.05, 2)));
 }
 
+/// Cannot be had after a time.
+struct FieldUntil {
+  static constexpr bool depends_on_time = true;
+  double end;
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    if (t > end) throw std::runtime_error("no field");
+    return Zeeman{{1, 0, 1}};
+  }
+};
+
+TYPED_TEST(Remembering, AFirstStepThatFailedIsTakenAgain) {
+  Spins const start = random_spins(slab.lattice, 5);
+  auto const generator = [](double end) {
+    return LandauLifshitz(EffectiveField(FieldUntil{end}), 0.2);
+  };
+  Spins spins = copy_of(start);
+  TypeParam stepper(spins);
+  EXPECT_THROW(stepper.step(Space{}, generator(0.01), spins, 0, 0.05), std::runtime_error);
+  stepper.step(Space{}, generator(1), spins, 0, 0.05);
+  EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(generator(1), start, 0.05, 1)));
+}
+
 /// n pairs of steps, of one and two thirds of the mean.
 template <class Stepper>
 Spins unequal_steps(Slab const& of, int pairs, double end_time) {

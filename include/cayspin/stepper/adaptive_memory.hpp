@@ -16,7 +16,7 @@ namespace cayspin::inline v0_1::detail {
 
 /// The work memory of an adaptive step, and the state between steps. Passes need one field more,
 /// a sweep its buffers.
-template <class Spins, class Tableau, class Update>
+template <class Spins, class Tableau>
 struct AdaptiveMemory {
   using Real = typename Spins::value_type;
   static constexpr int stages = Tableau::stages;

@@ -27,9 +27,8 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 template <class Spins, class Embedded, class Update, class Isotropy>
-using AdaptiveStages =
-    StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, Update, Isotropy,
-                  AdaptiveMemory<Spins, tableau::FirstSameAsLast<Embedded>, Update>>;
+using AdaptiveStages = StagedStepper<Spins, tableau::FirstSameAsLast<Embedded>, Update, Isotropy,
+                                     AdaptiveMemory<Spins, tableau::FirstSameAsLast<Embedded>>>;
 }  // namespace detail
 
 /// An embedded Runge-Kutta method that chooses its own steps. The error of a step is the largest
@@ -104,13 +103,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   void take_step(Exec const& exec, Generator const& generator, double asked) {
     memory_.exchange_begin_and_end();
     double const begin_time = end_time_;
-    try {
-      take_own_step(
-          [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, asked)}; });
-    } catch (StepTooSmall const&) {
-      memory_.exchange_begin_and_end();
-      throw;
-    }
+    take_own_step(
+        [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, asked)}; });
     begin_time_ = begin_time;
     detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
   }
@@ -224,9 +218,10 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
       Kokkos::deep_copy(exec, spins.allocation(), memory_.end.allocation());
       return;
     }
-    detail::DenseOutput<Tableau, Update, Real> look(memory_.begin.array(), memory_.end.array(),
-                                                    memory_.last.array(), memory_.all_increments(),
-                                                    spins.output(false), dt_, fraction);
+    detail::DenseOutput<Tableau, Update, Real> look{memory_.begin.array(), memory_.end.array(),
+                                                    memory_.last.array(),  memory_.all_increments(),
+                                                    spins.output(false),   static_cast<Real>(dt_)};
+    look.set_fraction(fraction);
     detail::for_each_site<Real>(exec, dense_label_, spins.layout(), look);
     detail::update_ghosts(exec, this->lattice_, spins);
   }

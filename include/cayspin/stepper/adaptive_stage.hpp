@@ -125,18 +125,10 @@ struct DenseOutput {
   StepIncrements<Tableau, Real> increments;
   OutputArray<Real, 3> spins;
   Real dt;
-  Real weights[std::size_t{stages}];
+  Real weights[std::size_t{stages}] = {};
 
-  /// At fraction s of a step of dt.
-  DenseOutput(SiteArray<Real, 3> start_spins, SiteArray<Real, 3> end_spins,
-              SiteArray<Real, 3> last_generators, StepIncrements<Tableau, Real> all,
-              OutputArray<Real, 3> to, double step, double s)
-      : start(start_spins),
-        end(end_spins),
-        last(last_generators),
-        increments(all),
-        spins(to),
-        dt(static_cast<Real>(step)) {
+  /// At fraction s of the step.
+  void set_fraction(double s) {
     for (int j = 0; j < stages; ++j) {
       double weight = 0;
       for (int power = 5; power > 0; --power) weight = s * (weight + Tableau::dense[j][power - 1]);

@@ -125,8 +125,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     else
       detail::for_each_site<Real>(exec, difference_label_, this->residual_.layout(), kernel);
     std::complex<double> const step(dt * this->exchange_.damping, -dt * this->exchange_.precession);
-    this->solver_.solve(exec, 0.5 * step, this->residual_, this->stage_[0], this->solution_[0],
-                        false);
+    this->solver_.solve(exec, 0.5 * step, this->residual_, this->stage_[0], this->solution_[0]);
     double const square = detail::reduce_sites<detail::Maximum, 1>(
         exec, error_label_, this->residual_.layout(),
         detail::LargestSolution<Real>{this->solution_[0].array(), this->stage_[0].array()})[0];
@@ -157,7 +156,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
 
   template <class Exec>
   void deliver(Exec const& exec, Spins const& spins, double t) const {
-    double const share = 1 - (end_time_ - t) / dt_;
+    double const share = end_time_ > t ? 1 - (end_time_ - t) / dt_ : 1;
     if (share >= 1 - 1e-9) {
       Kokkos::deep_copy(exec, spins.allocation(), now_.allocation());
       return;

@@ -128,7 +128,7 @@ class Implicit : public StepperBase<Spins> {
   }
 
  private:
-  // Leaves the solution in next_, and the spins it was computed from in level_.
+  // Leaves the solution in next_.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& map, Spins const& spins) {
     double const epsilon = std::numeric_limits<Real>::epsilon();

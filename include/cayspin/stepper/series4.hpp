@@ -60,18 +60,6 @@ struct PaperSeries : DirectSeries {
   }
 };
 
-/// A stencil without neighbours: a site, with a vector of the kernel as its centre.
-template <class Site>
-struct PointStencil {
-  using value_type = typename Site::value_type;
-  using vector_type = Vec3<value_type>;
-  Site const& at;
-  vector_type const& vector;
-
-  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return vector; }
-  KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return at; }
-};
-
 /// m^(K+1) = d^K/dt^K (A x m)
 template <int K, class Generator, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generator,
@@ -119,7 +107,7 @@ struct LocalSeriesStage {
     Vec3<Value> m[4], source[4];
     m[0] = site.load(start);
     unrolled<4>([&](auto k) {
-      source[k] = generator.series_source(PointStencil<Site>{site, m[k]});
+      source[k] = generator.series_source(SpinAlone<Site>(site, m[k]));
       if constexpr (k < 3) m[k + 1] = next_derivative<k()>(generator, m, source);
     });
     site.store(end_of_series<Series, Isotropy>(generator, site, m, source, Value(dt)), next);

@@ -13,7 +13,8 @@
 namespace cayspin::inline v0_1 {
 
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
-/// The numbers are not finite, or the field is not smooth. The spins are those before the step.
+/// The numbers are not finite, or the field is not smooth. The spins are those before the step,
+/// and the next step begins a run from them.
 class StepTooSmall : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -142,14 +143,20 @@ class OwnSteps {
         region_(region) {}
 
   /// Calls begin() unless a run is under way, and take_step() until one ends at t + dt or later.
+  /// What they throw ends the run: the next step begins at its own t and spins.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
     double const asked = t + dt, slack = 1e-9 * std::abs(dt);
     if (!(dt >= 0) || !(asked <= options_.end + slack))
       throw std::invalid_argument(
           region_ + "::step: dt must not be negative, nor t + dt beyond the end of the options");
-    if (!running_) begin();
-    while (end_time_ < asked - slack) take_step();
+    try {
+      if (!running_) begin();
+      while (end_time_ < asked - slack) take_step();
+    } catch (...) {
+      reset();
+      throw;
+    }
   }
 
   /// From t, for spins that turn by at most `rate` per unit of time.
@@ -157,7 +164,7 @@ class OwnSteps {
     controller_.reset();
     next_dt_ = controller_.first_dt(rate, asked);
     end_time_ = t;
-    running_ = true;
+    running_ = next_dt_ > 0;  // it is 0 for spins at rest that are asked for no time
   }
 
   /// Takes the next own step: try_step(t, dt) returns a Try. Throws StepTooSmall.

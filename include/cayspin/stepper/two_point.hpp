@@ -186,10 +186,10 @@ class TwoPoint : public detail::StepperBase<Spins> {
         last_dt_ = dt;
         return detail::update_ghosts(exec, this->lattice_, spins);
       }
-      last_dt_ = dt;
     }
     stage(exec, generator, predict_label_, method_.predict(), spins, spins, next_, t, dt);
     stage(exec, generator, correct_label_, method_.correct(), spins, next_, spins, t + dt, dt);
+    last_dt_ = dt;
     detail::update_ghosts(exec, this->lattice_, spins);
   }
 
