@@ -104,7 +104,7 @@ cayspin_status cayspin_set_spins(cayspin_simulation* simulation, cayspin_array c
 /* Summed over sites; in reduced units, or in joules for a scene in SI. */
 cayspin_status cayspin_energy(cayspin_simulation* simulation, double* energy);
 
-/* The mean of the spins. */
+/* The mean of the spins, weighted by the moments of sites where the scene has them. */
 cayspin_status cayspin_magnetization(cayspin_simulation* simulation, double magnetization[3]);
 
 /* Ends a simulation; NULL does nothing. */

@@ -131,16 +131,12 @@ cayspin_array array_of(io::HostVectors const& vectors) {
   return array;
 }
 
-void run_to_end(SceneRun& run, RunRecorder* recorder) {
-  std::int64_t const end = run.scene().integrator.steps;
-  Looks looks;
-  looks.period = Guard::period_of(io::sites(run.scene()));
-  looks.until_torque = true;
-  if (recorder != nullptr) recorder->look();
-  while (run.steps() < end) {
-    auto const due = recorder != nullptr ? std::min(recorder->next(), end) : end;
-    bool const at_rest = run.advance(due - run.steps(), looks) == Advanced::at_rest;
-    if (recorder != nullptr) recorder->look(at_rest);
+void run_to_end(SceneRun& run, RunRecorder& recorder) {
+  Looks const looks{.period = Guard::period_of(io::sites(run.scene())), .until_torque = true};
+  recorder.look();
+  while (recorder.next() > run.steps()) {
+    bool const at_rest = run.advance(recorder.next() - run.steps(), looks) == Advanced::at_rest;
+    recorder.look(at_rest);
     if (at_rest) return;
   }
 }
@@ -148,7 +144,7 @@ void run_to_end(SceneRun& run, RunRecorder* recorder) {
 void run_with_file(SceneRun& run, std::filesystem::path const& path, bool overwrite) {
   RunRecorder recorder(run, run.scene().integrator.steps, path, overwrite, CAYSPIN_GIT_COMMIT);
   try {
-    run_to_end(run, &recorder);
+    run_to_end(run, recorder);
   } catch (...) {
     recorder.finish(false);
     throw;

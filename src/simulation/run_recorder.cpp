@@ -49,11 +49,14 @@ void RunRecorder::look(bool last) {
   auto const due = [&](std::int64_t every) {
     return last || now == first_ || now == end_ || now % every == 0;
   };
-  bool const frame = due(output.every), scalars = due(output.scalars_every);
+  bool const frame = due(output.every), scalars = now != sampled_ && due(output.scalars_every);
   if (!frame && !scalars) return;
   // run_.sample() is in the scene's units already.
   auto const values = as_scalars(run_.sample(), {});
-  if (scalars) file_.write_scalars(now, run_.time(), values);
+  if (scalars) {
+    file_.write_scalars(now, run_.time(), values);
+    sampled_ = now;
+  }
   if (frame) {
     auto const spins = run_.spins();
     if (run_.precision() == Precision::double_precision)

@@ -34,7 +34,7 @@ class RunRecorder {
 
  private:
   SceneRun& run_;
-  std::int64_t first_, end_, written_ = -1;
+  std::int64_t first_, end_, written_ = -1, sampled_ = -1;  // steps; the last frame and sample
   std::int64_t evaluations_before_;
   double seconds_before_;
   Kokkos::Timer clock_;

@@ -66,7 +66,8 @@ class SceneRunInSpace final
   // RunObserver
   bool due(Step const& step) const override {
     seen_ = step.number;
-    return step.number >= next_look_ || (*interrupt_)();
+    // After the last step there is nothing to end: a yes would be lost.
+    return step.number >= next_look_ || (!step.last && (*interrupt_)());
   }
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
     if (step.number >= next_look_ && judge(exec, step, spins) == Next::stop) return Next::stop;

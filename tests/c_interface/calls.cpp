@@ -5,28 +5,20 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 using namespace cayspin::test;
 
 namespace {
 
 template <class Real>
-struct Type;
-template <>
-struct Type<float> {
-  static constexpr auto precision = CAYSPIN_SINGLE;
-};
-template <>
-struct Type<double> {
-  static constexpr auto precision = CAYSPIN_DOUBLE;
-};
-
-template <class Real>
 class CInterface : public ::testing::Test {
  protected:
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+  static constexpr cayspin_precision precision =
+      std::is_same_v<Real, double> ? CAYSPIN_DOUBLE : CAYSPIN_SINGLE;
 
-  Simulation simulation = open(scene_text(), Type<Real>::precision);
+  Simulation simulation = open(scene_text(), precision);
 
   static double number(cayspin_array const& spins, int64_t x, int64_t component) {
     return static_cast<Real const*>(
@@ -48,7 +40,7 @@ TYPED_TEST(CInterface, StepsAndLendsSpins) {
 
   cayspin_array spins{};
   ASSERT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK);
-  EXPECT_EQ(spins.precision, Type<TypeParam>::precision);
+  EXPECT_EQ(spins.precision, this->precision);
   int64_t const shape[] = {1, 1, 2, 3};
   for (int axis = 0; axis < 4; ++axis) EXPECT_EQ(spins.shape[axis], shape[axis]);
   double const limit = 1e-10 + 200 * this->epsilon;
@@ -67,7 +59,7 @@ TYPED_TEST(CInterface, TakesSpinsOfItsOwnStrides) {
   ASSERT_EQ(cayspin_step(simulation, 3), CAYSPIN_OK);
   // A component after the other, backwards along x, of any length.
   TypeParam const numbers[] = {0, 3, 2, 0, 0, 4};
-  cayspin_array const mine{&numbers[1], Type<TypeParam>::precision, {1, 1, 2, 3}, {0, 0, -1, 2}};
+  cayspin_array const mine{&numbers[1], this->precision, {1, 1, 2, 3}, {0, 0, -1, 2}};
   ASSERT_EQ(cayspin_set_spins(simulation, &mine), CAYSPIN_OK) << cayspin_last_error();
   cayspin_array spins{};
   ASSERT_EQ(cayspin_borrow_spins(simulation, &spins), CAYSPIN_OK);
@@ -105,7 +97,7 @@ TYPED_TEST(CInterface, RelaxesAndLendsTheField) {
   text.replace(text.find("[0.0, 0.0, 1.0]"), 15, "[1.0, 0.0, 0.0]");
   text.replace(text.find("uniform = [1.0, 0.0, 0.0]"), 25, "uniform = [0.6, 0.3, 0.6]");
   text.erase(text.find("[integrator]"));
-  auto const owner = open(text, Type<TypeParam>::precision);
+  auto const owner = open(text, this->precision);
   auto* const simulation = owner.get();
   double const torque = 1e3 * this->epsilon, limit = 1e4 * this->epsilon;
   auto const expect_rest = [&](double const* applied, double m_x, double h) {

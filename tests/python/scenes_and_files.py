@@ -173,6 +173,15 @@ class Observers(PackageTest):
         self.assertEqual(sim.steps, 9)
         self.assert_refused(cayspin.CayspinError, "at least 1", sim.observe, 0, print)
 
+    def test_an_ended_run_has_one_sample_a_step(self):
+        sim = cayspin.Simulation(scene(output={"every": 20, "scalars_every": 3}))
+        sim.observe(3, lambda s: s.steps == 9)
+        output = self.folder / "ended.h5"
+        sim.run(output=output)
+        with cayspin.open(output) as run:
+            self.assertEqual(list(run.scalars["step"]), [0, 3, 6, 9])
+            self.assertEqual(list(run.step), [0, 9])
+
 
 class Files(PackageTest):
     def test_the_file_of_the_program(self):

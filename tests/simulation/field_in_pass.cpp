@@ -113,10 +113,7 @@ steps = 50
       continue;
     }
     SCOPED_TRACE(method->word);
-    auto const small = end_of(*half, Precision::double_precision);
-    auto const run = SceneRun::open(*whole, {});
-    run->advance(50);
-    auto const large = spins_of(*run);
+    auto const small = end_of(*half), large = end_of(*whole);
     double largest = 0;
     for (std::size_t j = 0; j < 4; ++j)
       for (std::size_t i = 0; i < 19; ++i)

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A run that was stored and goes on is the run without a break: the same bits and counts, by every
-// method.
+// method. One that is asked to end early says so.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/failure.hpp"
 
+#include <array>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <thread>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -66,6 +70,25 @@ TEST(Restarting, BeginsAnewAfterSpinsWereGiven) {
   second->advance(7);
   EXPECT_EQ(spins_of(*second), spins_of(*run));
   fs::remove(file);
+}
+
+// What asks, such as Python's signals, hands a yes over to the run, which then has to end by it.
+TEST(Interrupting, IsNotAskedAfterTheLastStep) {
+  auto scene = llg_scene("0.1", "rkmk4", 40, chain_of_nine);
+  auto const wait = std::make_shared<std::chrono::milliseconds>(0);
+  scene.field.own.uniform = [wait](double) {
+    std::this_thread::sleep_for(*wait);
+    return std::array<double, 3>{0.1, 0.2, 0.3};
+  };
+  auto const run = SceneRun::open(scene, {});
+  run->advance(1);
+  *wait = std::chrono::milliseconds(30);  // not yet where the plan looks at it
+  for (std::int64_t const count : {1, 2, 3}) {
+    bool said_yes = false;
+    auto const ended =
+        run->advance(count, {.period = 1000, .interrupted = [&] { return said_yes = true; }});
+    EXPECT_EQ(ended, said_yes ? Advanced::interrupted : Advanced::whole) << count;
+  }
 }
 
 }  // namespace
