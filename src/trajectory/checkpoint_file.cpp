@@ -244,15 +244,18 @@ class CheckpointReader::Implementation {
   }
 
   void read_all() const {
-    std::vector<std::string> names;
-    auto const keep = [](hid_t, char const* name, H5L_info_t const*, void* to) -> herr_t {
+    std::vector<std::string> fields, numbers;
+    auto const keep = [](hid_t, char const* name, auto const*, void* to) -> herr_t {
       static_cast<std::vector<std::string>*>(to)->emplace_back(name);
       return 0;
     };
-    check(H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names), path_,
+    check(H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &fields), path_,
           "cannot read the checkpoint");
-    for (auto const& name : names)
+    check(H5Aiterate2(numbers_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &numbers),
+          path_, "cannot read the checkpoint");
+    for (auto const& name : fields)
       if (name != "numbers") field(name, {});
+    for (auto const& name : numbers) number(name);
   }
 
   CheckpointHeader const& header() const { return header_; }
