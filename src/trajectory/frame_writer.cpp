@@ -139,7 +139,7 @@ void FrameWriter::add(std::int64_t planes, void const* spins) {
   auto const* const bytes = static_cast<std::byte const*>(spins);
   if (cell_sites_ > 1) return add_by_sites(bytes);
   write_part(0, planes_, planes, spins);
-  checksum_.add(bytes, plane_bytes_ * static_cast<std::size_t>(planes));
+  checksum_.add({bytes, plane_bytes_ * static_cast<std::size_t>(planes)});
   planes_ += planes;
 }
 
@@ -155,7 +155,7 @@ void FrameWriter::add_raw(std::int64_t planes, std::byte* spins) {
   for (std::int64_t begin = 0; begin < planes; begin += of_chunk) {
     auto const of_this = std::min(of_chunk, planes - begin);
     auto* const chunk = spins + plane_bytes_ * static_cast<std::size_t>(begin);
-    checksum_.add(chunk, plane_bytes_ * static_cast<std::size_t>(of_this));
+    checksum_.add({chunk, plane_bytes_ * static_cast<std::size_t>(of_this)});
     write_chunk(0, planes_ + begin, of_this, chunk);
   }
   planes_ += planes;
@@ -182,7 +182,7 @@ void FrameWriter::add_by_sites(std::byte const* spins) {
         else
           mean.add_row(reinterpret_cast<double const*>(part_.data()) + 3 * shape_[0] * row,
                        shape_[0]);
-      checksum_.add(part_.data(), plane_bytes_ * static_cast<std::size_t>(planes));
+      checksum_.add({part_.data(), plane_bytes_ * static_cast<std::size_t>(planes)});
       raw_ ? write_chunk(site, first, planes, part_.data())
            : write_part(site, first, planes, part_.data());
     }
