@@ -85,8 +85,8 @@ TEST_F(TrajectoryTest, AttributeOfSeveralValuesIsRefused) {
     ASSERT_GE(H5Adelete(file.get(), "threads"), 0);
     hsize_t const two = 2;
     DataspaceHandle const space(H5Screate_simple(1, &two, nullptr));
-    AttributeHandle const threads(H5Acreate2(file.get(), "threads", H5T_STD_I64LE, space.get(),
-                                             H5P_DEFAULT, H5P_DEFAULT));
+    AttributeHandle const threads(
+        H5Acreate2(file.get(), "threads", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT));
     std::int64_t const values[] = {1, 1};
     ASSERT_GE(H5Awrite(threads.get(), H5T_NATIVE_INT64, values), 0);
   }
