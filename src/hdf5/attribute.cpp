@@ -63,6 +63,9 @@ void RootAttributes::replace(char const* name, double value) const {
 
 void RootAttributes::read(char const* name, hid_t wanted, void* value) const {
   auto const attribute = open(name);
+  DataspaceHandle const space(check(H5Aget_space(attribute.get()), path_, action("read", name)));
+  if (H5Sget_simple_extent_npoints(space.get()) != 1)
+    throw_failure(path_, action("read", name), "it is not one value");
   check(H5Aread(attribute.get(), wanted, value), path_, action("read", name));
 }
 

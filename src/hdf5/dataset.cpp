@@ -4,6 +4,8 @@
 #include "error.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 #include <string>
 
 namespace cayspin::inline v0_1::io {
@@ -31,6 +33,10 @@ std::pair<DataspaceHandle, DataspaceHandle> select_block(hid_t dataset, Extents 
 }
 
 }  // namespace
+
+hsize_t elements(Extents const& extents) {
+  return std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>{});
+}
 
 DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,
                                      std::span<hsize_t const> chunk, PropertyHandle properties,

@@ -12,6 +12,9 @@ namespace cayspin::inline v0_1::io {
 
 using Extents = std::vector<hsize_t>;
 
+/// How many elements a dataset of these extents has.
+hsize_t elements(Extents const& extents);
+
 /// A chunked dataset whose first extent is 0 and unlimited and whose other extents are `inner`, or
 /// those of the chunk when `inner` is empty. `properties` may bring filters along.
 DatasetHandle create_growing_dataset(hid_t group, char const* name, hid_t type,

@@ -5,9 +5,7 @@
 
 #include <fmt/ranges.h>
 
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace cayspin::inline v0_1::io {
@@ -41,8 +39,7 @@ std::vector<double> RealDataset::read() const { return read(Extents(extents_.siz
 
 std::vector<double> RealDataset::read(Extents const& begin, Extents const& extents) const {
   QuietErrors const quiet;
-  std::vector<double> values(
-      std::accumulate(extents.begin(), extents.end(), hsize_t{1}, std::multiplies<>{}));
+  std::vector<double> values(elements(extents));
   read_block(dataset_.get(), H5T_NATIVE_DOUBLE, begin, extents, values.data(), path_);
   return values;
 }

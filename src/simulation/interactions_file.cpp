@@ -30,8 +30,8 @@ std::span<std::byte const> bytes_of(DemagnetizingTensors const& tensors) {
 std::uint32_t checksum(std::string const& head, DemagnetizingTensors const& tensors) {
   io::Fletcher32 sum;
   auto const even = head + (head.size() % 2 == 0 ? "" : " ");
-  sum.add(std::as_bytes(std::span(even)).data(), even.size());
-  sum.add(bytes_of(tensors).data(), bytes_of(tensors).size());
+  sum.add(std::as_bytes(std::span(even)));
+  sum.add(bytes_of(tensors));
   return sum.value();
 }
 

@@ -12,12 +12,7 @@
 
 #include <cayspin/io/checkpoint.hpp>
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstring>
-#include <functional>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -28,11 +23,6 @@ constexpr char const* format_mark = "checkpoint_format";
 constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;
-
-void add(Fletcher32& sum, std::span<double const> numbers) {
-  auto const bytes = std::as_bytes(numbers);
-  sum.add(bytes.data(), bytes.size());
-}
 
 // Never 0, so that a block of zeros is no field with its checksum.
 std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.value(); }
@@ -73,8 +63,7 @@ class CheckpointWriter::Implementation {
   }
 
   void field(std::string const& name, std::vector<double> const& numbers) {
-    auto const sites =
-        std::accumulate(extents_.begin(), extents_.end(), hsize_t{1}, std::multiplies<>{});
+    auto const sites = elements(extents_);
     if (numbers.empty() || numbers.size() % sites != 0 || numbers.size() / sites > most_components)
       throw std::invalid_argument(path_.string() + ": field " + name + " has " +
                                   std::to_string(numbers.size()) + " numbers for " +
@@ -100,7 +89,7 @@ class CheckpointWriter::Implementation {
     extents[0] = planes;
     write_block(field_.get(), H5T_NATIVE_DOUBLE, {written_planes_, 0, 0, 0}, extents,
                 numbers.data(), path_);
-    add(sum_, numbers);
+    sum_.add(std::as_bytes(std::span(numbers)));
     written_planes_ += planes;
     if (written_planes_ < extents_[0]) return;
     RootAttributes(field_.get(), path_).create("checksum", checksum(sum_));
@@ -119,10 +108,7 @@ class CheckpointWriter::Implementation {
     numbers_.close();
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, action);
     space_.trim();
-    void* descriptor = nullptr;
-    check(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor), path_, action);
-    if (::fsync(*static_cast<int*>(descriptor)) != 0 && errno != EINVAL)
-      throw_failure(path_, action, std::strerror(errno));
+    if (int const error = space_.sync()) throw_failure(path_, action, std::strerror(error));
     check(file_.commit().close(), path_, action);
     if (int const error = sync_folder_of(path_)) throw_failure(path_, action, std::strerror(error));
   }
@@ -138,10 +124,7 @@ class CheckpointWriter::Implementation {
     sum_ = {};
     extents_of_field_ = extents_;
     extents_of_field_.push_back(components);
-    space_.reserve(std::accumulate(extents_of_field_.begin(), extents_of_field_.end(),
-                                   sizeof(double), std::multiplies<>{}) +
-                       checkpoint_overhead_bytes,
-                   path_);
+    space_.reserve(sizeof(double) * elements(extents_of_field_) + checkpoint_overhead_bytes, path_);
     field_ = create_dataset(file_.get(), name.c_str(), stored_, extents_of_field_, path_);
   }
 
@@ -231,11 +214,10 @@ class CheckpointReader::Implementation {
         box, header_.shape, components, at_once, [&](std::int64_t first, std::int64_t planes) {
           auto of_planes = extents;
           of_planes[0] = static_cast<hsize_t>(planes);
-          std::vector<double> numbers(
-              std::accumulate(of_planes.begin(), of_planes.end(), hsize_t{1}, std::multiplies<>{}));
+          std::vector<double> numbers(elements(of_planes));
           read_block(dataset.get(), H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(first), 0, 0, 0},
                      of_planes, numbers.data(), path_);
-          add(sum, numbers);
+          sum.add(std::as_bytes(std::span(numbers)));
           return numbers;
         });
     if (RootAttributes(dataset.get(), path_).read_integer("checksum") != checksum(sum))
@@ -244,15 +226,18 @@ class CheckpointReader::Implementation {
   }
 
   void read_all() const {
-    std::vector<std::string> names;
-    auto const keep = [](hid_t, char const* name, H5L_info_t const*, void* to) -> herr_t {
+    std::vector<std::string> fields, numbers;
+    auto const keep = [](hid_t, char const* name, auto const*, void* to) -> herr_t {
       static_cast<std::vector<std::string>*>(to)->emplace_back(name);
       return 0;
     };
-    check(H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &names), path_,
+    check(H5Literate(file_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &fields), path_,
           "cannot read the checkpoint");
-    for (auto const& name : names)
+    check(H5Aiterate2(numbers_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &numbers),
+          path_, "cannot read the checkpoint");
+    for (auto const& name : fields)
       if (name != "numbers") field(name, {});
+    for (auto const& name : numbers) number(name);
   }
 
   CheckpointHeader const& header() const { return header_; }

@@ -24,7 +24,7 @@ std::uint32_t never_zero(std::uint64_t hash) {
 // 56 bytes: step, time, energy, norm_defect, magnetization.
 std::uint32_t sum_of(Sample const& sample) {
   static_assert(sizeof(Sample) == 56 && std::is_trivially_copyable_v<Sample>);
-  return fletcher32(reinterpret_cast<std::byte const*>(&sample), sizeof sample);
+  return fletcher32(std::as_bytes(std::span(&sample, 1)));
 }
 
 }  // namespace
@@ -32,8 +32,7 @@ std::uint32_t sum_of(Sample const& sample) {
 std::uint32_t row_checksum(Sample const& sample, std::span<Vector const> sublattices) {
   auto const row = mixed(0, sum_of(sample));
   if (sublattices.empty()) return never_zero(row);
-  auto const bytes = std::as_bytes(sublattices);
-  return never_zero(mixed(row, fletcher32(bytes.data(), bytes.size())));
+  return never_zero(mixed(row, fletcher32(std::as_bytes(sublattices))));
 }
 
 std::uint32_t spins_checksum(Sample const& sample, std::uint32_t fletcher32) {
@@ -45,7 +44,7 @@ std::uint64_t text_checksum(TrajectoryHeader const& header) {
   for (auto text : {header.scene_text, header.resolved_scene, header.cayspin_version,
                     header.git_commit, header.kokkos_version, header.space, header.precision}) {
     text.append(2 - text.size() % 2, '\n');
-    hash = mixed(hash, fletcher32(reinterpret_cast<std::byte const*>(text.data()), text.size()));
+    hash = mixed(hash, fletcher32(std::as_bytes(std::span(text))));
   }
   return hash;
 }

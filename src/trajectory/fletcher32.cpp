@@ -14,10 +14,11 @@ std::uint64_t folded(std::uint64_t sum) {
 
 }  // namespace
 
-void Fletcher32::add(std::byte const* data, std::size_t bytes) {
+void Fletcher32::add(std::span<std::byte const> bytes) {
   constexpr std::size_t words_between_folds = std::size_t{1} << 20U;  // the sums stay below 2^57
   std::uint64_t sum = sum_, sum_of_sums = sum_of_sums_;
-  for (std::size_t left = bytes / 2; left > 0;) {
+  auto const* data = bytes.data();
+  for (std::size_t left = bytes.size() / 2; left > 0;) {
     auto const words = std::min(left, words_between_folds);
     left -= words;
     for (auto const* const end = data + 2 * words; data != end; data += 2) {

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace cayspin::inline v0_1::io {
 
 /// The checksum of HDF5's filter fletcher32, of bytes that come in pieces of an even number each.
 class Fletcher32 {
  public:
-  void add(std::byte const* data, std::size_t bytes);
+  void add(std::span<std::byte const> bytes);
 
   std::uint32_t value() const;
 
@@ -17,9 +18,9 @@ class Fletcher32 {
   std::uint64_t sum_ = 0, sum_of_sums_ = 0;
 };
 
-inline std::uint32_t fletcher32(std::byte const* data, std::size_t bytes) {
+inline std::uint32_t fletcher32(std::span<std::byte const> bytes) {
   Fletcher32 sum;
-  sum.add(data, bytes);
+  sum.add(bytes);
   return sum.value();
 }
 

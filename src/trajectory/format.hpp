@@ -37,16 +37,16 @@ inline constexpr std::int64_t most_chunks = 8180;
 
 /// Frames in a chunk, if each of them takes so many bytes of it. Larger chunks begin on pages of
 /// the file: at most a sixteenth of the pages stays empty. If `chunks` would be planned with a
-/// frame in each, more than `most_chunks`, a chunk holds more frames, up to `most_chunk_bytes`.
+/// frame in each, more than `most_chunks`, a chunk holds more frames, as `most_chunk_bytes` allow.
 inline std::int64_t frames_of_chunk(std::uint64_t bytes, std::int64_t chunks) {
   auto const empty_bytes = [&](std::uint64_t frames) {
     return (file_page_bytes - frames * bytes % file_page_bytes) % file_page_bytes;
   };
-  std::uint64_t frames = 1;
-  while (16 * empty_bytes(frames) > frames * bytes + empty_bytes(frames)) ++frames;
   auto const needed = static_cast<std::uint64_t>((chunks + most_chunks - 1) / most_chunks);
   auto const fits = std::max<std::uint64_t>(1, most_chunk_bytes / bytes);
-  return static_cast<std::int64_t>(std::max(frames, std::min(needed, fits)));
+  auto frames = std::clamp<std::uint64_t>(needed, 1, fits);
+  while (16 * empty_bytes(frames) > frames * bytes + empty_bytes(frames)) ++frames;
+  return static_cast<std::int64_t>(frames);
 }
 
 /// Extents (1, z, y, x, 3) of what a chunk of /spins holds of a frame for a lattice (nx, ny, nz):

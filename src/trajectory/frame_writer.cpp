@@ -3,7 +3,6 @@
 
 #include "format.hpp"
 #include "hdf5/error.hpp"
-#include "sublattice.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -17,6 +16,33 @@ namespace cayspin::inline v0_1::io {
 namespace {
 
 using Shape = std::array<std::int64_t, 3>;
+
+// The mean spin of some rows, in double. A zero vector is a site without a spin.
+class SublatticeMean {
+ public:
+  // Adds one row. Rows are added in the order of the file: the same rows give the same bits.
+  template <class Real>
+  void add_row(Real const* spins, std::int64_t sites) {
+    std::array<double, 3> row{};
+    for (std::int64_t site = 0; site < sites; ++site, spins += 3) {
+      if (spins[0] == 0 && spins[1] == 0 && spins[2] == 0) continue;
+      ++count_;
+      for (std::size_t c = 0; c < 3; ++c) row[c] += static_cast<double>(spins[c]);
+    }
+    for (std::size_t c = 0; c < 3; ++c) sum_[c] += row[c];
+  }
+
+  // Zero where no site has a spin.
+  std::array<double, 3> value() const {
+    if (count_ == 0) return {};
+    auto const count = static_cast<double>(count_);
+    return {sum_[0] / count, sum_[1] / count, sum_[2] / count};
+  }
+
+ private:
+  std::array<double, 3> sum_{};
+  std::int64_t count_ = 0;
+};
 
 // What the file has of a site of a cell in one piece.
 Shape block_of(Shape shape, std::int64_t cell_sites) {
@@ -139,7 +165,7 @@ void FrameWriter::add(std::int64_t planes, void const* spins) {
   auto const* const bytes = static_cast<std::byte const*>(spins);
   if (cell_sites_ > 1) return add_by_sites(bytes);
   write_part(0, planes_, planes, spins);
-  checksum_.add(bytes, plane_bytes_ * static_cast<std::size_t>(planes));
+  checksum_.add({bytes, plane_bytes_ * static_cast<std::size_t>(planes)});
   planes_ += planes;
 }
 
@@ -155,7 +181,7 @@ void FrameWriter::add_raw(std::int64_t planes, std::byte* spins) {
   for (std::int64_t begin = 0; begin < planes; begin += of_chunk) {
     auto const of_this = std::min(of_chunk, planes - begin);
     auto* const chunk = spins + plane_bytes_ * static_cast<std::size_t>(begin);
-    checksum_.add(chunk, plane_bytes_ * static_cast<std::size_t>(of_this));
+    checksum_.add({chunk, plane_bytes_ * static_cast<std::size_t>(of_this)});
     write_chunk(0, planes_ + begin, of_this, chunk);
   }
   planes_ += planes;
@@ -182,7 +208,7 @@ void FrameWriter::add_by_sites(std::byte const* spins) {
         else
           mean.add_row(reinterpret_cast<double const*>(part_.data()) + 3 * shape_[0] * row,
                        shape_[0]);
-      checksum_.add(part_.data(), plane_bytes_ * static_cast<std::size_t>(planes));
+      checksum_.add({part_.data(), plane_bytes_ * static_cast<std::size_t>(planes)});
       raw_ ? write_chunk(site, first, planes, part_.data())
            : write_part(site, first, planes, part_.data());
     }

@@ -25,9 +25,12 @@ bool passes_size_limit(std::uint64_t size) {
 int take_room(int descriptor, std::uint64_t begin, std::uint64_t end) {
   if (passes_size_limit(end)) return EFBIG;
   auto const bytes = static_cast<off_t>(end - begin);
-  if (::fallocate(descriptor, 0, static_cast<off_t>(begin), bytes) == 0) return 0;
-  bool const full = errno == ENOSPC || errno == EFBIG || errno == EDQUOT;
-  return full ? errno : 0;
+  while (::fallocate(descriptor, 0, static_cast<off_t>(begin), bytes) != 0) {
+    if (errno == EINTR) continue;
+    bool const full = errno == ENOSPC || errno == EFBIG || errno == EDQUOT;
+    return full ? errno : 0;
+  }
+  return 0;
 }
 
 OpenFileSpace::OpenFileSpace(hid_t file, std::filesystem::path const& path) : file_(file) {

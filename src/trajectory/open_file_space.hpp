@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "files/durable.hpp"
 #include "hdf5/handle.hpp"
 
 #include <cstdint>
@@ -25,6 +26,9 @@ class OpenFileSpace {
 
   /// Gives back what was reserved and not used. To be called on a flushed file.
   void trim() const;
+
+  /// Waits until a flushed file is on the disk: 0, or the system's error number.
+  int sync() const { return sync_file(descriptor_); }
 
  private:
   std::uint64_t used() const;

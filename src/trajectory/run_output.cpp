@@ -81,7 +81,7 @@ class RunOutput::Implementation {
 
   ~Implementation() {
     try {
-      hand_over_samples();
+      if (!ended_) end({}, false);
     } catch (std::exception const&) {  // of the writer, which no call is left to throw
     }
   }

@@ -42,11 +42,7 @@ class ScalarSeries {
   /// Of these samples, those that can be read. A killed process may have left up to `most_torn`
   /// that cannot: what it was adding at that moment.
   std::int64_t readable(std::int64_t most_torn, std::filesystem::path const& path) const;
-  /// Of these samples, the first `count`, or those from `begin` to `end`. Throws where one is not
-  /// as it was written.
-  std::vector<Sample> read(std::int64_t count, std::filesystem::path const& path) const {
-    return read(0, count, path);
-  }
+  /// Of these samples, those from `begin` to `end`. Throws where one is not as it was written.
   std::vector<Sample> read(std::int64_t begin, std::int64_t end,
                            std::filesystem::path const& path) const;
 

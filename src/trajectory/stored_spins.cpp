@@ -37,10 +37,7 @@ hsize_t whole_frames(RealDataset const& spins, std::optional<ScalarSeries> const
 
 // As they stand in the file: what was a float is one again.
 void add(Fletcher32& sum, std::vector<double> const& spins, bool single) {
-  auto const add_bytes = [&](auto const& stored) {
-    auto const bytes = std::as_bytes(std::span(stored));
-    sum.add(bytes.data(), bytes.size());
-  };
+  auto const add_bytes = [&](auto const& stored) { sum.add(std::as_bytes(std::span(stored))); };
   single ? add_bytes(std::vector<float>(spins.begin(), spins.end())) : add_bytes(spins);
 }
 

@@ -20,36 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Writer {
- public:
-  Writer(hid_t file, fs::path const& path) : file_(file), path_(path) {}
-
-  void texts(char const* name, Extents const& extents, std::vector<std::string> const& values) {
-    std::vector<char const*> pointers;
-    for (auto const& value : values) pointers.push_back(value.c_str());
-    auto const type = text_type();
-    write_dataset(file_, name, type.get(), type.get(), extents, pointers.data(), path_);
-  }
-
-  void numbers(hid_t group, char const* name, std::vector<double> const& values) {
-    write_dataset(group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {values.size()}, values.data(),
-                  path_);
-  }
-
-  /// One number, or three, of each run.
-  template <class Member>
-  void column(char const* name, std::vector<SweptRun> const& runs, Member const& member) {
-    using Stored = Column<MemberValue<SweptRun, Member>>;
-    write_dataset(file_, name, Stored::type(), Stored::memory_type(), Stored::extents(runs.size()),
-                  values_of(runs, member).data(), path_);
-  }
-
-  GroupHandle group(char const* name) { return create_group(file_, name, path_); }
-
- private:
-  hid_t file_;
-  fs::path const& path_;
-};
+void write_texts(hid_t file, char const* name, Extents const& extents,
+                 std::vector<std::string> const& values, fs::path const& path) {
+  std::vector<char const*> pointers;
+  for (auto const& value : values) pointers.push_back(value.c_str());
+  auto const type = text_type();
+  write_dataset(file, name, type.get(), type.get(), extents, pointers.data(), path);
+}
 
 void write_attributes(hid_t file, SweepInfo const& sweep, fs::path const& path) {
   RootAttributes const attributes(file, path);
@@ -62,7 +39,7 @@ void write_attributes(hid_t file, SweepInfo const& sweep, fs::path const& path) 
   attributes.create("complete", std::int64_t{sweep.complete ? 1 : 0});
 }
 
-void write_grid(Writer& writer, SweepHeader const& header) {
+void write_grid(hid_t file, SweepHeader const& header, fs::path const& path) {
   std::vector<std::string> names, values;
   for (auto const& key : header.keys) names.push_back(key.key);
   for (std::int64_t run = 0; run < header.runs(); ++run) {
@@ -70,24 +47,28 @@ void write_grid(Writer& writer, SweepHeader const& header) {
     for (std::size_t key = 0; key < header.keys.size(); ++key)
       values.push_back(header.keys[key].values[chosen[key]]);
   }
-  writer.texts("keys", {names.size()}, names);
-  writer.texts("values", {static_cast<hsize_t>(header.runs()), names.size()}, values);
-  auto const parameters = writer.group("parameters");
+  write_texts(file, "keys", {names.size()}, names, path);
+  write_texts(file, "values", {static_cast<hsize_t>(header.runs()), names.size()}, values, path);
+  auto const parameters = create_group(file, "parameters", path);
   for (std::size_t key = 0; key < header.keys.size(); ++key) {
     auto const& numbers = header.keys[key].numbers;
     if (numbers.empty()) continue;
     std::vector<double> of_runs;
     for (std::int64_t run = 0; run < header.runs(); ++run)
       of_runs.push_back(numbers[header.indices(run)[key]]);
-    writer.numbers(parameters.get(), names[key].c_str(), of_runs);
+    write_dataset(parameters.get(), names[key].c_str(), H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                  {of_runs.size()}, of_runs.data(), path);
   }
 }
 
-void write_results(Writer& writer, std::vector<SweptRun> const& runs) {
-  std::vector<std::string> messages;
-  for (auto const& run : runs) messages.push_back(run.message);
-  writer.texts("message", {messages.size()}, messages);
-  for_each_result([&](char const* name, auto const& member) { writer.column(name, runs, member); });
+void write_results(hid_t file, std::vector<SweptRun> const& runs, fs::path const& path) {
+  auto const messages = values_of(runs, [](auto& run) -> auto& { return run.message; });
+  write_texts(file, "message", {messages.size()}, messages, path);
+  for_each_result([&](char const* name, auto const& member) {
+    using Stored = Column<MemberValue<SweptRun, decltype(member)>>;
+    write_dataset(file, name, Stored::type(), Stored::memory_type(), Stored::extents(runs.size()),
+                  values_of(runs, member).data(), path);
+  });
 }
 
 void require_whole(SweepInfo const& sweep) {
@@ -174,10 +155,9 @@ bool write_sweep(fs::path const& path, SweepInfo const& sweep, std::function<boo
   OpenFileSpace space(file.get(), path);
   space.reserve(room_for(path, sweep), path);
   write_attributes(file.get(), sweep, path);
-  Writer writer(file.get(), path);
-  write_grid(writer, sweep.header);
-  write_results(writer, sweep.runs);
-  auto runs = writer.group("runs");
+  write_grid(file.get(), sweep.header, path);
+  write_results(file.get(), sweep.runs, path);
+  auto runs = create_group(file.get(), "runs", path);
   for (std::size_t run = 0; run < sweep.runs.size(); ++run) {
     if (!sweep.runs[run].has_file) continue;
     if (go_on && !go_on()) return false;

@@ -18,80 +18,57 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Reader {
- public:
-  Reader(hid_t file, fs::path const& path) : file_(file), path_(path) {}
+DatasetHandle open_of_extents(hid_t group, char const* name, Extents const& extents,
+                              fs::path const& path) {
+  auto dataset = open_dataset(group, name, path);
+  if (dataset_extents(dataset.get(), path) != extents)
+    throw_failure(path, std::string("cannot read dataset ") + name,
+                  "it does not have a value for each run");
+  return dataset;
+}
 
-  std::vector<std::string> texts(char const* name, Extents const& extents) const {
-    auto const dataset = open(file_, name, extents);
-    auto const type = text_type();
-    std::vector<char*> pointers(count(extents));
-    read(dataset.get(), type.get(), pointers.data(), name);
-    std::vector<std::string> values;
-    for (auto* const pointer : pointers) {
-      values.emplace_back(pointer ? pointer : "");
-      H5free_memory(pointer);
-    }
-    return values;
+void read_whole(hid_t dataset, hid_t type, char const* name, void* values, fs::path const& path) {
+  check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path,
+        std::string("cannot read dataset ") + name);
+}
+
+std::vector<std::string> read_texts(hid_t file, char const* name, Extents const& extents,
+                                    fs::path const& path) {
+  auto const dataset = open_of_extents(file, name, extents, path);
+  auto const type = text_type();
+  std::vector<char*> pointers(elements(extents));
+  read_whole(dataset.get(), type.get(), name, pointers.data(), path);
+  std::vector<std::string> values;
+  for (auto* const pointer : pointers) {
+    values.emplace_back(pointer ? pointer : "");
+    H5free_memory(pointer);
   }
+  return values;
+}
 
-  /// One number, or three, of each run.
-  template <class Value>
-  std::vector<Value> column(char const* name, std::size_t runs) const {
-    return column<Value>(file_, name, runs);
-  }
-
-  template <class Value>
-  std::vector<Value> column(hid_t group, char const* name, std::size_t runs) const {
-    auto const dataset = open(group, name, Column<Value>::extents(runs));
-    std::vector<Value> values(runs);
-    read(dataset.get(), Column<Value>::memory_type(), values.data(), name);
-    return values;
-  }
-
-  Extents extents(char const* name) const {
-    return dataset_extents(open_dataset(file_, name, path_).get(), path_);
-  }
-
-  GroupHandle group(char const* name) const { return open_group(file_, name, path_); }
-
- private:
-  static std::size_t count(Extents const& extents) {
-    std::size_t count = 1;
-    for (auto const extent : extents) count *= extent;
-    return count;
-  }
-
-  DatasetHandle open(hid_t group, char const* name, Extents const& extents) const {
-    auto dataset = open_dataset(group, name, path_);
-    if (dataset_extents(dataset.get(), path_) != extents)
-      throw_failure(path_, std::string("cannot read dataset ") + name,
-                    "it does not have a value for each run");
-    return dataset;
-  }
-
-  void read(hid_t dataset, hid_t type, void* values, char const* name) const {
-    check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path_,
-          std::string("cannot read dataset ") + name);
-  }
-
-  hid_t file_;
-  fs::path const& path_;
-};
+/// One number, or three, of each run.
+template <class Value>
+std::vector<Value> read_column(hid_t group, char const* name, std::size_t runs,
+                               fs::path const& path) {
+  auto const dataset = open_of_extents(group, name, Column<Value>::extents(runs), path);
+  std::vector<Value> values(runs);
+  read_whole(dataset.get(), Column<Value>::memory_type(), name, values.data(), path);
+  return values;
+}
 
 // The values of each key, in the order in which they come.
-std::vector<SweptKey> read_keys(Reader const& reader, fs::path const& path) {
-  auto const extents = reader.extents("values");
+std::vector<SweptKey> read_keys(hid_t file, fs::path const& path) {
+  auto const extents = dataset_extents(open_dataset(file, "values", path).get(), path);
   if (extents.size() != 2) throw_failure(path, "cannot read dataset values", "its rank is not 2");
   std::size_t const runs = extents[0], count = extents[1];
-  auto const names = reader.texts("keys", {count});
-  auto const values = reader.texts("values", extents);
-  auto const parameters = reader.group("parameters");
+  auto const names = read_texts(file, "keys", {count}, path);
+  auto const values = read_texts(file, "values", extents, path);
+  auto const parameters = open_group(file, "parameters", path);
   std::vector<SweptKey> keys;
   for (std::size_t k = 0; k < count; ++k) {
     std::optional<std::vector<double>> numbers;
     if (H5Lexists(parameters.get(), names[k].c_str(), H5P_DEFAULT) > 0)
-      numbers = reader.column<double>(parameters.get(), names[k].c_str(), runs);
+      numbers = read_column<double>(parameters.get(), names[k].c_str(), runs, path);
     auto& key = keys.emplace_back(SweptKey{names[k], {}, {}});
     for (std::size_t run = 0; run < runs; ++run) {
       auto const& value = values[run * count + k];
@@ -103,14 +80,15 @@ std::vector<SweptKey> read_keys(Reader const& reader, fs::path const& path) {
   return keys;
 }
 
-std::vector<SweptRun> read_results(Reader const& reader, std::size_t count) {
+std::vector<SweptRun> read_results(hid_t file, std::size_t count, fs::path const& path) {
   std::vector<SweptRun> runs(count);
-  auto const messages = reader.texts("message", {count});
+  auto const messages = read_texts(file, "message", {count}, path);
   for_each_result([&](char const* name, auto const& member) {
-    auto const values = reader.column<MemberValue<SweptRun, decltype(member)>>(name, count);
+    using Value = MemberValue<SweptRun, decltype(member)>;
+    auto const values = read_column<Value>(file, name, count, path);
     for (std::size_t i = 0; i < count; ++i) member(runs[i]) = values[i];
   });
-  auto const files = reader.group("runs");
+  auto const files = open_group(file, "runs", path);
   for (std::size_t i = 0; i < count; ++i) {
     auto const name = swept_run_name(static_cast<std::int64_t>(i));
     runs[i].message = messages[i];
@@ -130,27 +108,21 @@ bool has_external_link(hid_t runs) {
   return found;
 }
 
-bool has_sweep_format(fs::path const& path) {
-  auto const file = open_file(path);
-  return RootAttributes(file.get(), path).has(sweep_format);
-}
-
 SweepInfo read_whole_sweep(fs::path const& path) {
   auto const file = open_file(path);
   RootAttributes const attributes(file.get(), path);
   if (!attributes.has(sweep_format)) throw_failure(path, "cannot read the sweep", "it holds none");
   attributes.require_version(sweep_format, sweep_format_version, "cannot read the sweep");
-  Reader const reader(file.get(), path);
   SweepInfo sweep;
   sweep.header.scene_text = attributes.read_text("scene");
-  sweep.header.keys = read_keys(reader, path);
+  sweep.header.keys = read_keys(file.get(), path);
   sweep.header.precision = attributes.read_text("precision");
   sweep.header.space = attributes.read_text("space");
   sweep.header.cayspin_version = attributes.read_text("cayspin_version");
   sweep.header.git_commit = attributes.read_text("git_commit");
   sweep.complete = attributes.read_integer("complete") == 1;
-  sweep.runs = read_results(reader, static_cast<std::size_t>(sweep.header.runs()));
-  sweep.one_file = sweep.complete && !has_external_link(reader.group("runs").get());
+  sweep.runs = read_results(file.get(), static_cast<std::size_t>(sweep.header.runs()), path);
+  sweep.one_file = sweep.complete && !has_external_link(open_group(file.get(), "runs", path).get());
   return sweep;
 }
 
@@ -158,7 +130,10 @@ SweepInfo read_whole_sweep(fs::path const& path) {
 
 bool is_sweep(fs::path const& path) {
   QuietErrors const quiet;
-  return read_guarded(path, [&] { return has_sweep_format(path); });
+  return read_guarded(path, [&] {
+    auto const file = open_file(path);
+    return RootAttributes(file.get(), path).has(sweep_format);
+  });
 }
 
 SweepInfo read_sweep(fs::path const& path) {

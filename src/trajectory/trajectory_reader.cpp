@@ -61,6 +61,23 @@ void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const&
   header.shape[2] *= header.cell_sites;
 }
 
+TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
+  auto const file = open_file(path);
+  auto info = read_header(file.get(), path);
+  auto const series = ScalarSeries::open(file.get(), path, info.header.cell_sites);
+  info.frames = std::min(info.frames, series.readable(info.complete ? 0 : 1, path));
+  for (auto const& sample : series.read(0, info.frames, path)) {
+    info.frame_steps.push_back(sample.step);
+    info.frame_times.push_back(sample.time);
+    info.frame_scalars.push_back(sample.scalars);
+  }
+  info.frame_sublattices = series.read_sublattices(0, info.frames, path);
+  auto const scalars = open_group(file.get(), "scalars", path);
+  info.samples =
+      ScalarSeries::open(scalars.get(), path).readable(info.complete ? 0 : most_pending, path);
+  return info;
+}
+
 }  // namespace
 
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
@@ -89,27 +106,6 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   read_extents(file, info, path);
   return info;
 }
-
-namespace {
-
-TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
-  auto const file = open_file(path);
-  auto info = read_header(file.get(), path);
-  auto const series = ScalarSeries::open(file.get(), path, info.header.cell_sites);
-  info.frames = std::min(info.frames, series.readable(info.complete ? 0 : 1, path));
-  for (auto const& sample : series.read(info.frames, path)) {
-    info.frame_steps.push_back(sample.step);
-    info.frame_times.push_back(sample.time);
-    info.frame_scalars.push_back(sample.scalars);
-  }
-  info.frame_sublattices = series.read_sublattices(0, info.frames, path);
-  auto const scalars = open_group(file.get(), "scalars", path);
-  info.samples =
-      ScalarSeries::open(scalars.get(), path).readable(info.complete ? 0 : most_pending, path);
-  return info;
-}
-
-}  // namespace
 
 void complete_file(std::filesystem::path const& path) { complete_from_journal(path); }
 

@@ -2,11 +2,10 @@
 // A sweep takes in a damaged file of a run: it is refused with one line, or all of it arrives.
 // CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
+#include "hdf5/real_dataset.hpp"
 #include "trajectory/trajectory_test.hpp"
 
 #include <cayspin/io/sweep.hpp>
-
-#include <hdf5.h>
 
 #include <iostream>
 
@@ -38,13 +37,7 @@ class DamagedSweeps : public TrajectoryTest {
   }
 
   std::vector<double> spins_in_sweep() const {
-    hid_t const file = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    hid_t const dataset = H5Dopen2(file, "/runs/0000/spins", H5P_DEFAULT);
-    std::vector<double> values(spins_.size());
-    EXPECT_GE(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
-    H5Dclose(dataset);
-    H5Fclose(file);
-    return values;
+    return RealDataset(path_, "/runs/0000/spins").read();
   }
 
   fs::path path_ = folder_ / "sweep.h5";

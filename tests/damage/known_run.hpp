@@ -88,7 +88,7 @@ inline void require_known_samples(std::filesystem::path const& path, KnownRun co
   auto const file = open_file(path);
   GroupHandle const group(H5Gopen2(file.get(), "scalars", H5P_DEFAULT));
   std::int64_t number = 0;
-  for (auto const& sample : ScalarSeries::open(group.get(), path).read(samples, path)) {
+  for (auto const& sample : ScalarSeries::open(group.get(), path).read(0, samples, path)) {
     auto const step = run.first_step + number++ / run.samples;
     require(sample.step == step && sample.time == time_at(step) &&
                 equal(sample.scalars, scalars_at(step)),

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What tells a damaged file from a whole one.
+#include "hdf5/attribute.hpp"
 #include "hdf5/handle.hpp"
 #include "hdf5/read_in_child.hpp"
 #include "trajectory/checksum.hpp"
 #include "trajectory_test.hpp"
+
+#include <cayspin/io/checkpoint.hpp>
 
 #include <sys/wait.h>
 
@@ -72,6 +75,42 @@ TEST_F(TrajectoryTest, FilesWithoutChecksumsAreRead) {
   }
   EXPECT_EQ(read_info(path).frame_scalars.at(1).energy, numbered_scalars(1).energy);
   EXPECT_EQ(read_spins(path, small_header().shape), numbered_spins<double>(small_header(), 2));
+}
+
+TEST_F(TrajectoryTest, AttributeOfSeveralValuesIsRefused) {
+  auto const path = folder_ / "a.h5";
+  write_frames(path, 1).finish({});
+  {
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    ASSERT_GE(H5Adelete(file.get(), "threads"), 0);
+    hsize_t const two = 2;
+    DataspaceHandle const space(H5Screate_simple(1, &two, nullptr));
+    AttributeHandle const threads(
+        H5Acreate2(file.get(), "threads", H5T_STD_I64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT));
+    std::int64_t const values[] = {1, 1};
+    ASSERT_GE(H5Awrite(threads.get(), H5T_NATIVE_INT64, values), 0);
+  }
+  EXPECT_TRUE(contains(error_line(path, [&] { read_info(path); }),
+                       "cannot read attribute threads: it is not one value"));
+}
+
+// All of a checkpoint is tried in the child, its numbers like its fields.
+TEST_F(TrajectoryTest, NumberOfACheckpointThatIsNoneIsRefused) {
+  auto const path = folder_ / "a.checkpoint.h5";
+  double number = 0.25;
+  std::vector<double> spins(3);
+  {
+    CheckpointWriter writer(path, {});
+    writer.number("a", number);
+    writer.field("spins", spins);
+    writer.commit();
+    FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    GroupHandle const numbers(H5Gopen2(file.get(), "numbers", H5P_DEFAULT));
+    ASSERT_GE(H5Adelete(numbers.get(), "a"), 0);
+    RootAttributes(numbers.get(), path).create("a", std::string("a quarter"));
+  }
+  EXPECT_TRUE(contains(error_line(path, [&] { CheckpointReader reader(path); }),
+                       "cannot read attribute a"));
 }
 
 // A file of version 3 would be refused after its writer was killed.

@@ -57,12 +57,6 @@ TEST_F(TrajectoryTest, OverwriteFollowsALink) {
   EXPECT_TRUE(read_info(path).complete);
 }
 
-TEST_F(TrajectoryTest, OverwriteOfNothingIsFine) {
-  auto const path = folder_ / "a.h5";
-  create(path, true).finish({});
-  EXPECT_TRUE(read_info(path).complete);
-}
-
 TEST_F(TrajectoryTest, FileOfAnotherWriterIsKept) {
   auto const path = folder_ / "a.h5";
   write_bytes(path, "precious");

@@ -9,12 +9,6 @@
 namespace cayspin::inline v0_1::io {
 namespace {
 
-TEST_F(TrajectoryTest, FinishedRunIsComplete) {
-  auto const path = folder_ / "a.h5";
-  write_frames(path, 2).finish({7, 2, 1});
-  EXPECT_TRUE(read_info(path).complete);
-}
-
 TEST_F(TrajectoryTest, InterruptedRunIsNotComplete) {
   auto const path = folder_ / "a.h5";
   write_frames(path, 2).close({7, 2, 1});

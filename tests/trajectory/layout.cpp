@@ -84,12 +84,14 @@ TEST_F(TrajectoryTest, SpinsAreCompressedAndCutWhereAsked) {
 
 TEST_F(TrajectoryTest, ChunksOfFramesLeaveLittleOfPagesEmpty) {
   constexpr std::int64_t page = file_page_bytes;
-  for (std::int64_t bytes = 12; bytes < 20 * page; bytes += 12) {
-    auto const frames = frames_of_chunk(static_cast<std::uint64_t>(bytes), 0);
-    auto const pages = (frames * bytes + page - 1) / page;
-    EXPECT_LE(16 * (pages * page - frames * bytes), pages * page) << bytes;
-    EXPECT_LE(pages, 16 + (bytes + page - 1) / page) << bytes;
-  }
+  for (std::int64_t bytes = 12; bytes < 20 * page; bytes += 12)
+    for (std::int64_t const least : {0, 21}) {
+      auto const frames = frames_of_chunk(static_cast<std::uint64_t>(bytes), least * most_chunks);
+      auto const pages = (frames * bytes + page - 1) / page;
+      EXPECT_GE(frames, least) << bytes;
+      EXPECT_LE(16 * (pages * page - frames * bytes), pages * page) << bytes << ", " << least;
+      EXPECT_LE(pages, 16 + (std::max(least, 1L) * bytes + page - 1) / page) << bytes;
+    }
   EXPECT_EQ(frames_of_chunk(12 * page, most_chunks), 1);
   EXPECT_EQ(frames_of_chunk(12 * page, most_chunks + 1), 2);
   EXPECT_EQ(frames_of_chunk(1 << 20, 10 * most_chunks), 10);

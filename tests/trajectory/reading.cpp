@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "hdf5/handle.hpp"
+#include "hdf5/dataset.hpp"
 #include "trajectory_test.hpp"
 
 #include <fcntl.h>
@@ -14,26 +14,19 @@ namespace {
 namespace fs = std::filesystem;
 
 // A file of someone else's making: one dataset.
-void write_dataset(fs::path const& path, char const* name, std::vector<hsize_t> const& extents,
-                   hid_t type = H5T_IEEE_F64LE) {
+void write_file(fs::path const& path, char const* name, Extents const& extents,
+                hid_t type = H5T_IEEE_F64LE) {
   FileHandle const file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
-  DataspaceHandle const space(
-      H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr));
-  DatasetHandle const dataset(
-      H5Dcreate2(file.get(), name, type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  hsize_t count = 1;
-  for (auto const extent : extents) count *= extent;
-  std::vector<double> values(count);
+  std::vector<double> values(elements(extents));
   std::iota(values.begin(), values.end(), 0.0);
-  ASSERT_GE(
-      H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+  write_dataset(file.get(), name, type, H5T_NATIVE_DOUBLE, extents, values.data(), path);
 }
 
 constexpr std::array<std::int64_t, 3> row{4, 1, 1};
 
 TEST_F(TrajectoryTest, SpinsOfOneState) {
   auto const path = folder_ / "state.h5";
-  write_dataset(path, "spins", {2, 3, 4, 3}, H5T_IEEE_F32LE);
+  write_file(path, "spins", {2, 3, 4, 3}, H5T_IEEE_F32LE);
   std::vector<double> expected(72);
   std::iota(expected.begin(), expected.end(), 0.0);
   EXPECT_EQ(read_spins(path, {4, 3, 2}), expected);
@@ -41,7 +34,7 @@ TEST_F(TrajectoryTest, SpinsOfOneState) {
 
 TEST_F(TrajectoryTest, SpinsOfTheLastFrame) {
   auto const path = folder_ / "state.h5";
-  write_dataset(path, "spins", {5, 1, 1, 4, 3});
+  write_file(path, "spins", {5, 1, 1, 4, 3});
   std::vector<double> expected(12);
   std::iota(expected.begin(), expected.end(), 48.0);
   EXPECT_EQ(read_spins(path, row), expected);
@@ -57,40 +50,36 @@ TEST_F(TrajectoryTest, SpinsOfOneFrame) {
     EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, shape, frame); }),
                          "it has no frame " + std::to_string(frame) + "; accepted: 0 to 2"));
   auto const state = folder_ / "state.h5";
-  write_dataset(state, "spins", {1, 1, 4, 3});
+  write_file(state, "spins", {1, 1, 4, 3});
   EXPECT_TRUE(contains(error_line(state, [&] { read_spins(state, row, 0); }), "it has no frames"));
 }
 
 TEST_F(TrajectoryTest, SpinsOfAnotherShape) {
   auto const path = folder_ / "state.h5";
   for (auto const& extents :
-       {std::vector<hsize_t>{4, 3}, {1, 1, 4, 2}, {4, 1, 1, 3}, {3}, {2, 2, 1, 1, 4, 3}, {}}) {
-    write_dataset(path, "spins", extents);
+       {Extents{4, 3}, {1, 1, 4, 2}, {4, 1, 1, 3}, {3}, {2, 2, 1, 1, 4, 3}, {}}) {
+    write_file(path, "spins", extents);
     auto const message = error_line(path, [&] { read_spins(path, row); });
     EXPECT_TRUE(contains(message, "accepted: (1, 1, 4, 3) or (frame, 1, 1, 4, 3)"));
   }
-  write_dataset(path, "spins", {0, 1, 1, 4, 3});
+  write_file(path, "spins", {0, 1, 1, 4, 3});
   EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, row); }), "no frame"));
 }
 
 TEST_F(TrajectoryTest, SpinsThatAreNotNumbersOrNotThere) {
   auto const path = folder_ / "state.h5";
-  write_dataset(path, "spins", {1, 1, 4, 3}, H5T_STD_I32LE);
+  write_file(path, "spins", {1, 1, 4, 3}, H5T_STD_I32LE);
   EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, row); }), "neither float"));
-  write_dataset(path, "other", {1, 1, 4, 3});
+  write_file(path, "other", {1, 1, 4, 3});
   EXPECT_TRUE(contains(error_line(path, [&] { read_spins(path, row); }), "spins: it is not there"));
 }
 
 TEST_F(TrajectoryTest, MagnetizationOfAnotherMakerDoesNotCountFrames) {
   auto const path = folder_ / "state.h5";
-  write_dataset(path, "spins", {5, 1, 1, 4, 3});
+  write_file(path, "spins", {5, 1, 1, 4, 3});
   {
     FileHandle const file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
-    hsize_t const two = 2;
-    DataspaceHandle const space(H5Screate_simple(1, &two, nullptr));
-    DatasetHandle const made(H5Dcreate2(file.get(), "magnetization", H5T_IEEE_F64LE, space.get(),
-                                        H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-    ASSERT_GE(made.get(), 0);
+    create_dataset(file.get(), "magnetization", H5T_IEEE_F64LE, {2}, path);
   }
   EXPECT_EQ(read_spins(path, row).at(0), 48);
 }
@@ -106,7 +95,7 @@ TEST_F(TrajectoryTest, FileThatIsNone) {
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_TRUE(contains(error_line(pipe, [&] { read_info(pipe); }), "not a regular file"));
   auto const other = folder_ / "other.h5";
-  write_dataset(other, "spins", {1, 1, 4, 3});
+  write_file(other, "spins", {1, 1, 4, 3});
   EXPECT_TRUE(contains(error_line(other, [&] { read_info(other); }), "attribute format"));
 }
 

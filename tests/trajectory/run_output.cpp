@@ -98,6 +98,7 @@ TEST_F(TrajectoryTest, OutputThatIsDroppedWritesWhatWasHandedOver) {
   }
   EXPECT_FALSE(read_info(path).complete);
   EXPECT_EQ(read_info(path).frames, 20);
+  EXPECT_EQ(read_info(path).samples, 21);
   EXPECT_EQ(std::ranges::count(read_bytes(folder_ / "a.txt"), '\n'), 22);
 }
 

@@ -13,8 +13,9 @@ namespace cayspin::inline v0_1::io {
 
 /// A trajectory file that another process may be writing.
 ///
-/// It takes no lock and writes nothing, so the writer does not notice. What a look finds half
-/// written is not believed: a sample counts when an earlier look found it in the file already.
+/// Beside a writer it takes no lock and writes nothing, so that one does not notice. A file that a
+/// kill or a power cut left with a journal is completed, as by complete_file(). What a look finds
+/// half written is not believed: a sample counts when an earlier look found it in the file already.
 class FollowedTrajectory {
  public:
   using Clock = std::chrono::system_clock;
