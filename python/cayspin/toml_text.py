@@ -13,7 +13,7 @@ from cayspin._cayspin import SceneError
 def _key(name):
     if not isinstance(name, str):
         raise SceneError(f"{name!r}: is no key of a scene; accepted: a string")
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else value(name, "a key")
 
 
 def value(thing, key):

@@ -137,6 +137,7 @@ class Calls(PackageTest):
                 "lattice.shape: is of type set": {"lattice": {"shape": {1, 2}}},
                 "1: is no key": {"lattice": {1: 2}},
                 "no Unicode text": {"integrator": {"method": "\ud800"}},
+                "a key: ": {"lattice": {"\ud800": 2}},
                 "is not known": {"integrator": {"method": "a\0b"}},
                 "not finite": {"system": {"damping": math.nan}},
                 "64 bits": {"lattice": {"shape": [10**30]}},
@@ -170,6 +171,7 @@ class Calls(PackageTest):
     def test_after_an_error_all_goes_on(self):
         sim = cayspin.Simulation(scene())
         sim.step(3)
+        sim.observe(2, lambda sim: None)
         self.assert_all_refused(cayspin.CayspinError, {
             "-1 steps": lambda: sim.step(-1),
             "is (0, 0, 0)": lambda: setattr(sim, "spins", np.zeros(SHAPE)),
