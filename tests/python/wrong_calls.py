@@ -116,6 +116,7 @@ class Calls(PackageTest):
             "observe: every: 1.5": lambda: sim.observe(1.5, print),
             "observe: every -3": lambda: sim.observe(-3, print),
             "observe: a NoneType": lambda: sim.observe(1, None),
+            "precision: '\\ud800'": lambda: cayspin.Simulation(of, "\ud800"),
             "precision: None": lambda: cayspin.Simulation(of, None),
             "precision \"half\"; accepted: \"double\", \"single\"": lambda: cayspin.Simulation(of, "half"),
             "space: 1": lambda: cayspin.Simulation(of, space=1),
@@ -160,6 +161,7 @@ class Calls(PackageTest):
             with self.subTest(name):
                 self.assert_refused(cayspin.CayspinError, f"{name}: 3.5", call, 3.5)
                 self.assert_refused(cayspin.CayspinError, f"{name}: True", call, True)
+                self.assert_refused(cayspin.CayspinError, f"{name}: '\\ud800'", call, "\ud800")
                 self.assert_refused(cayspin.CayspinError, "null character", call, "a\0b.h5")
                 for wrong in ("", self.folder, self.folder / "no" / "run.h5",
                               self.folder / "text.h5"):
