@@ -23,15 +23,17 @@ using Vectors = std::vector<Vector>;
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
 using Exec = Kokkos::DefaultHostExecutionSpace;
 
-/// A mean with its standard error, from blocks of time.
+/// A mean with its standard error, from blocks of time that are equally long: the first samples
+/// that fill none are left out.
 struct Estimate {
   double mean = 0, error = 0;
 };
 Estimate estimate(std::vector<double> const& samples) {
   constexpr std::size_t blocks = 16;
+  std::size_t const length = samples.size() / blocks, first = samples.size() % blocks;
   std::array<double, blocks> block{};
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    block[i * blocks / samples.size()] += samples[i] * blocks / double(samples.size());
+  for (std::size_t i = first; i < samples.size(); ++i)
+    block[(i - first) / length] += samples[i] / double(length);
   Estimate all;
   for (double const one : block) all.mean += one / blocks;
   for (double const one : block) all.error += (one - all.mean) * (one - all.mean);

@@ -1,12 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# CAYSPIN_PYTHON: an interpreter with h5py and matplotlib, for what tests draw and for the module in
-# the build tree. One that is put in front of the system's may lack them.
-function(can_draw result candidate)
-  execute_process(COMMAND ${candidate} -c "import h5py, matplotlib" RESULT_VARIABLE status
-                  OUTPUT_QUIET ERROR_QUIET)
+# cayspin_find_python(<variable> <modules> <doc>): an interpreter that imports the modules, such as
+# "h5py, matplotlib". One that is put in front of the system's may lack them. .deps/site has the
+# theme of the site.
+function(imports_modules result candidate)
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E env "PYTHONPATH=${PROJECT_SOURCE_DIR}/.deps/site:$ENV{PYTHONPATH}"
+            ${candidate} -c "import ${modules}" RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
   if(NOT status EQUAL 0)
     set(${result} FALSE PARENT_SCOPE)
   endif()
 endfunction()
-find_program(CAYSPIN_PYTHON NAMES python3 PATHS /usr/bin VALIDATOR can_draw
-             DOC "Python with h5py and matplotlib")
+function(cayspin_find_python variable modules doc)
+  find_program(${variable} NAMES python3 PATHS /usr/bin VALIDATOR imports_modules DOC "${doc}")
+endfunction()
+
+# For what tests draw and for the module in the build tree.
+cayspin_find_python(CAYSPIN_PYTHON "h5py, matplotlib" "Python with h5py and matplotlib")

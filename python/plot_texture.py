@@ -63,6 +63,9 @@ def read(file, arguments, frame):
     """A frame and the options to draw it with."""
     shown, before = texture.of_file(file, frame, arguments.difference)
     checksum.require_undamaged(file, texture.frame_number(file, frame), shown.spins[None])
+    if before is not None:
+        checksum.require_undamaged(file, texture.frame_number(file, arguments.difference),
+                                   before[None])
     return shown, {"plane": arguments.plane, "before": before,
                    "quantity": "charge" if arguments.charge else "spins"}
 

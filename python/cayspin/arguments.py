@@ -33,9 +33,14 @@ def real(number: Any, name: str) -> float:
     raise CayspinError(f"{name}: {number!r}; accepted: a number")
 
 
+def is_unicode(text: str) -> bool:
+    """Whether a string has no half of a surrogate pair, which UTF-8 does not have."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in text)
+
+
 def word(text: Any, name: str) -> str:
     """A string."""
-    if not isinstance(text, str):
+    if not isinstance(text, str) or not is_unicode(text):
         raise CayspinError(f"{name}: {text!r}; accepted: a string")
     return text
 
@@ -43,8 +48,8 @@ def word(text: Any, name: str) -> str:
 def file_name(path: Any, name: str) -> str:
     """The name of a file."""
     try:
-        text = os.fsdecode(path)
-    except TypeError:
+        text = os.fsdecode(os.fsencode(path))
+    except (TypeError, UnicodeEncodeError):
         raise CayspinError(f"{name}: {path!r}; accepted: the name of a file") from None
     if "\0" in text:
         raise CayspinError(f"{name}: {text!r}; accepted: a name without a null character")

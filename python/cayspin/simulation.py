@@ -71,10 +71,10 @@ class Simulation:
         if not self._scene._scene.has_integrator:
             raise _cayspin.CayspinError("step: the scene has no integrator; accepted: relax()")
         self._check_dt()
-        if not self._observers:
+        if n > 0 and self._observers:
+            self._advance(self._run.steps + n, _GUARD_PERIOD, False, None)
+        else:
             self._run.advance(n, _GUARD_PERIOD, False)
-            return
-        self._advance(self._run.steps + n, _GUARD_PERIOD, False, None)
 
     def run(self, until: float | None = None, output: str | os.PathLike | bool | None = None,
             overwrite: bool = False) -> None:
@@ -178,8 +178,10 @@ class Simulation:
         """Running means of magnetizations and energies with their errors: looks after each step
         whose number is a multiple of `every`, from now on. With `window` they are over that many
         latest looks, otherwise over all since the last restart() of what is returned."""
-        if window is not None and arguments.whole(window, "averages: window") < 1:
-            raise _cayspin.CayspinError(f"averages: window {window}; accepted: at least 1")
+        if window is not None:
+            window = arguments.whole(window, "averages: window")
+            if window < 1:
+                raise _cayspin.CayspinError(f"averages: window {window}; accepted: at least 1")
         means = Averages(window)
         self.observe(every, means._look)
         return means

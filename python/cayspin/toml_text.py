@@ -7,13 +7,14 @@ import re
 
 import numpy as np
 
+from cayspin import arguments
 from cayspin._cayspin import SceneError
 
 
 def _key(name):
     if not isinstance(name, str):
         raise SceneError(f"{name!r}: is no key of a scene; accepted: a string")
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else value(name, "a key")
 
 
 def value(thing, key):
@@ -27,7 +28,7 @@ def value(thing, key):
     if isinstance(thing, os.PathLike):
         thing = os.fspath(thing)
     if isinstance(thing, str):
-        if any("\ud800" <= letter <= "\udfff" for letter in thing):
+        if not arguments.is_unicode(thing):
             raise SceneError(f"{key}: {thing!r} is no Unicode text; accepted: a string")
         return json.dumps(thing, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(thing, (list, tuple)):

@@ -43,7 +43,8 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
             raise CayspinError(f"{command}: the program {program()} does not run: {error.strerror}"
                                ) from None
     if done.returncode:
-        raise (NumbersFailed if done.returncode == 3 else CayspinError)(done.stderr.strip())
+        message = done.stderr.strip() or f"{command}: the program ended with {done.returncode}"
+        raise (NumbersFailed if done.returncode == 3 else CayspinError)(message)
     return json.loads(done.stdout)
 
 

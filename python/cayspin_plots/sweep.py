@@ -22,10 +22,6 @@ class Sweep:
     complete: bool
 
 
-def _distinct(values):
-    return list(dict.fromkeys(values))
-
-
 def read_sweep(path):
     """Runs that failed or are still to do have done = False, and NaN as numbers."""
     with opened(path, "sweep") as file:
@@ -33,9 +29,10 @@ def read_sweep(path):
             raise ValueError("it has no sweep")
         keys = [name.decode() for name in file["keys"][:]]
         columns = [[value.decode() for value in column] for column in file["values"][:].T]
-        values = [_distinct(column) for column in columns]
-        numbers = [_distinct(file["parameters"][key][:]) if key in file["parameters"] else None
-                   for key in keys]
+        values = [list(dict.fromkeys(column)) for column in columns]
+        # Of each value: 0.1 and 0.10 are two.
+        numbers = [list(dict(zip(column, file["parameters"][key][:])).values())
+                   if key in file["parameters"] else None for key, column in zip(keys, columns)]
         shape = [len(value) for value in values]
         done = file["status"][:].reshape(shape) == 0
         magnetization = file["magnetization"][:].reshape(*shape, 3)

@@ -60,10 +60,16 @@ def _title(text, where):
     return f"{where}\n{text}" if where else text
 
 
+def _numbers(sweep, key):
+    """Where the values are on an axis of numbers; None where they have no place on one."""
+    numbers = sweep.numbers[key]
+    return numbers if numbers and len(numbers) > 1 and np.all(np.isfinite(numbers)) else None
+
+
 def _coordinates(sweep, key):
     """Positions of the values and the order that sorts them."""
-    numbers = sweep.numbers[key]
-    if numbers is None or not np.all(np.isfinite(numbers)) or len(numbers) < 2:
+    numbers = _numbers(sweep, key)
+    if numbers is None:
         places = np.arange(len(sweep.values[key]))
         return places, places
     order = np.argsort(numbers)
@@ -73,8 +79,7 @@ def _coordinates(sweep, key):
 def _label(axis, sweep, key, positions, order):
     """Values that are no numbers are written at equal distances."""
     axis.set_label_text(sweep.keys[key])
-    numbers = sweep.numbers[key]
-    if numbers is None or len(numbers) < 2:
+    if _numbers(sweep, key) is None:
         ticks = np.unique(np.linspace(0, len(order) - 1, MOST_TICKS).round().astype(int))
         axis.set_ticks(positions[ticks], [sweep.values[key][order[tick]] for tick in ticks])
     elif _is_logarithmic(positions):
@@ -84,7 +89,6 @@ def _label(axis, sweep, key, positions, order):
 def _draw_curves(axes, sweep, key, energy, m, where):
     positions, order = _coordinates(sweep, key)
     scalars.draw_means(axes[0], positions, m[order], "o-", markersize=4)
-    axes[0].legend(loc="best")
     axes[0].set_title(_title("magnetization at the end", where))
     axes[1].plot(positions, energy[order], "o-", markersize=4, color=style.BLUE)
     axes[1].set_title(_title("energy at the end", where))
@@ -96,6 +100,7 @@ def _draw_curves(axes, sweep, key, energy, m, where):
             bottom = np.full(int(missing.sum()), 0.02)
             axis.plot(positions[missing], bottom, "x", color=style.RED, clip_on=False,
                       transform=axis.get_xaxis_transform(), label="failed")
+    axes[0].legend(loc="best")
 
 
 def _draw_maps(axes, sweep, keys, energy, m, where):

@@ -40,8 +40,8 @@ def cost(method, key, error):
 
 def cheapest(methods, error, key="seconds"):
     """(cost, method), or (infinity, None)."""
-    return min(((cost(method, key, error), method) for method in methods),
-               key=lambda found: found[0], default=(math.inf, None))
+    return min([(math.inf, None), *((cost(method, key, error), method) for method in methods)],
+               key=lambda found: found[0])
 
 
 def gain(trade, error):

@@ -2,8 +2,10 @@
 """trade and advise as records, through the program."""
 
 import json
+import os
 import subprocess
 import unittest
+import unittest.mock
 
 import cayspin
 import matplotlib
@@ -48,6 +50,11 @@ class Advice(PackageTest):
             self.assert_refused(cayspin.CayspinError, "the program cannot run", cayspin.advise,
                                 of, error=1e-3)
         self.assert_refused(cayspin.CayspinError, "--error", cayspin.advise, scene(), error=5)
+
+    def test_a_program_that_ends_without_a_word(self):
+        with unittest.mock.patch.dict(os.environ, {"CAYSPIN_PROGRAM": "/bin/false"}):
+            self.assert_refused(cayspin.CayspinError, "advise: the program ended with 1",
+                                cayspin.advise, scene(), error=0.1)
 
 
 class Trade(PackageTest):

@@ -27,7 +27,7 @@ def values(sim):
 class Averages(PackageTest):
     def test_are_those_of_the_looks(self):
         sim = cayspin.Simulation(SCENE)
-        all_of_them, latest = sim.averages(every=3), sim.averages(every=3, window=200)
+        all_of_them, latest = sim.averages(every=3), sim.averages(every=3, window=np.int64(200))
         self.assertTrue(np.isnan(all_of_them.energy.mean))
         self.assertEqual(all_of_them.energies, {})
         looks = []

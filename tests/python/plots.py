@@ -136,7 +136,8 @@ class PlotTexture(ScriptTest):
         self.assert_no_picture("have no positions", file=crystal)
         with h5py.File(chain, "r+") as data:
             data["spins"][4, 0, 0, 2, 1] += 1
-        self.assert_no_picture("frame 4 is damaged", "--frame", 4, file=chain)
+        for arguments in (("--frame", 4), ("--difference", 4)):
+            self.assert_no_picture("frame 4 is damaged", *arguments, file=chain)
 
 
 class PlotDemo(ScriptTest):

@@ -89,6 +89,20 @@ class Sweep(ScriptTest):
         self.assertEqual(sweep_figure.choose_keys(sweep, ["lattice.shape"]), [2])
         self.assert_no_picture("it has no key field", file, "--keys", "field")
 
+    def test_values_that_are_one_number_or_none(self):
+        file = self.sweep("same.h5", "system.damping=0.1,0.10,0.8")
+        sweep = read_sweep(file)
+        self.assertEqual(sweep.numbers, [[0.1, 0.1, 0.8]])
+        line = sweep_figure.draw(sweep, [0]).axes[0].lines[2]
+        np.testing.assert_array_equal(line.get_xdata(), [0.1, 0.1, 0.8])
+        np.testing.assert_allclose(line.get_ydata(), np.tanh([0.1, 0.1, 0.8]), rtol=1e-9)
+        sweep.numbers, sweep.done = [[0.1, np.inf, 0.8]], np.array([True, False, True])
+        sweep.energy[1] = np.nan
+        axes = sweep_figure.draw(sweep, [0]).axes[0]
+        self.assertEqual([text.get_text() for text in axes.get_xticklabels()],
+                         ["0.1", "0.10", "0.8"])
+        self.assertEqual(axes.get_legend().get_texts()[-1].get_text(), "failed")
+
     def test_other_files_are_refused(self):
         self.assert_no_picture("there is no such file", self.folder / "none.h5")
         with h5py.File(self.folder / "other.h5", "w"):

@@ -2,6 +2,7 @@
 """Runs the scripts that draw trades and write their tables, as a user does."""
 
 import json
+import math
 import sys
 import unittest
 
@@ -88,6 +89,12 @@ class PlotTrade(ScriptTest):
         self.assertEqual(winner, "rkmk4")  # double precision alone
         self.assertAlmostEqual(ratio, 3)
         self.assertIsNone(trade_costs.gain(self.trade, 1e-8))
+
+    def test_an_error_that_no_method_reaches(self):
+        self.assertEqual(trade_costs.cheapest(self.trade["methods"], 1e-8), (math.inf, None))
+        # Another method needs the fewest evaluations to one of the three errors that are reached.
+        self.trade["methods"][1]["costs"][2]["evaluations"] = 1
+        self.assertEqual(trade_figure.axes_that_differ(self.trade), ["seconds", "evaluations"])
 
     def test_overview_of_several_scenes(self):
         other, png = self.folder / "other.json", self.folder / "overview.png"

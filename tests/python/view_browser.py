@@ -30,6 +30,17 @@ const observer = new MutationObserver(next);
 observer.observe(document.body, {attributeFilter: ["data-shown"]});
 setTimeout(() => { observer.disconnect(); done(count / milliseconds * 1000); }, milliseconds);
 next();"""
+# The page is hidden from its second look on, for a second.
+HIDDEN = """let looks = 0, hidden = false;
+Object.defineProperty(document, "hidden", {get: () => {
+  if (++looks === 2) {
+    hidden = true;
+    setTimeout(() => { hidden = false; }, 1000);
+  }
+  return hidden;
+}});"""
+ASKED = """return performance.getEntriesByType("resource").filter(
+  one => new URL(one.name).pathname === "/news").length;"""
 NAMELESS = """return [...document.querySelectorAll("input, button, select, canvas")].filter(
   one => !one.hidden && !(one.ariaLabel || one.labels?.length || one.textContent.trim())
   ).map(one => one.id);"""
@@ -161,6 +172,18 @@ class Controls(Browser):
                 self.assertEqual(ground == "rgb(255, 255, 255)", light)
                 self.assertEqual(self.driver.execute_script(NAMELESS), [])
                 self.assertTrue((self.pixels("energy").std(axis=(0, 1)) > 0).all())
+
+    def test_hidden_while_it_reads_many_samples(self):
+        file = write(self.folder / "chain.h5")
+        with h5py.File(file, "r+") as data:
+            for samples in data["scalars"].values():
+                samples.resize(20001, axis=0)
+        script = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument",
+                                             {"source": HIDDEN})
+        self.addCleanup(self.driver.execute_cdp_cmd, "Page.removeScriptToEvaluateOnNewDocument",
+                        script)
+        self.open(file)
+        self.wait(lambda: self.driver.execute_script(ASKED) == 2)
 
     def test_a_run_that_it_started(self):
         (self.folder / "scene.toml").write_text(LONG_SCENE)

@@ -116,6 +116,7 @@ class Calls(PackageTest):
             "observe: every: 1.5": lambda: sim.observe(1.5, print),
             "observe: every -3": lambda: sim.observe(-3, print),
             "observe: a NoneType": lambda: sim.observe(1, None),
+            "precision: '\\ud800'": lambda: cayspin.Simulation(of, "\ud800"),
             "precision: None": lambda: cayspin.Simulation(of, None),
             "precision \"half\"; accepted: \"double\", \"single\"": lambda: cayspin.Simulation(of, "half"),
             "space: 1": lambda: cayspin.Simulation(of, space=1),
@@ -137,6 +138,7 @@ class Calls(PackageTest):
                 "lattice.shape: is of type set": {"lattice": {"shape": {1, 2}}},
                 "1: is no key": {"lattice": {1: 2}},
                 "no Unicode text": {"integrator": {"method": "\ud800"}},
+                "a key: ": {"lattice": {"\ud800": 2}},
                 "is not known": {"integrator": {"method": "a\0b"}},
                 "not finite": {"system": {"damping": math.nan}},
                 "64 bits": {"lattice": {"shape": [10**30]}},
@@ -159,6 +161,7 @@ class Calls(PackageTest):
             with self.subTest(name):
                 self.assert_refused(cayspin.CayspinError, f"{name}: 3.5", call, 3.5)
                 self.assert_refused(cayspin.CayspinError, f"{name}: True", call, True)
+                self.assert_refused(cayspin.CayspinError, f"{name}: '\\ud800'", call, "\ud800")
                 self.assert_refused(cayspin.CayspinError, "null character", call, "a\0b.h5")
                 for wrong in ("", self.folder, self.folder / "no" / "run.h5",
                               self.folder / "text.h5"):
@@ -170,6 +173,7 @@ class Calls(PackageTest):
     def test_after_an_error_all_goes_on(self):
         sim = cayspin.Simulation(scene())
         sim.step(3)
+        sim.observe(2, lambda sim: None)
         self.assert_all_refused(cayspin.CayspinError, {
             "-1 steps": lambda: sim.step(-1),
             "is (0, 0, 0)": lambda: setattr(sim, "spins", np.zeros(SHAPE)),

@@ -171,10 +171,10 @@ const readNews = lastOf("news", async () => {
 // A run under way loses about a hundredth of its time to this page.
 async function follow() {
   while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
-    const start = about ? performance.now() : Infinity; // the first look takes long
+    const start = about ? performance.now() : Infinity, before = news; // the first look takes long
     if (!document.hidden) await readNews();
     const took = performance.now() - start;
-    if (!news?.more) await sleep(Math.min(Math.max(3000, 100 * took), 10000));
+    if (news === before || !news.more) await sleep(Math.min(Math.max(3000, 100 * took), 10000));
   }
 }
 
