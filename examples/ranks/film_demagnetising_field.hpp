@@ -96,8 +96,7 @@ class FilmDemagnetisingField {
           fill(row_.data(), c, y);
           fftw_execute_dft_r2c(forward_x_.get(), row_.data(), as_fftw(row_spectrum_.data()));
           for_each_share(k_, [&](std::size_t rank, std::size_t begin, std::size_t count) {
-            std::copy_n(&row_spectrum_[begin], count,
-                        &of_rows_[3 * rows() * begin + (c * rows() + y) * k_.of(rank)]);
+            std::copy_n(row_spectrum_.data() + begin, count, in_rows(c, y, rank));
           });
         }
       exchange(of_rows_, rows(), k_, of_columns_, columns(), y_);
@@ -126,8 +125,7 @@ class FilmDemagnetisingField {
       for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t y = 0; y < rows(); ++y) {
           for_each_share(k_, [&](std::size_t rank, std::size_t begin, std::size_t count) {
-            std::copy_n(&of_rows_[3 * rows() * begin + (c * rows() + y) * k_.of(rank)], count,
-                        &row_spectrum_[begin]);
+            std::copy_n(in_rows(c, y, rank), count, row_spectrum_.data() + begin);
           });
           fftw_execute_dft_c2r(backward_x_.get(), as_fftw(row_spectrum_.data()), row_.data());
           std::copy_n(row_.data(), nx_, &results_[(c * rows() + y) * nx_]);
@@ -144,6 +142,10 @@ class FilmDemagnetisingField {
       return reinterpret_cast<fftw_complex*>(numbers);
     }
     std::size_t columns() const { return k_.of(rank_); }
+    /// The share of a rank, which may be none, of an own row.
+    Complex* in_rows(std::size_t c, std::size_t y, std::size_t rank) {
+      return of_rows_.data() + 3 * rows() * k_.begin[rank] + (c * rows() + y) * k_.of(rank);
+    }
 
     // FFTW_ESTIMATE and FFTW_UNALIGNED: the same plan for each row, and with it the same bits.
     void make_plans() {
@@ -169,7 +171,7 @@ class FilmDemagnetisingField {
     template <class Work>
     void for_each_number(Work const& work) {
       for_each_share(y_, [&](std::size_t, std::size_t begin, std::size_t count) {
-        Complex* in_message = &of_columns_[3 * columns() * begin];
+        Complex* in_message = of_columns_.data() + 3 * columns() * begin;
         for (std::size_t c = 0; c < 3; ++c)
           for (std::size_t y = begin; y < begin + count; ++y)
             for (std::size_t k = 0; k < columns(); ++k)
