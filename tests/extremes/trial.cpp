@@ -133,7 +133,7 @@ Outcome try_out(Integrator const& integrator, Situation const& situation, Settin
                 io::Scene const& scene, Plan const& plan) {
   Run<Real> run{setting, {}};
   run.go(scene, plan);
-  bool const warned = dt_warning(plan).has_value();
+  bool const warned = dt_warning(plan, scene.units).has_value();
   bool const damaged = setting.start_length != 1 || setting.fault_at >= 0;
   if (run.stopped_at >= 0)
     return {warned && !damaged ? Fate::warned : Fate::detected,
