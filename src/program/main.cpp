@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <filesystem>
 
 namespace cayspin::program {
@@ -93,18 +94,26 @@ int perform(int argc, char** argv) {
 
   std::string_view const first = argc > 1 ? argv[1] : "";
   auto const ranks = launched_ranks();
-  ranks->together([&] {
-    require_command(app, first);
-    if (ranks->many() && first != "run" && ranks->is_first())
-      throw UsageError(fmt::format("{} runs on one rank; accepted: run", first));
-  });
-  start_others_alone();
-  for (auto const& other : others)
-    if (first == other.command) other.become(other.name, argv);
-  if (auto const status = ranks->together([&] { return parse(app, argc, argv); })) return *status;
-  for (auto const& command : commands)
-    if (*command.parser) return command.perform(*ranks);
-  return Status::done;
+  try {
+    ranks->together([&] {
+      require_command(app, first);
+      if (ranks->many() && first != "run" && ranks->is_first())
+        throw UsageError(fmt::format("{} runs on one rank; accepted: run", first));
+    });
+    start_others_alone();
+    for (auto const& other : others)
+      if (first == other.command) other.become(other.name, argv);
+    if (auto const status = ranks->together([&] { return parse(app, argc, argv); })) return *status;
+    for (auto const& command : commands)
+      if (*command.parser) return command.perform(*ranks);
+    return Status::done;
+  } catch (...) {
+    if (!ranks->many()) throw;
+    // Said while all are there: launchers stop the others when one has ended with a failure.
+    int const status = report(std::current_exception());
+    if (!ranks->agreed()) ranks->leave_by(status);
+    return status;
+  }
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include "describe.hpp"
 #include "run_watch.hpp"
 #include "simulation/checkpoint_of_ranks.hpp"
-#include "simulation/command_line.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/parts.hpp"
@@ -204,7 +203,7 @@ std::optional<int> threads_of_rank(RunOptions const& options, Ranks const& ranks
   return std::max(1, expected_threads() / ranks.on_this_machine());
 }
 
-int run_on_ranks(RunOptions const& options, Ranks& ranks) {
+int run(RunOptions const& options, Ranks& ranks) {
   auto const typed = typed_scene(options, ranks);
   auto const space = ranks.together([&] { return chosen_space(options.space); });
   KokkosSession const kokkos(space, threads_of_rank(options, ranks), options.device);
@@ -239,16 +238,6 @@ int run_on_ranks(RunOptions const& options, Ranks& ranks) {
   return in_space(space, options.precision, [&]<class Real, class Space>() {
     return run_on<Real, Space>(typed, scene, plan, options, restart.get(), ranks);
   });
-}
-
-int run(RunOptions const& options, Ranks& ranks) {
-  try {
-    return run_on_ranks(options, ranks);
-  } catch (...) {
-    // The others would wait for this one.
-    if (ranks.many() && !ranks.agreed()) ranks.leave_by(report(std::current_exception()));
-    throw;
-  }
 }
 
 }  // namespace
