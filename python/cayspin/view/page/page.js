@@ -168,13 +168,14 @@ const readNews = lastOf("news", async () => {
   trace();
 });
 
-// A run under way loses about a hundredth of its time to this page.
+// A run under way loses about a hundredth of its time to this page: a look takes the browser and the
+// server about twice as long as can be timed here, on a processor for which all threads wait.
 async function follow() {
   while (!news || news.more || news.state === "under way" || (news.run ?? "ended") !== "ended") {
     const start = about ? performance.now() : Infinity, before = news; // the first look takes long
     if (!document.hidden) await readNews();
     const took = performance.now() - start;
-    if (news === before || !news.more) await sleep(Math.min(Math.max(3000, 100 * took), 10000));
+    if (news === before || !news.more) await sleep(Math.min(Math.max(3000, 200 * took), 10000));
   }
 }
 
