@@ -95,6 +95,7 @@ class Minimizer {
     so_far_ = {};
     first_step_ = 1;
     lbfgs_.pairs().forget();
+    Kokkos::deep_copy(exec, moves_.allocation(), Real(0));
     auto const found = detail::probe(exec, field, options.time, search_.trial, moves_);
     so_far_.evaluations += found.evaluations;
     strongest_field_ = found.strongest();
