@@ -72,6 +72,7 @@ class Minimizer {
       if (options.keep_saddles) return ended(end.value_or(MinimizeEnd::converged));
       if (auto const at_rest = leave_saddle(exec, field, spins, options))
         return ended(end ? *end : *at_rest);
+      if (so_far_.evaluations >= options.evaluations) return ended(MinimizeEnd::evaluation_limit);
     }
   }
 
