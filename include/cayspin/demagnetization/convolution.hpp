@@ -47,10 +47,7 @@ class Convolution {
                        3 * padded_plane_),
         kernel_("cayspin::DemagnetizingField: interactions",
                 6 * octant_plane() * std::size_t(spectrum_.own_waves())) {
-    transform_interactions(interactions, parts_,
-                           [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
-                             kernel_((x * 6 + c) * octant_plane() + yz) = static_cast<Real>(value);
-                           });
+    transform_interactions(interactions, parts_, kernel_);
   }
 
   /// Less what each thread has of its own: three planes and some rows.
