@@ -72,6 +72,7 @@ class Minimizer {
       if (options.keep_saddles) return ended(end.value_or(MinimizeEnd::converged));
       if (auto const at_rest = leave_saddle(exec, field, spins, options))
         return ended(end ? *end : *at_rest);
+      if (so_far_.evaluations >= options.evaluations) return ended(MinimizeEnd::evaluation_limit);
     }
   }
 
@@ -95,6 +96,7 @@ class Minimizer {
     so_far_ = {};
     first_step_ = 1;
     lbfgs_.pairs().forget();
+    Kokkos::deep_copy(exec, moves_.allocation(), Real(0));
     auto const found = detail::probe(exec, field, options.time, search_.trial, moves_);
     so_far_.evaluations += found.evaluations;
     strongest_field_ = found.strongest();

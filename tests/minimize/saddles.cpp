@@ -50,6 +50,22 @@ TYPED_TEST(Saddles, TheTopOfTheEnergy) {
   EXPECT_NEAR(found.curvature, 2, 1e-5);
 }
 
+// Without a preconditioner, some of these searches find a curvature below zero in their last step.
+TYPED_TEST(Saddles, WhereTheSearchOnlyJustFindsTheWay) {
+  auto const lattice = Lattice::chain(200);
+  auto const stop = [](Minimum const&) { return Next::stop; };
+  double const torque = 1e-6;
+  for (double applied = 8e-4; applied < 6e-3; applied *= 1.02) {
+    auto spins = spins_of<typename TestFixture::Spins>(lattice, uniform(200, {0, 0, -1}));
+    EffectiveField const field(Exchange(lattice, 1), Zeeman{{0, 0, applied}});
+    auto const found = minimize(this->exec, field, spins,
+                                {.torque = torque, .preconditioned = false, .observer = stop});
+    double const round_off = 65 * epsilon<typename TypeParam::Real> * (4 + applied);
+    if (found.end == MinimizeEnd::converged)
+      EXPECT_GE(found.curvature, -std::max(torque, round_off)) << applied;
+  }
+}
+
 // Spins that are parallel to each other may point anywhere: no saddle, in single precision either.
 TYPED_TEST(Saddles, NotWhereTheEnergyIsFlat) {
   auto const lattice = Lattice::cubic(7, 6, 5);

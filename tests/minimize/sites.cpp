@@ -32,6 +32,25 @@ TYPED_TEST(Sites, VacantOnesStay) {
   EXPECT_LT(largest_rate(this->exec, generator, spins), 1.2 * torque);
 }
 
+TYPED_TEST(Sites, VacantOnesStayWhereTheCallBeforeHadSpins) {
+  using Spins = typename TestFixture::Spins;
+  auto const lattice = Lattice::square(12, 7);
+  constexpr std::int64_t vacant = 40;
+  EffectiveField const full(Exchange(lattice, 20), UniaxialAnisotropy(0.4, {1, 1, 0}));
+  FieldWithVacancies const field(
+      full, numbers_on<Spins>(lattice, [](std::int64_t site) { return site == vacant ? 0 : 1; }));
+  auto spins = this->random_spins(lattice, 5);
+  Minimizer minimizer(spins);
+  minimizer.minimize(this->exec, full, spins, {.evaluations = 1});
+  spins = this->random_spins(lattice, 6);
+  auto const before = at(numbers_of(spins), vacant);
+  minimizer.minimize(this->exec, field, spins, {.torque = 4e-3});
+  auto const after = at(numbers_of(spins), vacant);
+  EXPECT_EQ(after.x, before.x);
+  EXPECT_EQ(after.y, before.y);
+  EXPECT_EQ(after.z, before.z);
+}
+
 TYPED_TEST(Sites, WhereAllAreVacantNothingMoves) {
   using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::cubic(7, 5, 3);

@@ -38,8 +38,8 @@ class Convolution {
         row_(row_of(period_[1], period_[2])),
         padded_plane_(whole(std::size_t(row_) * std::size_t(period_[2]))),
         row_transforms_(period_[0], rows_at_once_),
-        along_y_(period_[1], 1, n_[2], row_),
-        along_z_(period_[2], row_, period_[1], 1),
+        along_y_(period_[1], 1, n_[2], static_cast<int>(row_)),
+        along_z_(period_[2], static_cast<int>(row_), period_[1], 1),
         row_workers_("cayspin::DemagnetizingField: rows", blocks(),
                      whole(row_waves()) * 2 + std::size_t(rows_at_once_ * period_[0])),
         spectrum_("cayspin::DemagnetizingField: spectrum", parts_, octant_[0], lines_of_parts()),
@@ -47,7 +47,7 @@ class Convolution {
                        3 * padded_plane_),
         kernel_("cayspin::DemagnetizingField: interactions",
                 6 * octant_plane() * std::size_t(spectrum_.own_waves())) {
-    find_kernel(interactions);
+    transform_interactions(interactions, parts_, kernel_);
   }
 
   /// Less what each thread has of its own: three planes and some rows.
@@ -215,18 +215,12 @@ class Convolution {
     }
   }
 
-  void find_kernel(InteractionsOfCells const& interactions) {
-    transform_interactions(interactions, parts_,
-                           [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
-                             kernel_((x * 6 + c) * octant_plane() + yz) = static_cast<Real>(value);
-                           });
-  }
-
   Parts parts_;
   std::vector<RowsOfPart> rows_of_parts_;
   RowsOfPart own_;
   std::array<int, 3> n_, period_, octant_;
-  int rows_at_once_, row_;
+  int rows_at_once_;
+  std::ptrdiff_t row_;  // a plane can have more numbers than an int
   std::size_t padded_plane_;
   RowTransforms<Real> row_transforms_;
   ComplexTransforms<Real> along_y_, along_z_;

@@ -17,11 +17,9 @@ struct Cufft;
 template <>
 struct Cufft<double> {
   using Complex = cufftDoubleComplex;
-  using Plan = cufftHandle;
   static constexpr auto complex = CUFFT_Z2Z;
   static constexpr auto forward = CUFFT_D2Z;
   static constexpr auto backward = CUFFT_Z2D;
-  static constexpr auto destroy = cufftDestroy;
   static constexpr auto run_complex = cufftExecZ2Z;
   static constexpr auto run_forward = cufftExecD2Z;
   static constexpr auto run_backward = cufftExecZ2D;
@@ -29,11 +27,9 @@ struct Cufft<double> {
 template <>
 struct Cufft<float> {
   using Complex = cufftComplex;
-  using Plan = cufftHandle;
   static constexpr auto complex = CUFFT_C2C;
   static constexpr auto forward = CUFFT_R2C;
   static constexpr auto backward = CUFFT_C2R;
-  static constexpr auto destroy = cufftDestroy;
   static constexpr auto run_complex = cufftExecC2C;
   static constexpr auto run_forward = cufftExecR2C;
   static constexpr auto run_backward = cufftExecC2R;

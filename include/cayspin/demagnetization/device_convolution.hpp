@@ -153,11 +153,7 @@ class DeviceConvolution {
       throw std::invalid_argument(
           "cayspin::DemagnetizingField: on a device a lattice must be whole");
     auto const kernel = Kokkos::create_mirror_view(kernel_);
-    auto const plane = std::size_t(at_.octant_plane());
-    transform_interactions(interactions, Parts(lattice),
-                           [&](std::size_t c, std::size_t x, std::size_t yz, double value) {
-                             kernel((x * 6 + c) * plane + yz) = static_cast<Real>(value);
-                           });
+    transform_interactions(interactions, Parts(lattice), kernel);
     Kokkos::deep_copy(kernel_, kernel);
   }
 

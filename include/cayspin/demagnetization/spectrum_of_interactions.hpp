@@ -99,12 +99,13 @@ class SpectrumOfInteractions {
   SpectrumOfParts<double> along_x_;
 };
 
-/// store(component, x, yz, value) for this part's wave numbers x along x, those of the octant along
-/// y and z, and the components xx, yy, zz, xy, xz, yz: the transforms of the interactions, divided
-/// by the number of cells in a period.
-template <class Store>
+/// Writes to `kernel`, in host memory, for this part's wave numbers along x, then the components
+/// xx, yy, zz, xy, xz, yz, then the wave numbers of the octant along z and y: the transforms of the
+/// interactions, divided by the number of cells in a period.
+template <class Kernel>
 void transform_interactions(InteractionsOfCells const& interactions, Parts const& parts,
-                            Store const& store) {
+                            Kernel const& kernel) {
+  using Real = typename Kernel::value_type;
   using N = DemagnetizingTensor;
   struct Component {
     double N::*of;
@@ -123,7 +124,7 @@ void transform_interactions(InteractionsOfCells const& interactions, Parts const
                                 {&N::yz, {false, true, true}}}) {
     auto const values = spectrum(component.of, component.is_odd);
     for (std::size_t i = 0; i < values.size(); ++i)
-      store(c, i / plane, i % plane, scale * values[i]);
+      kernel((i / plane * 6 + c) * plane + i % plane) = static_cast<Real>(scale * values[i]);
     ++c;
   }
 }

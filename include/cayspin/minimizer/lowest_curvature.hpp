@@ -177,7 +177,7 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
   if (!(size > 0)) return found;
   multiply(1 / size, x);
   found.value = product(x, hx)[0];
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0;; ++step) {
     if (found.value < -tolerance) {
       // Once more from the field: round-off of the steps so far is left behind.
       auto const [along, square] = product(x, hx);
@@ -185,6 +185,7 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
       found.is_negative = found.value < -tolerance;
       if (found.is_negative) break;
     }
+    if (step == most_steps) break;
     // w, the preconditioned residual; and by how much it is about to lower the quotient.
     combine(exec, 1, hx, -found.value, x, shifted);
     precondition(shifted, w);

@@ -47,11 +47,12 @@ struct Minimum {
 
 /// Options of minimize.
 struct MinimizeOptions {
-  double torque = 1e-6;              ///< bound on max |m x H|, in the units of H
-  std::int64_t evaluations = 10000;  ///< at most so many, and the few of one more iteration
-  double time = 0;                   ///< at which H is taken
-  bool preconditioned = true;        ///< by the exchange that the field is found to have
-  bool keep_saddles = false;         ///< a state without torque is enough, a saddle too
+  double torque = 1e-6;  ///< bound on max |m x H|, in the units of H
+  /// At most so many, and those of one more iteration and one search for a way out of a saddle.
+  std::int64_t evaluations = 10000;
+  double time = 0;             ///< at which H is taken
+  bool preconditioned = true;  ///< by the exchange that the field is found to have
+  bool keep_saddles = false;   ///< a state without torque is enough, a saddle too
   std::function<Next(Minimum const&)> observer = {};  ///< after each iteration
 };
 

@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <numbers>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 namespace cayspin::inline v0_1::detail {
@@ -55,9 +54,7 @@ class Multigrid {
   template <class Exec, class OutReal>
   void solve(Exec const& exec, Coefficient b, CellArray<OutReal, 3> const& out,
              bool same_directions = false) const {
-    Shift const shift{b, same_directions};
-    if (!runs_inside<Exec>(0)) return cycle(exec, LaunchEach<Exec>{exec}, shift, out, 0);
-    run_inside(exec, shift, out, 0);
+    solve_from(exec, LaunchEach<Exec>{exec}, {b, same_directions}, out, 0);
   }
 
  private:
@@ -65,11 +62,6 @@ class Multigrid {
     Coefficient b;
     bool same_directions;
   };
-
-  template <class Exec>
-  bool runs_inside(std::size_t number) const {
-    return is_synchronous<Exec> && sites_worth(levels_[number].layout) <= calling_thread_sites;
-  }
 
   template <class OutReal>
   struct CoarseCycle {
@@ -84,12 +76,17 @@ class Multigrid {
   };
   struct Inside {};
 
-  template <class Exec, class OutReal>
-  void run_inside(Exec const& exec, Shift const& shift, CellArray<OutReal, 3> const& out,
-                  std::size_t number) const {
-    if constexpr (is_synchronous<Exec>)
-      for_each_task(exec, coarse_label_, 1, sites_worth(levels_[number].layout),
-                    CoarseCycle<OutReal>{this, shift, out, number});
+  /// The cycle from this level on.
+  template <class Exec, class Launch, class OutReal>
+  void solve_from(Exec const& exec, Launch const& launch, Shift const& shift,
+                  CellArray<OutReal, 3> const& out, std::size_t number) const {
+    if constexpr (is_synchronous<Exec>) {
+      auto const sites = sites_worth(levels_[number].layout);
+      if (runs_on_calling_thread<Exec>(sites))
+        return for_each_task(exec, coarse_label_, 1, sites,
+                             CoarseCycle<OutReal>{this, shift, out, number});
+    }
+    cycle(exec, launch, shift, out, number);
   }
 
   // What the last relaxation reads, and where coarser grids leave their solution.
@@ -138,21 +135,12 @@ class Multigrid {
     } else {
       restrict_to<right_components>(launch, level, level.right, next.right);
     }
-    auto const correction = cells_of<3>(result_of(next));
-    if constexpr (std::is_same_v<Exec, Inside>) {
-      cycle(exec, launch, shift, correction, number + 1);
-    } else {
-      if (runs_inside<Exec>(number + 1))
-        run_inside(exec, shift, correction, number + 1);
-      else
-        cycle(exec, launch, shift, correction, number + 1);
-    }
+    solve_from(exec, launch, shift, cells_of<3>(result_of(next)), number + 1);
     interpolate_from(launch, level, result_of(next));
     if constexpr (right_components == 6)
       launch.template run<Real>(
           interpolate_label_, level.layout,
-          KeepAcross<Operation, Real>{level.grid.extent[0], cells_of<6>(level.right),
-                                      cells_of<3>(level.one)});
+          KeepAcross<Real>{level.grid.extent[0], cells_of<6>(level.right), cells_of<3>(level.one)});
     Field const *u = &level.one, *free = &level.other;
     for (int k = Relaxations - 1; k > 0; --k) {
       relax<false>(launch, level, at(k), *u, cells_of<3>(*free));

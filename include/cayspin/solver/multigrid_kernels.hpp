@@ -75,13 +75,6 @@ struct ShiftedSpinWaves {
                                   multiply_add(Value(Real(-turned)), turned_ku, f - u)));
     return weighted(m, rest, u);
   }
-  /// What of u the equation is about.
-  template <class Value, class Right>
-  KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> across(Vec3<Value> const& u, Right const& right,
-                                                        CellPlace const& place) {
-    Vec3<Value> const m = right.template load<Value>(place, 3);
-    return multiply_add(Value(-dot(m, u)), m, u);
-  }
   template <class Value, class Right>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> first(Right const& right, CellPlace const& place) const {
     return weighted(right.template load<Value>(place, 3), right.template load<Value>(place),
@@ -153,16 +146,18 @@ struct RelaxCells {
   }
 };
 
-/// u = what of it is across m.
-template <class Operation, class Real>
+/// u = what of it is across m, which the equation of ShiftedSpinWaves is about.
+template <class Real>
 struct KeepAcross {
   std::int32_t nx;
-  CellArray<Real, Operation::right_components> right;
+  CellArray<Real, 6> right;
   CellArray<Real, 3> u;
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(CellPlace const& place) const {
-    u.store(Operation::across(u.template load<Value>(place), right, place), place, nx);
+    Vec3<Value> const here = u.template load<Value>(place),
+                      m = right.template load<Value>(place, 3);
+    u.store(multiply_add(Value(-dot(m, here)), m, here), place, nx);
   }
 };
 

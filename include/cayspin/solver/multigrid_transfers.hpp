@@ -9,11 +9,6 @@
 // Between a grid and the next coarser one, one axis at a time.
 namespace cayspin::inline v0_1::detail {
 
-template <class Array>
-KOKKOS_FORCEINLINE_FUNCTION std::ptrdiff_t stride_along(Array const& array, int axis) {
-  return axis == 1 ? array.pitch : array.plane;
-}
-
 /// Packs read numbers beside a row, and multiply them by zero.
 template <class Real>
 KOKKOS_FORCEINLINE_FUNCTION void clear_beside_row(Real* row, std::int32_t nx) {
@@ -34,7 +29,7 @@ struct RestrictRows {
     std::int32_t const coarse = axis == 1 ? place.y : place.z;
     CellPlace first = place;
     (axis == 1 ? first.y : first.z) = 0;
-    std::ptrdiff_t const stride = stride_along(from, axis);
+    std::ptrdiff_t const stride = axis == 1 ? from.pitch : from.plane;
     Real const* const source = from.at(first);
     Real* const target = to.at(place);
     for (int component = 0; component < Components; ++component) {
