@@ -64,6 +64,8 @@ class Table {
   Scene* scene_;
 };
 
+/// That of an integer or a floating-point number, which may be infinite or not a number.
+double value_of(toml::node const& number);
 double number(Item const& item, Limits const& limits = {});
 inline double positive_number(Item const& item) { return number(item, positive); }
 std::int64_t integer(Item const& item, Limits const& limits);
