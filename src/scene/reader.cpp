@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "reader.hpp"
 
-#include "start.hpp"
-
 #include <cayspin/io/expression.hpp>
 
 #include <fmt/ranges.h>

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -84,6 +86,19 @@ auto three(Item const& item, std::string_view accepted, Read const& read) {
   return std::array{read(each[0]), read(each[1]), read(each[2])};
 }
 Triple triple(Item const& item);
+/// v/|v|; nothing when v is zero or not finite. Scaling by a power of two is exact and keeps |v|^2
+/// from overflowing or underflowing.
+inline std::optional<Triple> normalise(Triple const& v) {
+  if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) return std::nullopt;
+  double const largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (largest == 0) return std::nullopt;
+  int const exponent = -std::ilogb(largest);
+  double const x = std::scalbn(v[0], exponent);
+  double const y = std::scalbn(v[1], exponent);
+  double const z = std::scalbn(v[2], exponent);
+  double const norm = std::sqrt(x * x + y * y + z * z);
+  return Triple{x / norm, y / norm, z / norm};
+}
 /// Three numbers, normalised; a zero vector is refused.
 Triple direction(Item const& item);
 
