@@ -73,6 +73,12 @@ inline double positive_number(Item const& item) { return number(item, positive);
 std::int64_t integer(Item const& item, Limits const& limits);
 bool boolean(Item const& item);
 std::string string(Item const& item, std::string_view accepted);
+/// What a key of numbers of sites takes in place of one number.
+std::string accepted_site_numbers(Lattice const& lattice);
+/// False where it is neither an expression nor a table.
+bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers);
+/// Reads numbers of sites, and returns 1; or a number, and returns that.
+double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// A number, or an expression in t.
 AppliedComponent component_in_time(Item const& item);
 
