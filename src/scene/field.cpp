@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "quantity.hpp"
 #include "sections.hpp"
-#include "site_numbers.hpp"
 
 #include <cayspin/io/expression.hpp>
 

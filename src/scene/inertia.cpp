@@ -2,7 +2,6 @@
 #include "hdf5/read_in_child.hpp"
 #include "hdf5/real_dataset.hpp"
 #include "sections.hpp"
-#include "site_numbers.hpp"
 #include "start_file.hpp"
 
 #include <cayspin/io/scene.hpp>

@@ -2,7 +2,6 @@
 #include "random_bits.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
-#include "start.hpp"
 #include "start_file.hpp"
 
 #include <fmt/format.h>

@@ -12,14 +12,15 @@ namespace cayspin::inline v0_1::io::detail {
 namespace {
 
 // Times are n dt in double, so n itself has to be exact there.
-constexpr double most_steps = 9007199254740992.0;  // 2^53
+constexpr std::int64_t most_steps = std::int64_t{1} << 53;
 
 // `end` over dt, whole to 1e-9 of a step. Beyond 2e6 steps the rounding of the two decimal numbers
 // and of their quotient (2 eps of it) is larger than that and must not refuse a whole number.
 std::int64_t steps_until(Item const& end, double dt) {
   auto const time = number(end, not_negative);
   double const quotient = time / dt;
-  if (!(quotient <= most_steps)) end.fail("more than 2^53 steps", "a smaller end or a larger dt");
+  if (!(quotient <= static_cast<double>(most_steps)))
+    end.fail("more than 2^53 steps", "a smaller end or a larger dt");
   double const whole = std::round(quotient);
   double const tolerance = std::max(1e-9, 2 * std::numeric_limits<double>::epsilon() * quotient);
   if (std::abs(quotient - whole) > tolerance) {
@@ -41,7 +42,7 @@ std::int64_t read_steps(Table const& table, double dt) {
   if (end) return steps_until(*end, dt);
   if (!steps) detail::fail(table.item().place, "integrator.end", "is missing", accepted);
   auto const count = integer(*steps, {"a whole number >= 0", 0});
-  if (static_cast<double>(count) > most_steps) steps->fail("more than 2^53 steps");
+  if (count > most_steps) steps->fail("more than 2^53 steps");
   return count;
 }
 

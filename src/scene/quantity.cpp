@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "quantity.hpp"
 
-#include "site_numbers.hpp"
-
 #include <cayspin/units.hpp>
 
 namespace cayspin::inline v0_1::io::detail {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "reader.hpp"
 
-#include "start.hpp"
-
 #include <cayspin/io/expression.hpp>
 
 #include <fmt/ranges.h>
@@ -134,11 +132,15 @@ Table Table::table(std::string_view name, std::string_view accepted) const {
   return Table(required(name, accepted), *scene_);
 }
 
+// toml::node::value has none for an integer that a double rounds.
+double value_of(toml::node const& number) {
+  auto const* const whole = number.as_integer();
+  return whole ? static_cast<double>(whole->get()) : number.as_floating_point()->get();
+}
+
 double number(Item const& item, Limits const& limits) {
   if (!item.node->is_number()) item.wrong_type(limits.accepted);
-  auto const* const whole = item.node->as_integer();
-  auto const value =
-      whole ? static_cast<double>(whole->get()) : item.node->as_floating_point()->get();
+  double const value = value_of(*item.node);
   if (!std::isfinite(value)) item.fail(fmt::format("{} is not finite", value), limits.accepted);
   if (limits.without_least && value <= limits.least)
     item.fail(fmt::format("{} is not positive", value), limits.accepted);

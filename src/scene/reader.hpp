@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,11 +66,19 @@ class Table {
   Scene* scene_;
 };
 
+/// That of an integer or a floating-point number, which may be infinite or not a number.
+double value_of(toml::node const& number);
 double number(Item const& item, Limits const& limits = {});
 inline double positive_number(Item const& item) { return number(item, positive); }
 std::int64_t integer(Item const& item, Limits const& limits);
 bool boolean(Item const& item);
 std::string string(Item const& item, std::string_view accepted);
+/// What a key of numbers of sites takes in place of one number.
+std::string accepted_site_numbers(Lattice const& lattice);
+/// False where it is neither an expression nor a table.
+bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers);
+/// Reads numbers of sites, and returns 1; or a number, and returns that.
+double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers);
 /// A number, or an expression in t.
 AppliedComponent component_in_time(Item const& item);
 
@@ -82,6 +92,19 @@ auto three(Item const& item, std::string_view accepted, Read const& read) {
   return std::array{read(each[0]), read(each[1]), read(each[2])};
 }
 Triple triple(Item const& item);
+/// v/|v|; nothing when v is zero or not finite. Scaling by a power of two is exact and keeps |v|^2
+/// from overflowing or underflowing.
+inline std::optional<Triple> normalise(Triple const& v) {
+  if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) return std::nullopt;
+  double const largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+  if (largest == 0) return std::nullopt;
+  int const exponent = -std::ilogb(largest);
+  double const x = std::scalbn(v[0], exponent);
+  double const y = std::scalbn(v[1], exponent);
+  double const z = std::scalbn(v[2], exponent);
+  double const norm = std::sqrt(x * x + y * y + z * z);
+  return Triple{x / norm, y / norm, z / norm};
+}
 /// Three numbers, normalised; a zero vector is refused.
 Triple direction(Item const& item);
 

@@ -46,6 +46,8 @@ Torque read_torque(Table const& root, SystemKind kind);
 Initial read_initial(Table const& root);
 Integrator read_integrator(Table const& root, SystemKind kind);
 std::optional<Thermal> read_thermal(Table const& root, SystemKind kind);
+/// Opens the files with numbers of sites.
+void check_site_numbers(Scene const& scene);
 /// Refuses a lattice without a spin.
 void require_occupied(Scene const& scene);
 /// Refuses terms that need neighbours along the axes of a lattice in a crystal that has none.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "site_numbers.hpp"
-
 #include "dataset_of_sites.hpp"
 #include "hdf5/read_in_child.hpp"
 #include "sections.hpp"

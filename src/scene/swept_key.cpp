@@ -64,7 +64,7 @@ SweptKey read_swept_key(std::string const& assignment) {
       detail::fail(place, "", fmt::format("the value {} stands twice", value), "distinct values");
     swept.values.emplace_back(value);
     numeric = numeric && node.is_number();
-    if (numeric) swept.numbers.push_back(*node.value<double>());
+    if (numeric) swept.numbers.push_back(detail::value_of(node));
   }
   if (!numeric) swept.numbers.clear();
   return swept;

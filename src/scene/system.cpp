@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "sections.hpp"
-#include "site_numbers.hpp"
 
 #include <fmt/format.h>
 

@@ -18,6 +18,9 @@ void check_thermal(Scene const& scene) {
   if (!scene.thermal || scene.thermal->temperature == 0) return;
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   auto const& method = *integrator.method;
+  if (system.dampings.there())
+    refuse(scene, "thermal.temperature", "a temperature needs one damping for all sites",
+           "a number as damping, or temperature = 0");
   if (!(system.damping > 0))
     refuse(scene, "thermal.temperature",
            "a temperature needs damping: it is what spins take heat by",

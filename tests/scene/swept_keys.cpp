@@ -22,6 +22,8 @@ TEST(SweptKey, CommasInsideBracketsAndQuotesDoNotSeparate) {
 
 TEST(SweptKey, NumbersAreKnownAsNumbers) {
   EXPECT_EQ(read_swept_key("a=0.1,1e-3,-4").numbers, (std::vector<double>{0.1, 1e-3, -4}));
+  EXPECT_EQ(read_swept_key("a=9007199254740995,3").numbers,
+            (std::vector<double>{9007199254740996, 3}));
   EXPECT_TRUE(read_swept_key("a=0.1,true").numbers.empty());
   EXPECT_TRUE(read_swept_key("a='0.1'").numbers.empty());
 }

@@ -77,6 +77,7 @@ thermal.seed = -1 | : | whole number >= 0
 thermal.seed = 0.5 | : | whole number >= 0
 thermal.seed =; thermal.sed = 3 | : | did you mean "seed"
 system.damping = 0 | thermal.temperature: | needs damping
+system.damping = '0.1 + x' | thermal.temperature: | one damping for all sites
 integrator.tolerance = 1e-4; integrator.method = 'tsit5' | : | chooses its steps
 integrator.generator =; integrator.isotropy =; integrator.rotation =; integrator.error = 1e-4;
  integrator.method = 'auto' | : | chooses its steps

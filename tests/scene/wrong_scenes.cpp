@@ -146,6 +146,8 @@ integrator.end =; integrator.steps = -1 | : -1 | >= 0
 integrator.end =; integrator.steps = 3.0 | : 3.0 | a whole number
 integrator.end =; integrator.steps = 9223372036854775807
   | : | more than 2^53 steps | nothing is accepted
+integrator.end =; integrator.steps = 9007199254740993
+  | : | more than 2^53 steps | nothing is accepted
 integrator.end =; integrator.steps = 1000000000; integrator.dt = 1e300
   | : the last time is not finite | fewer steps
 integrator.energy_guard = 'no' | : | true, false

@@ -218,8 +218,8 @@ struct Scene {
 };
 
 /// Reads and validates a scene. Each override is "key.path=VALUE" with a TOML value, applied in
-/// order. Files that the scene names are not opened: check_files, initial_spins and inertia do
-/// that. Throws SceneError.
+/// order. Of the files that the scene names, only a unit-cell file that says what the cell is is
+/// opened: check_files, initial_spins, couplings and inertia open the others. Throws SceneError.
 Scene read_scene(std::filesystem::path const& path, std::vector<std::string> const& overrides = {},
                  Given given = {});
 
