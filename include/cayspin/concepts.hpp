@@ -190,10 +190,7 @@ constexpr std::optional<int> evaluations_per_step() {
 namespace detail {
 
 template <class Observer>
-inline constexpr bool changes_spins = [] {
-  if constexpr (requires { Observer::changes_spins; }) return Observer::changes_spins;
-  return false;
-}();
+inline constexpr bool changes_spins = requires { requires Observer::changes_spins; };
 
 template <class Observer>
 bool is_due(Observer const& observer, Step const& step) {

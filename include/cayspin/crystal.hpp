@@ -73,6 +73,7 @@ struct Crystal {
   Lattice lattice(std::array<std::int64_t, 3> const& cells,
                   std::array<Boundary, 3> const& boundary = {}) const {
     Lattice made{cells, {1, 1, 1}, boundary};
+    made.validate();  // the product of other numbers of cells may overflow
     made.cell_sites = static_cast<std::int64_t>(basis.size());
     made.shape[2] *= made.cell_sites;
     made.validate();
@@ -108,11 +109,16 @@ struct Crystal {
     return std::nullopt;
   }
 
-  /// Throws std::invalid_argument for a cell without volume or sites, and sites at one place.
+  /// Throws std::invalid_argument for a cell without volume or sites, and sites at one place or not
+  /// at a finite one.
   void validate() const {
     if (!(fullness() > 1e-12))
       throw std::invalid_argument("cayspin::Crystal: the cell's vectors span no volume");
     if (basis.empty()) throw std::invalid_argument("cayspin::Crystal: the cell has no sites");
+    for (std::size_t site = 0; site < basis.size(); ++site)
+      if (!std::ranges::all_of(basis[site], [](double x) { return std::isfinite(x); }))
+        throw std::invalid_argument("cayspin::Crystal: site " + std::to_string(site) +
+                                    " is at no finite place");
     if (auto const two = sites_at_one_place())
       throw std::invalid_argument("cayspin::Crystal: sites " + std::to_string((*two)[0]) + " and " +
                                   std::to_string((*two)[1]) + " are at one place");

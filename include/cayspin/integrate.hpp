@@ -38,7 +38,8 @@ struct Summary {
   std::int64_t rejected = 0;     // and thrown away
 };
 
-/// Calls an observer every `period` steps, and at the first and last step.
+/// Calls an observer after every `period` steps, counted from step 0, and after the last one; where
+/// the observer has a due(Step) of its own, only if that wants the call, too.
 template <class Observer>
 class Every {
  public:
@@ -48,7 +49,9 @@ class Every {
     if (period < 1) throw std::invalid_argument("cayspin::Every: the period must be at least 1");
   }
 
-  bool due(Step const& step) const { return step.last || step.number % period_ == 0; }
+  bool due(Step const& step) const {
+    return (step.last || step.number % period_ == 0) && detail::is_due(observer_, step);
+  }
 
   template <class Exec, class Spins>
   auto operator()(Exec const& exec, Step const& step, Spins const& spins) {

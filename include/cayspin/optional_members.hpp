@@ -52,10 +52,7 @@ constexpr void check_energy_density() {
 
 /// Is H of a term, or of a generator's field, the derivative of an energy?
 template <class Source>
-inline constexpr bool is_conservative = [] {
-  if constexpr (requires { requires !Source::is_conservative; }) return false;
-  return true;
-}();
+inline constexpr bool is_conservative = !requires { requires !Source::is_conservative; };
 
 /// For what follows an energy.
 template <class Source>
@@ -159,17 +156,11 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil 
 }
 
 template <class Term>
-inline constexpr bool depends_on_time = [] {
-  if constexpr (requires { Term::depends_on_time; }) return Term::depends_on_time;
-  return false;
-}();
+inline constexpr bool depends_on_time = requires { requires Term::depends_on_time; };
 
 /// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A.
 template <class Term>
-inline constexpr bool is_local = [] {
-  if constexpr (requires { Term::is_local; }) return Term::is_local;
-  return false;
-}();
+inline constexpr bool is_local = requires { requires Term::is_local; };
 
 /// A base of terms that are prepared once for all t and spins.
 struct PreparedOnce {

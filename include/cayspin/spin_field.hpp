@@ -174,11 +174,12 @@ inline void require_lattice(char const* who, Lattice const& lattice, Lattice con
            std::to_string(shape[2]);
   };
   throw std::invalid_argument(
-      std::string(who) +
-      (lattice.shape == spins.shape
-           ? ": made for a lattice of other spacings or boundaries than that of the spins"
-           : ": made for a lattice of " + sites(lattice) + " sites, and the spins are on " +
-                 sites(spins)));
+      std::string(who) + ": made for a lattice " +
+      (lattice.shape != spins.shape
+           ? "of " + sites(lattice) + " sites, and the spins are on " + sites(spins)
+       : lattice.cell_sites != spins.cell_sites
+           ? "with another number of sites in a cell than that of the spins"
+           : "of other spacings or boundaries than that of the spins"));
 }
 
 namespace detail {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "../support/wrong_call.hpp"
 
+#include <cayspin/crystal.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/spin_field.hpp>
 
 #include <limits>
 
@@ -39,6 +41,19 @@ TEST(LatticeValidate, EqualWhenEveryAxisIs) {
   EXPECT_NE(Lattice::chain(3, 0.5), Lattice::chain(3, 0.25));
   EXPECT_NE(Lattice::chain(3), Lattice::chain(3, 1, Boundary::periodic));
   EXPECT_NE(Lattice::chain(3), Lattice::square(3, 2));
+}
+
+TEST(RequireLattice, SaysWhatDiffers) {
+  auto const difference = [](Lattice const& lattice) {
+    return refusal([&] { require_lattice("x", Lattice::cubic(2, 3, 4), lattice); });
+  };
+  EXPECT_EQ(difference(Lattice::cubic(2, 3, 4)), "taken");
+  EXPECT_EQ(difference(Lattice::cubic(2, 4, 3)),
+            "x: made for a lattice of 2 x 3 x 4 sites, and the spins are on 2 x 4 x 3");
+  EXPECT_EQ(difference(Lattice::cubic(2, 3, 4, 0.5)),
+            "x: made for a lattice of other spacings or boundaries than that of the spins");
+  EXPECT_EQ(difference(Crystal::bcc().lattice({2, 3, 2})),
+            "x: made for a lattice with another number of sites in a cell than that of the spins");
 }
 
 }  // namespace

@@ -107,6 +107,12 @@ TYPED_TEST(Integrate, EveryThinsOutAndNeverMissesTheEnds) {
   EXPECT_THROW(Every(0, this->remember()), std::invalid_argument);
 }
 
+TYPED_TEST(Integrate, EveryLeavesOutWhatItsObserverDoesNotWant) {
+  integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 13},
+            Every(4, Every(6, this->remember())));
+  EXPECT_EQ(this->numbers(), (Numbers{0, 12, 13}));
+}
+
 TYPED_TEST(Integrate, ObserversAreCalledEachWhenDueAndInOrder) {
   std::vector<int> who;
   integrate(this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 4},

@@ -7,6 +7,8 @@
 #include <cayspin/shells.hpp>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace cayspin::inline v0_1::io::test {
 namespace {
@@ -147,6 +149,9 @@ TEST(Crystals, BondsThatCannotBeListedAreRefused) {
   EXPECT_THROW(couplings_of_shells({Crystal{}.cell, {}}, {1}), std::invalid_argument);
   EXPECT_THROW(couplings_of_shells({Crystal{}.cell, {{0, 0, 0}, {1, 0, 0}}}, {1}),
                std::invalid_argument);
+  for (double const fraction : {std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(couplings_of_shells({Crystal{}.cell, {{0, fraction, 0}}}, {1}),
+                 std::invalid_argument);
   EXPECT_THROW(couplings_of_shells(Crystal::bcc(), {1, 2}, {false, false, false}),
                std::invalid_argument);
   EXPECT_EQ(couplings_of_shells(Crystal::bcc(), {1}, {false, false, false}).size(), 1U);
@@ -154,6 +159,11 @@ TEST(Crystals, BondsThatCannotBeListedAreRefused) {
   EXPECT_THROW(couplings_of_shells(flat, std::vector<double>(300, 1.0)), std::invalid_argument);
   Crystal const skew{{{{1, 0, 0}, {1e10, 1, 0}, {0, 0, 1}}}, {{0, 0, 0}}};
   EXPECT_THROW(couplings_of_shells(skew, {1}), std::invalid_argument);
+}
+
+TEST(Crystals, CellsWhosePlanesOverflowAreRefused) {
+  std::int64_t const cells = (std::int64_t{1} << 62) + 1;  // of 4 sites: 4 planes, less 2^64
+  EXPECT_THROW(Crystal::fcc().lattice({1, 1, cells}), std::invalid_argument);
 }
 
 TEST(Crystals, ExpressionsSeeTheSite) {

@@ -14,16 +14,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct FieldOfSites {
-  Exchange exchange;
-  detail::SiteArray<double, 3> spins;
-  detail::OutputArray<double, 3> fields;
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    site.store(exchange.field(Stencil<Site, double>(site, spins)), fields);
-  }
-};
-
 /// The largest eigenvalue of the exchange term's own matrix, built column by column.
 double largest_eigenvalue(Lattice const& lattice, double constant) {
   std::int64_t const n = lattice.sites();
@@ -34,9 +24,7 @@ double largest_eigenvalue(Lattice const& lattice, double constant) {
     std::vector<double> numbers(3 * n, 0.0);
     numbers[3 * column] = 1;
     copy_from_host(numbers, spins);
-    detail::for_each_site<double>(
-        exec, "cayspin::test::exchange", spins.layout(),
-        FieldOfSites{Exchange{lattice, constant}, spins.array(), fields.output(false)});
+    evaluate_field(exec, Exchange{lattice, constant}, spins, 0, fields);
     exec.fence();
     auto const column_numbers = copy_to_host(fields);
     for (std::int64_t row = 0; row < n; ++row) matrix(row, column) = -column_numbers[3 * row];

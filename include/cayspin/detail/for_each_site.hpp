@@ -53,8 +53,6 @@ struct RowBlock {
 /// There are enough for many threads, and each is large enough to hide the cost of its start.
 class RowBlocks {
  public:
-  explicit RowBlocks(RowLayout const& layout, std::int32_t packs)
-      : RowBlocks(layout, packs, layout.all()) {}
   RowBlocks(RowLayout const& layout, std::int32_t packs, RowRange const& rows)
       : rows_(rows), packs_(packs), parts_of_row_(tasks_per_row(layout)) {
     auto const sites = std::clamp<std::int64_t>(layout.sites() / 1024, 512, 16384);
