@@ -146,7 +146,10 @@ void run_with_file(SceneRun& run, std::filesystem::path const& path, bool overwr
   try {
     run_to_end(run, recorder);
   } catch (...) {
-    recorder.finish(false);
+    try {
+      recorder.finish(false);
+    } catch (...) {  // the first exception says why the run ended
+    }
     throw;
   }
   recorder.finish();

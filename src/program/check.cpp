@@ -86,7 +86,7 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
   };
   fmt::print(
       "{{\"stable_dt\": {}, \"dt\": {}, \"steps\": {}, {}, \"evaluations_per_step\": {}, "
-      "\"order\": {}, \"frames\": {}, \"file_bytes\": {}, \"method\": \"{}\", "
+      "\"order\": {}, \"frames\": {}, \"file_bytes\": {:.0f}, \"method\": \"{}\", "
       "\"precision\": \"{}\"{}",
       stable_in(units.time), plan.times.dt * units.time, plan.times.steps, memory_json(plan),
       per_step ? fmt::format("{}", *per_step) : "null", order(scene, plan.variant), plan.frames,
@@ -103,7 +103,7 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
 void print_json_to_relax(io::Scene const& scene, Plan const& plan, Precision precision) {
   fmt::print(
       "{{\"stable_dt\": null, {}, \"evaluations_per_step\": null, \"states\": {}, "
-      "\"file_bytes\": {}, \"precision\": \"{}\"{}}}\n",
+      "\"file_bytes\": {:.0f}, \"precision\": \"{}\"{}}}\n",
       memory_json(plan), plan.frames, plan.file_bytes, to_string(precision),
       units_json(scene.units));
 }

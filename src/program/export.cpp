@@ -3,7 +3,7 @@
 #include "simulation/failure.hpp"
 
 #include <cayspin/io/ovf.hpp>
-#include <cayspin/io/scene.hpp>
+#include <cayspin/io/relax.hpp>
 #include <cayspin/io/trajectory.hpp>
 
 #include <fmt/format.h>
@@ -59,8 +59,8 @@ bool is_rectangular(io::Lattice const& lattice) {
 // Nodes in the middle of cells of the lattice's spacing. The start is of no interest here, and may
 // be one that only the run's own program could give.
 io::OvfMesh mesh_of(io::TrajectoryInfo const& info) {
-  auto const scene =
-      io::parse_scene(info.header.scene_text, info.path, {"initial={uniform=[0,0,1]}"});
+  auto const scene = io::parse_scene_to_run_or_relax(info.header.scene_text, info.path,
+                                                     {"initial={uniform=[0,0,1]}"});
   if (!is_rectangular(scene.lattice))
     throw std::runtime_error(fmt::format(
         "{}: its sites are no rectangular mesh, which is all that OVF has; accepted: a file of a "

@@ -55,9 +55,12 @@ void Progress::show(Step const& step) {
   // Looking at the clock costs as much as a small step, so it is done about ten times a second.
   next_ = step.number + std::max<std::int64_t>(1, static_cast<std::int64_t>(0.1 * rate));
   double const least_pause = listener_ == Listener::program ? 0.2 : terminal_ ? 0.1 : 5;
-  // The first step may take long.
-  if (step.number == first_ && listener_ == Listener::user && steps_ > first_)
-    draw(0, fmt::format("step {} of {}", first_, steps_));
+  if (step.number == first_) {
+    // The first step may take long.
+    if (listener_ == Listener::user && steps_ > first_)
+      draw(0, fmt::format("step {} of {}", first_, steps_));
+    return;
+  }
   if (pause.count() < least_pause) return;
   shown_ = now;
   if (listener_ == Listener::program) return say(fmt::format("{} {}", step.number, steps_));

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,7 @@ class Relaxation {
         states_ + 1, count, to_string(found.end), found.evaluations,
         found.torque * scene_.units.field, scene_.units.si ? " T" : "",
         energy_text(scene_.units, last_.energy.value), m.x, m.y, m.z);
+    std::fflush(stdout);
   }
 
   io::Scene const& scene_;

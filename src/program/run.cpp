@@ -134,15 +134,15 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   // The library's own messages, which know nothing of the scene's units.
   if (failure && scene.units.si)
     *failure += fmt::format(" (times in units of {:.6g} s)", scene.units.time);
-  if (failure) fail(*failure);
   io::RunCost const cost{summary.evaluations, clock.seconds(), summary.step_seconds};
-  bool const whole = !watch.failure() && !watch.interrupted();
+  bool const whole = !failure && !watch.failure() && !watch.interrupted();
   auto const frames = ranks.together([&]() -> std::int64_t {
     if (!watch.file()) return 0;
     auto const written = watch.file()->frames();
     whole ? watch.file()->finish(cost) : watch.file()->close(cost);
     return written;
   });
+  if (failure) fail(*failure);
   bool const has_file = ranks.any({watch.file().has_value(), false})[0];
   if (has_file && !watch.failure() && !scene.output.checkpoint_every.is_never()) {
     // Of a run without memory the last frame says it all.

@@ -128,10 +128,8 @@ std::string terminal_picture(io::Lattice const& lattice, std::vector<double> con
   Plane const plane(lattice, spins);
   auto const columns = std::clamp(plane.cells(0), least, most);
   auto const wanted = static_cast<double>(columns) * plane.height_over_width();
-  auto const rows = plane.is_chain()
-                        ? 1
-                        : std::clamp(static_cast<std::int64_t>(std::lround(wanted / 2)),
-                                     std::int64_t{1}, most / 2);
+  std::int64_t const rows =
+      plane.is_chain() ? 1 : std::lround(std::clamp(wanted / 2, 1.0, most / 2.0));
   std::string text;
   for (auto row = rows - 1; row >= 0; --row) {
     text += fmt::format("{:<11} ", row == rows - 1 ? "picture" : "");

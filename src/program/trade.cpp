@@ -147,11 +147,25 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   }
 }
 
+// A word for the shell.
+std::string shell_word(std::string_view word) {
+  std::string text = "'";
+  for (char const character : word) {
+    if (character == '\'')
+      text += R"('\'')";
+    else
+      text += character;
+  }
+  return text + "'";
+}
+
 std::string command_of(AdviseOptions const& options, Resolved const& resolved,
                        Precision precision) {
-  std::string command = fmt::format("cayspin run {}", options.scene.string());
+  auto const scene = options.scene.string();
+  bool const is_plain = scene.find_first_of(" \t\n'\"\\$`&|;<>()[]{}*?!#~") == std::string::npos;
+  auto command = "cayspin run " + (is_plain ? scene : shell_word(scene));
   for (auto const& overrides : {options.overrides, resolved.overrides})
-    for (auto const& override : overrides) command += fmt::format(" --set '{}'", override);
+    for (auto const& override : overrides) command += " --set " + shell_word(override);
   if (precision == Precision::single_precision) command += " --precision single";
   return command;
 }

@@ -100,7 +100,13 @@ std::string steps_text(FollowedTrajectory const& run, Report const& report) {
   if (report.steps > 0)
     text += fmt::format(" of {} ({:.1f} %)", report.steps,
                         100 * static_cast<double>(step) / static_cast<double>(report.steps));
-  return text + fmt::format(", t = {:.9g}", run.times().back());
+  auto const unit = run.header().units.si ? " s" : "";
+  return text + fmt::format(", t = {:.9g}{}", run.times().back(), unit);
+}
+
+std::string last_energy_text(FollowedTrajectory const& run) {
+  auto const unit = run.header().units.si ? " J" : "";
+  return fmt::format("{:.9g}{}", run.scalars().back().energy, unit);
 }
 
 std::string left_text(FollowedTrajectory const& run, Report const& report) {
@@ -153,16 +159,17 @@ std::vector<std::string> lines_of(FollowedTrajectory const& run, Report const& r
     if (auto const left = left_text(run, report); !left.empty()) text += ", " + left;
     add("time", text);
   }
-  add("energy", fmt::format("{:<16.9g} {}", now.energy,
+  add("energy", fmt::format("{:<18} {}", last_energy_text(run),
                             history(run, [](auto const& scalars) { return scalars.energy; })));
   add("norm defect",
-      fmt::format("{:<16.3g} {}", now.norm_defect,
+      fmt::format("{:<18.3g} {}", now.norm_defect,
                   history(run, [](auto const& scalars) { return scalars.norm_defect; })));
   for (std::size_t c = 0; c < 3; ++c)
     add(c == 0 ? "magnetization" : "",
-        fmt::format("{} {:<12.6f}   {}", "xyz"[c], m[c],
+        fmt::format("{} {:<12.6f}     {}", "xyz"[c], m[c],
                     history(run, [c](auto const& scalars) { return scalars.magnetization[c]; })));
-  if (auto const rate = magnetization_rate(run)) add("|dm/dt|", fmt::format("{:.3g}", *rate));
+  if (auto const rate = magnetization_rate(run))
+    add("|dm/dt|", fmt::format("{:.3g}{}", *rate, header.units.si ? " 1/s" : ""));
   for (auto& line : lines) line.erase(line.find_last_not_of(' ') + 1);
   return lines;
 }
@@ -171,8 +178,9 @@ std::string one_line_of(FollowedTrajectory const& run, Report const& report) {
   if (run.steps().empty()) return fate_text(report);
   auto const& now = run.scalars().back();
   auto const& m = now.magnetization;
-  auto line = fmt::format("{}: energy {:.9g}, norm defect {:.3g}, m ({:.6f}, {:.6f}, {:.6f})",
-                          steps_text(run, report), now.energy, now.norm_defect, m[0], m[1], m[2]);
+  auto line = fmt::format("{}: energy {}, norm defect {:.3g}, m ({:.6f}, {:.6f}, {:.6f})",
+                          steps_text(run, report), last_energy_text(run), now.norm_defect, m[0],
+                          m[1], m[2]);
   if (auto const left = left_text(run, report); !left.empty()) line += ", " + left;
   return line;
 }

@@ -318,12 +318,15 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
                           : memory_of<float>(scene, lattice, plan.variant, precision, 0);
   auto const count = [&](std::int64_t every) { return (integrator.steps + every - 1) / every + 1; };
   plan.frames = count(scene.output.every);
-  std::int64_t const sample_bytes = 8 * 7;
-  plan.file_bytes = plan.frames * (lattice.sites() * 3 * (in_double ? 8 : 4) + sample_bytes) +
-                    count(scene.output.scalars_every) * sample_bytes;
+  constexpr double sample_bytes = 8 * 7;
+  auto const frames = static_cast<double>(plan.frames);
+  auto const samples = static_cast<double>(count(scene.output.scalars_every));
+  auto const numbers = 3 * static_cast<double>(lattice.sites());
+  plan.file_bytes =
+      frames * (numbers * (in_double ? 8 : 4) + sample_bytes) + samples * sample_bytes;
   if (has_positions(scene.lattice))
-    plan.file_bytes +=
-        position_bytes(scene.lattice) + 24 * plan.frames * std::ssize(scene.lattice.basis);
+    plan.file_bytes += static_cast<double>(position_bytes(scene.lattice)) +
+                       24 * frames * static_cast<double>(scene.lattice.basis.size());
   // What a step has to follow. Its fastest modes are those of exchange: a stable dt guards them.
   io::Scene followed = scene;
   if (plan.variant.method->stiff || std::isfinite(plan.stable_dt)) {

@@ -34,7 +34,7 @@ struct Plan {
   double turn;       // the most that a spin can turn in a step, in radians; some without exchange
   Memory memory;
   std::int64_t frames;
-  std::int64_t file_bytes;
+  double file_bytes;      // may be more than an integer holds
   double noise_turn = 0;  // root mean square of the angle by which noise turns a spin in a step
 
   static constexpr double most_noise = 0.5;  // radians a step

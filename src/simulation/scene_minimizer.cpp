@@ -35,8 +35,8 @@ Plan make_plan_to_relax(io::Scene const& scene, Precision precision) {
   auto plan = make_plan(without_steps, precision);
   auto const states = static_cast<std::int64_t>(io::fields_in_turn(scene).size());
   plan.frames *= states;
-  auto const once = position_bytes(scene.lattice);
-  plan.file_bytes = once + states * (plan.file_bytes - once);
+  auto const once = static_cast<double>(position_bytes(scene.lattice));
+  plan.file_bytes = once + static_cast<double>(states) * (plan.file_bytes - once);
   plan.memory.work = plan.memory.spins * Minimizer<SpinField<double>>::work_fields;
   return plan;
 }

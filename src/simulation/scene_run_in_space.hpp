@@ -115,17 +115,16 @@ class SceneRunInSpace final
 
   Minimum find_rest(io::Field const& field, MinimizeOptions const& options) override {
     leave_lent_memory(true);
-    begin_again();
     if (!minimizer_) {
       require_memory(scene_, make_plan_to_relax(scene_, precision()));
       minimizer_.emplace(simulation_.spins);
     }
     auto in_field = scene_;
     in_field.field = field;
-    return minimizer_->minimize(
-        simulation_.exec, scene_,
-        field_of<Spins>(in_field, plan_.lattice, false).made_for(FieldFor::energy),
-        simulation_.spins, options);
+    auto const sought = field_of<Spins>(in_field, plan_.lattice, false).made_for(FieldFor::energy);
+    // What could be refused has been: until here a run goes on as it was.
+    begin_again();
+    return minimizer_->minimize(simulation_.exec, scene_, sought, simulation_.spins, options);
   }
 
   // With other spins.

@@ -20,10 +20,12 @@ std::pair<double, char const*> prefixed(double value) {
 
 }  // namespace
 
-std::string bytes_text(std::int64_t bytes) {
-  auto const [value, prefix] = prefixed(static_cast<double>(bytes));
+std::string bytes_text(double bytes) {
+  auto const [value, prefix] = prefixed(bytes);
   return fmt::format("{:.3g} {}B", value, prefix);
 }
+
+std::string bytes_text(std::int64_t bytes) { return bytes_text(static_cast<double>(bytes)); }
 
 std::string duration_text(double seconds) {
   if (!(seconds < 3.2e9)) return "centuries";

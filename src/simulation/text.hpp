@@ -11,6 +11,7 @@
 namespace cayspin::simulation {
 
 /// "1.2 GB"
+std::string bytes_text(double bytes);
 std::string bytes_text(std::int64_t bytes);
 /// "3 min 20 s"
 std::string duration_text(double seconds);

@@ -119,6 +119,14 @@ TEST_F(Checking, CountsCostAndFrames) {
   EXPECT_LT(numbers.at("file_bytes").get<double>(), size);
 }
 
+TEST_F(Checking, CountsBytesOfFilesThatNoDiskHolds) {
+  auto const changes = set("integrator={method='euler',dt=0.01,steps=1000000000000}",
+                           "output.every=1", "lattice.shape=[1000,1000]");
+  EXPECT_NEAR(check(chain_scene(), changes).at("file_bytes").get<double>(), 2.4e19, 1e16);
+  auto const text = output_of(joined({"check", "scene.toml"}, changes));
+  EXPECT_TRUE(contains(text, "1000000000001 frames, 24 EB, to"));
+}
+
 // rkmk4 holds the state, two fields of spins and three of increments; euler the state and one.
 TEST_F(Checking, CountsMemory) {
   auto const bytes = [&](std::string const& method, std::string const& precision) {

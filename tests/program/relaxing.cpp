@@ -124,6 +124,12 @@ TEST_F(Relax, LeavesNoCheckpointOfAnother) {
   EXPECT_FALSE(exists("out.checkpoint.h5"));
 }
 
+TEST_F(Relax, IsExported) {
+  ASSERT_EQ(relax(scene).status, 0);
+  EXPECT_EQ(output_of({"export", "out.h5", "--ovf", "ovf"}), "ovf/out_000000.ovf\n");
+  EXPECT_TRUE(exists("ovf/out_000000.ovf"));
+}
+
 // `check` says what relax would do with a scene that only relax takes.
 TEST_F(Relax, IsChecked) {
   std::string const list = "field.applied=[[0.3, 0, 0.001], [0, 0, 0.001], [-0.3, 0, 0.001]]";

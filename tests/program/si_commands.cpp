@@ -124,6 +124,12 @@ TEST_F(SiScene, MessagesHaveSeconds) {
   EXPECT_TRUE(contains(pole.errors, "field.applied: is not finite at t = 1.00"));
 }
 
+TEST_F(SiScene, WatchHasUnits) {
+  run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 25", "[0.02, 0, 0.1]"));
+  EXPECT_TRUE(
+      contains_all(output_of({"watch", "out.h5"}), {"t = 2.5e-12 s: energy ", " J, norm defect "}));
+}
+
 TEST_F(SiScene, UntilTorqueIsInTesla) {
   auto const info = run(atom("until_torque = 1e-4\n[output]\nscalars_every = 1\n"),
                         set("integrator.end=1e-8", "integrator.dt=1e-12"));

@@ -287,6 +287,11 @@ TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
   }
 }
 
+TEST_F(Trading, AdvisedCommandKeepsQuotesForTheShell) {
+  auto const advice = advise("1e-3", set("output.file='my run.h5'"));
+  EXPECT_TRUE(contains(advice, R"( --set 'output.file='\''my run.h5'\''')")) << advice;
+}
+
 TEST_F(Trading, AdvisesInTheOnePrecisionThatIsAskedFor) {
   for (std::string const precision : {"double", "single"}) {
     auto const advice = advise("1e-3", {"--precision", precision});
