@@ -102,6 +102,7 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
   all["end"] = pilot.end() * units.time;
   all["why_shorter"] = reference.horizon.why_shorter;
   all["uncertainty"] = reference.uncertainty;
+  all["methods"] = nlohmann::json::array();
   for (auto const& ladder : ladders) {
     nlohmann::json one;
     one["method"] = ladder.candidate.name();
@@ -147,11 +148,24 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   }
 }
 
+// As one word of a shell.
+std::string shell_word(std::string const& text) {
+  std::string word = "'";
+  for (char const letter : text) {
+    if (letter == '\'') word += "'\\'";
+    word += letter;
+  }
+  return word + "'";
+}
+
 std::string command_of(AdviseOptions const& options, Resolved const& resolved,
                        Precision precision) {
-  std::string command = fmt::format("cayspin run {}", options.scene.string());
+  auto const scene = options.scene.string();
+  bool const is_plain = scene.find_first_of(" \t\n'\"\\$`&|;<>()[]{}*?!#~") == scene.npos;
+  std::string command = fmt::format("cayspin run {}", is_plain ? scene : shell_word(scene));
   for (auto const& overrides : {options.overrides, resolved.overrides})
-    for (auto const& override : overrides) command += fmt::format(" --set '{}'", override);
+    for (auto const& override : overrides)
+      command += fmt::format(" --set {}", shell_word(override));
   if (precision == Precision::single_precision) command += " --precision single";
   return command;
 }
