@@ -120,6 +120,9 @@ class Trajectory:
         if not isinstance(frames, slice):
             raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
         spins, chosen = self.file["spins"], range(len(self))[frames]
+        if chosen.step < 0:
+            raise CayspinError(f"dispersion: frames {frames!r} go back in time; accepted: a slice "
+                               "with a step above 0")
         if len(chosen) < 4:
             raise CayspinError(f"dispersion: {len(chosen)} frames; accepted: at least 4")
         time = self.file["time"][:][chosen]
