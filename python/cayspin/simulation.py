@@ -70,6 +70,7 @@ class Simulation:
         n = arguments.whole(n, "step")
         if not self._scene._scene.has_integrator:
             raise _cayspin.CayspinError("step: the scene has no integrator; accepted: relax()")
+        self._run.require_reachable(n)
         self._check_dt()
         if n > 0 and self._observers:
             self._advance(self._run.steps + n, _GUARD_PERIOD, False, None)
@@ -93,6 +94,7 @@ class Simulation:
         if end < self.steps:
             raise _cayspin.CayspinError(f"run: until t = {end * self._scene.dt:g}, and the time is "
                                         f"{self.time:g}; accepted: a later time")
+        self._run.require_reachable(end - self.steps)
         self._check_dt()
         if output is None:
             output = self._scene._scene.output

@@ -120,6 +120,9 @@ class Trajectory:
         if not isinstance(frames, slice):
             raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
         spins, chosen = self.file["spins"], range(len(self))[frames]
+        if chosen.step < 0:
+            raise CayspinError(f"dispersion: frames {frames!r} go back in time; accepted: a slice "
+                               "with a step above 0")
         if len(chosen) < 4:
             raise CayspinError(f"dispersion: {len(chosen)} frames; accepted: at least 4")
         time = self.file["time"][:][chosen]
@@ -160,12 +163,19 @@ class Trajectory:
         from xarray.core import indexing
 
         class Lazy(BackendArray):
-            def __init__(self, dataset):
-                self.dataset, self.shape, self.dtype = dataset, dataset.shape, dataset.dtype
+            def __init__(self, dataset, length):
+                self.dataset, self.dtype = dataset, dataset.dtype
+                self.shape = (length, *dataset.shape[1:])
 
             def __getitem__(self, key):
                 return indexing.explicit_indexing_adapter(
-                    key, self.shape, indexing.IndexingSupport.BASIC, self.dataset.__getitem__)
+                    key, self.shape, indexing.IndexingSupport.BASIC, self.read)
+
+            def read(self, key):
+                first, *others = key
+                if isinstance(first, slice):  # a kill may leave a row more than is counted
+                    first = slice(*first.indices(self.shape[0]))
+                return self.dataset[(first, *others)]
 
         of_cell = ("site",) if self.file["spins"].ndim == 6 else ()
         axes = (*of_cell, "z", "y", "x", "component")
@@ -173,10 +183,12 @@ class Trajectory:
                       "sublattice_magnetization": ("frame", "site", "component"),
                       "positions": axes}
         names = (*self._names, *(name for name in self._of_crystals if name in self.file))
-        variables = {name: (dimensions.get(name, ("frame",)),
-                            indexing.LazilyIndexedArray(Lazy(self.file[name])))
-                     for name in names}
-        coordinates = {"component": ["x", "y", "z"], "time": ("frame", self.time[:])}
+        frames, variables = len(self), {}
+        for name in names:
+            dataset, axes_of = self.file[name], dimensions.get(name, ("frame",))
+            length = frames if axes_of[0] == "frame" else len(dataset)
+            variables[name] = axes_of, indexing.LazilyIndexedArray(Lazy(dataset, length))
+        coordinates = {"component": ["x", "y", "z"], "time": ("frame", self.time[:frames])}
         variables.pop("time")
         attributes = {key: value for key, value in self.file.attrs.items()}
         return xarray.Dataset(variables, coordinates, attributes)
@@ -192,7 +204,8 @@ class Trajectory:
         self.close()
 
     def __len__(self):
-        return builtins.min(len(self.file["spins"]), len(self.file["time"]))
+        names = (*self._names, "sublattice_magnetization")
+        return builtins.min(len(self.file[name]) for name in names if name in self.file)
 
     def __repr__(self):
         *of_cell, nz, ny, nx = self.file["spins"].shape[1:-1]

@@ -202,6 +202,7 @@ void define_run(nb::module_& module) {
            [](SceneRun& run, std::filesystem::path const& checkpoint) {
              as_error([&] { run.save(checkpoint); });
            })
+      .def("require_reachable", &SceneRun::require_reachable)
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
       .def("warning", &SceneRun::warning)

@@ -12,6 +12,17 @@
 #include <cstdlib>
 
 namespace cayspin::program {
+namespace {
+
+// Zeros where no stream is a terminal.
+winsize terminal_size() {
+  winsize size{};
+  for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
+    if (size.ws_col == 0 && ::ioctl(stream, TIOCGWINSZ, &size) != 0) size = {};
+  return size;
+}
+
+}  // namespace
 
 bool is_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 
@@ -49,11 +60,14 @@ std::string sparkline(std::span<double const> values) {
   return line;
 }
 
+int terminal_lines() {
+  auto const lines = terminal_size().ws_row;
+  return lines > 0 ? lines : 24;
+}
+
 std::string fitted(std::string line) {
-  winsize size{};
-  for (int const stream : {STDOUT_FILENO, STDERR_FILENO})
-    if (size.ws_col == 0 && ::ioctl(stream, TIOCGWINSZ, &size) != 0) size = {};
-  std::size_t const width = size.ws_col > 0 ? size.ws_col : 80;
+  auto const columns = terminal_size().ws_col;
+  std::size_t const width = columns > 0 ? columns : 80;
   // Columns, not bytes: continuation bytes of UTF-8 take none.
   std::size_t column = 0;
   for (std::size_t byte = 0; byte < line.size(); ++byte) {

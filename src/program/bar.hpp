@@ -19,6 +19,9 @@ std::string bar(double share);
 /// Values over time as a row of blocks; empty where the locale has none, or values are not finite.
 std::string sparkline(std::span<double const> values);
 
+/// How many lines the terminal shows.
+int terminal_lines();
+
 /// A line, cut where it would wrap on the terminal.
 std::string fitted(std::string line);
 

@@ -102,6 +102,7 @@ nlohmann::json as_json(Pilot const& pilot, Reference const& reference,
   all["end"] = pilot.end() * units.time;
   all["why_shorter"] = reference.horizon.why_shorter;
   all["uncertainty"] = reference.uncertainty;
+  all["methods"] = nlohmann::json::array();
   for (auto const& ladder : ladders) {
     nlohmann::json one;
     one["method"] = ladder.candidate.name();
@@ -147,25 +148,24 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   }
 }
 
-// A word for the shell.
-std::string shell_word(std::string_view word) {
-  std::string text = "'";
-  for (char const character : word) {
-    if (character == '\'')
-      text += R"('\'')";
-    else
-      text += character;
+// As one word of a shell.
+std::string shell_word(std::string const& text) {
+  std::string word = "'";
+  for (char const letter : text) {
+    if (letter == '\'') word += "'\\'";
+    word += letter;
   }
-  return text + "'";
+  return word + "'";
 }
 
 std::string command_of(AdviseOptions const& options, Resolved const& resolved,
                        Precision precision) {
   auto const scene = options.scene.string();
-  bool const is_plain = scene.find_first_of(" \t\n'\"\\$`&|;<>()[]{}*?!#~") == std::string::npos;
-  auto command = "cayspin run " + (is_plain ? scene : shell_word(scene));
+  bool const is_plain = scene.find_first_of(" \t\n'\"\\$`&|;<>()[]{}*?!#~") == scene.npos;
+  std::string command = fmt::format("cayspin run {}", is_plain ? scene : shell_word(scene));
   for (auto const& overrides : {options.overrides, resolved.overrides})
-    for (auto const& override : overrides) command += " --set " + shell_word(override);
+    for (auto const& override : overrides)
+      command += fmt::format(" --set {}", shell_word(override));
   if (precision == Precision::single_precision) command += " --precision single";
   return command;
 }

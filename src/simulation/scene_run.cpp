@@ -199,11 +199,10 @@ std::int64_t SceneRun::step_at(double t) const {
   return static_cast<std::int64_t>(whole);
 }
 
-Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
+void SceneRun::require_reachable(std::int64_t count) const {
   if (!io::has_integrator(scene_))
     throw UsageError("the scene has no table [integrator]; accepted: a search for a state of rest");
   if (count < 0) throw UsageError(fmt::format("{} steps; accepted: a whole number >= 0", count));
-  Turn const turn;
   constexpr std::int64_t last = std::int64_t{1} << 53U;  // times beyond it are not exact
   if (count > last - number_)
     throw UsageError(
@@ -216,7 +215,12 @@ Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
         "stops; accepted: a later integrator.end, or integrator.steps = 0 for a run without end",
         target, scene_.integrator.steps,
         plan_.times.at(scene_.integrator.steps) * scene_.units.time));
-  return advance_to(target, looks);
+}
+
+Advanced SceneRun::advance(std::int64_t count, Looks const& looks) {
+  Turn const turn;
+  require_reachable(count);
+  return advance_to(number_ + count, looks);
 }
 
 Minimum SceneRun::relax(RelaxSettings const& settings) {

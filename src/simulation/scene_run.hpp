@@ -91,6 +91,9 @@ class SceneRun {
   /// The step at time t. Throws UsageError when t is no whole number of steps.
   std::int64_t step_at(double t) const;
 
+  /// Throws what advance(count) throws before its first step.
+  void require_reachable(std::int64_t count) const;
+
   /// Takes `count` more steps, less when it ends early. Throws UsageError when an adaptive method
   /// would go beyond the scene's end, NumbersFailed when the numbers do, and what a field of the
   /// program throws. steps() and the spins are then those before the step that failed.

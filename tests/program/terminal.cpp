@@ -15,8 +15,9 @@ class Terminal : public ProgramTest {
  protected:
   /// All that the program writes on a terminal, with standard output in a file where one is named.
   /// It has to succeed.
-  std::string on_terminal(Arguments const& arguments, char const* output = nullptr) const {
-    winsize const size{40, 100, 0, 0};
+  std::string on_terminal(Arguments const& arguments, char const* output = nullptr,
+                          unsigned short lines = 40) const {
+    winsize const size{lines, 100, 0, 0};
     int terminal = -1;
     pid_t const child = ::forkpty(&terminal, nullptr, nullptr, &size);
     if (child == 0) {
@@ -57,6 +58,15 @@ TEST_F(Terminal, ASweepHasABarForEachRunAndTakesThemAway) {
                 "0 of 3 runs", "\x1b[3A\r\x1b[J", "3 of 3  run 000", "all.h5: 3 runs"}));
   EXPECT_FALSE(contains(written.substr(written.rfind("3 of 3")), "[#"));
   EXPECT_EQ(on_terminal(joined(arguments, {"--quiet", "--overwrite"})), "");
+}
+
+TEST_F(Terminal, BarsOfASweepFitOnTheScreen) {
+  auto const written = on_terminal(
+      {"sweep", "chain.toml", "--output", "all.h5", "--jobs", "4", "--threads", "1", "--set",
+       "output.every=1000000", "--over", "integrator.steps=50000,50001,50002,50003"},
+      nullptr, 4);
+  EXPECT_TRUE(contains(written, "\x1b[3A\r\x1b[J"));
+  for (char const* beyond : {"\x1b[4A", "\x1b[5A"}) EXPECT_FALSE(contains(written, beyond));
 }
 
 TEST_F(Terminal, TradeHasABarBesideItsResult) {

@@ -269,6 +269,22 @@ TEST_F(Trading, AnAdvisedRunWarnsOfNothingThatTheAdviceDoesNotSay) {
   }
 }
 
+TEST_F(Trading, TheCommandOfAnAdviceIsOneForAShell) {
+  write("its scene.toml", scene());
+  auto const advice = output_of(joined(
+      {"advise", "its scene.toml", "--error", "1e-3", "--threads", "1", "--precision", "double"},
+      set("output.file='its run.h5'")));
+  EXPECT_TRUE(contains(
+      advice, R"(cayspin run 'its scene.toml' --set 'output.file='\''its run.h5'\''' --set )"))
+      << advice;
+}
+
+TEST_F(Trading, OfAnEndlessRunItTakesAPart) {
+  auto const all = trade(joined({"--seconds", "1e-9", "--precision", "double"},
+                                set("integrator={method='rkmk4',dt=1,end=1e8}")));
+  EXPECT_EQ(all["horizon"], std::ldexp(1e8, -20));
+}
+
 TEST_F(Trading, ABudgetThatIsTooSmallIsSaidInOneLine) {
   auto const outcome = expect_status(
       3, {"advise", "scene.toml", "--error", "1e-6", "--budget", "0.000000001s", "--threads", "1"});
@@ -285,11 +301,6 @@ TEST_F(Trading, TriesTheOnePrecisionThatIsAskedFor) {
                 precision == "single")
           << method["method"];
   }
-}
-
-TEST_F(Trading, AdvisedCommandKeepsQuotesForTheShell) {
-  auto const advice = advise("1e-3", set("output.file='my run.h5'"));
-  EXPECT_TRUE(contains(advice, R"( --set 'output.file='\''my run.h5'\''')")) << advice;
 }
 
 TEST_F(Trading, AdvisesInTheOnePrecisionThatIsAskedFor) {

@@ -313,6 +313,8 @@ class Files(PackageTest):
             found = run.dispersion([(-0.5, 0, 0), (0.5, 0, 0)], frames=slice(0, -1))
             self.assert_refused(cayspin.CayspinError, "3 frames", run.dispersion,
                                 [(0, 0, 0), (0.5, 0, 0)], slice(0, 3))
+            self.assert_refused(cayspin.CayspinError, "back in time", run.dispersion,
+                                [(0, 0, 0), (0.5, 0, 0)], slice(-2, None, -1))
         self.assertEqual(len(found.distance), 25)
         self.assertAlmostEqual(found.corners[-1], 2 * np.pi / 0.5)
         k = 2 * np.pi * found.wave_vectors[:, 0]

@@ -223,6 +223,18 @@ class Files(PackageTest):
                 data = run.to_xarray()
                 self.assertEqual(dict(data.sizes)["frame"], 5)
                 np.testing.assert_array_equal(data.spins.isel(frame=-1), sim.spins)
+        with h5py.File(output, "r+") as killed:
+            killed["spins"].resize(6, 0)
+        with cayspin.open(output) as run:
+            self.assertEqual(len(run), 5)
+            if importlib.util.find_spec("xarray"):
+                data = run.to_xarray()
+                self.assertEqual(dict(data.sizes)["frame"], 5)
+                np.testing.assert_array_equal(data.spins.values, run.spins[:5])
+        with h5py.File(output, "r+") as killed:
+            killed["energy"].resize(4, 0)
+        with cayspin.open(output) as run:
+            self.assertEqual(len(run), 4)
         self.assert_refused(cayspin.CayspinError, "cannot be opened", cayspin.open,
                             self.folder / "missing.h5")
         cayspin.Simulation(scene(output={"every": 10, "sync": True})).run(output=output,

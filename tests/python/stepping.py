@@ -115,6 +115,12 @@ class Time(PackageTest):
     def test_adaptive_method_ends_where_its_scene_ends(self):
         sim = cayspin.Simulation(scene(integrator=METHODS["tsit5"]))
         self.assert_refused(cayspin.CayspinError, "lies beyond step 40", sim.step, 41)
+        sim.observe(10, lambda sim: None)
+        file = self.folder / "beyond.h5"
+        for call in (lambda: sim.step(41), lambda: sim.run(until=41 * sim.scene.dt, output=file)):
+            self.assert_refused(cayspin.CayspinError, "lies beyond step 40", call)
+        self.assertEqual(sim.steps, 0)
+        self.assertFalse(file.exists())
         sim.step(40)
 
     def test_failing_numbers(self):

@@ -59,9 +59,13 @@ void Display::show(std::vector<Running> const& running) {
     fmt::print("{}\n", fitted(fmt::format("{} {:5.1f} %  {}", bar(share), 100 * share, text)));
     ++lines_;
   };
+  // What has left the screen at its top could not be taken away. Below are the line of all runs and
+  // that of the cursor.
+  int const most_bars = terminal_lines() - 2;
   double done = cost_ended_;
   for (auto const& [run, share] : running) {
     done += share * cost(run);
+    if (lines_ >= most_bars) continue;
     line(share, fmt::format("run {}  {}", io::swept_run_name(run), values_text(grid_.header, run)));
   }
   line(cost_ > 0 ? done / cost_ : 0,

@@ -18,8 +18,8 @@ struct Running {
   double share;
 };
 
-/// How far a sweep is, on standard output: on a terminal a bar for each run under way and one for
-/// all, otherwise a line for each that has ended.
+/// How far a sweep is, on standard output: on a terminal a bar for each run under way, as far
+/// as they fit, and one for all, otherwise a line for each that has ended.
 class Display {
  public:
   /// `open`: what has to be run.

@@ -30,7 +30,7 @@ class Session {
   /// The runs that have to be done.
   std::vector<std::int64_t> open_runs() const;
 
-  /// A run has ended. Throws UsageError when it was not the one that was planned.
+  /// A run has ended. Its status is that of wrong usage when it was not the one that was planned.
   void take(std::int64_t number, std::int64_t status, std::string const& message);
 
   /// Writes what was taken.

@@ -126,12 +126,13 @@ Horizon horizon_within(Pilot const& pilot, double seconds) {
     auto const tried = pilot.run(fine_tsit5(), time, {0, 1e-2});
     if (tried.failure) throw NumbersFailed(*tried.failure);
     auto const own_steps = tried.summary.own_steps;
-    if (tried.seconds() > seconds && own_steps > most_short) {
+    bool const too_long = tried.seconds() > seconds && own_steps > most_short;
+    if (!too_long || halvings == most_halvings) longest = {time, own_steps, tried.seconds()};
+    if (too_long) {
       longest.why_shorter = fmt::format("a coarse run to the end takes {:.2g} s",
                                         std::ldexp(tried.seconds(), halvings));
       break;
     }
-    longest = {time, own_steps, tried.seconds()};
     if (halvings == 0) break;
     double const longer = std::log2(seconds / std::max(tried.seconds(), 1e-9));
     int const fewer = own_steps < 3 ? most_fewer : static_cast<int>(longer) / 2;

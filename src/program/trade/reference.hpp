@@ -66,7 +66,8 @@ struct Horizon {
 /// tsit5 in a form whose error follows its tolerance.
 Candidate fine_tsit5();
 
-/// The longest halving of the end that a coarse run covers in `seconds`, or in ten steps.
+/// The longest halving of the end that a coarse run covers in `seconds`, or in ten steps; the
+/// twentieth where none does.
 Horizon horizon_within(Pilot const& pilot, double seconds);
 
 /// A converged solution of a scene, up to its end or as far as there is one.
@@ -76,7 +77,8 @@ struct Reference {
   double uncertainty;  // distance of the solutions of two methods
 };
 
-/// Halves the horizon until two methods at their tightest agree, and take no more than `seconds`.
+/// From a horizon that a coarse run covers in a tenth of `seconds`, halves it until two methods at
+/// their tightest agree.
 Reference converged_reference(Pilot const& pilot, double seconds);
 
 }  // namespace cayspin::program::trade
