@@ -122,6 +122,12 @@ void expect_error_order(char const* name, int order, double divisor) {
   EXPECT_NEAR(stepper.next_dt(), 0.5 * std::pow(1e-4 / divisor, 1.0 / order), 1e-12);
 }
 
+TEST(StepControl, TheLastTwoStepsAreAlike) {
+  EXPECT_EQ(detail::step_within(1, 0.375), 0.375);
+  EXPECT_EQ(detail::step_within(1, 0.625), 0.5);
+  for (double const dt : {1 - 1e-10, 1.0, 2.0}) EXPECT_EQ(detail::step_within(1, dt), 1);
+}
+
 TEST(StepControl, ErrorsAreOfTheEmbeddedOrderAndOne) {
   expect_error_order<AdaptiveRkmk<Spins, tableau::BogackiShampine3>>("3(2)", 3, 160);
   expect_error_order<AdaptiveRkmk<Spins, tableau::DormandPrince5>>("5(4)", 5, 12);
