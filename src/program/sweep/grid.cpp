@@ -71,7 +71,7 @@ Grid make_grid(SweepOptions const& options) {
       if (!scene.integrator.method->automatic) {
         auto const plan = make_plan(scene, options.precision);
         require_memory(scene, plan);
-        dt_warning(scene, plan);
+        dt_warning(scene, plan);  // an error where the scene refuses to be unstable
         grid.largest = std::max(grid.largest, plan.memory.total());
       }
       checked += io::sites(scene);
