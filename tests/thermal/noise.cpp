@@ -6,6 +6,7 @@
 #include "kept_of_direction.hpp"
 
 #include <cayspin/cayspin.hpp>
+#include <cayspin/crystal.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 
 #include <array>
@@ -195,6 +196,25 @@ TEST(ThermalBits, AreThoseOfEveryHostSpace) {
   EXPECT_EQ(run(Kokkos::Serial()), run(Kokkos::DefaultHostExecutionSpace()));
 }
 
+// Copies share the memory of a cell's turns, which are those of one length of step.
+TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
+  using Spins = typename TypeParam::Spins;
+  using Noise = typename TestFixture::Noise;
+  auto const lattice = Crystal::bcc().lattice({5, 3, 2});
+  Spins const like("like", lattice);
+  Noise const noise(like, 0.5, {.temperature = 0.4, .seed = 3, .cell_sites = {1, 0.5}});
+  Noise const copy = noise;
+  auto const turned = [&](Noise const& by, double dt) {
+    auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+    by.turn(this->exec, 1, TestFixture::Half::after, dt, spins);
+    this->exec.fence();
+    return numbers_of(spins);
+  };
+  auto const expected = turned(noise, 0.1);
+  EXPECT_NE(turned(copy, 0.2), expected);
+  EXPECT_EQ(turned(noise, 0.1), expected);
+}
+
 TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   using Spins = SpinField<double, Kokkos::HostSpace>;
   Spins const spins("spins", Lattice::chain(4)), others("others", Lattice::chain(5));
@@ -208,6 +228,10 @@ TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 1.1, spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, std::nan(""), spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 0.1, others), std::invalid_argument);
+  // By the largest turn of a cell's sites.
+  ThermalNoise<Spins> const slow(spins, 0.5, {.temperature = 2, .cell_sites = {0.5}});
+  EXPECT_THROW(slow.turn(exec, 1, Half::before, 2.1, spins), std::invalid_argument);
+  EXPECT_NO_THROW(slow.turn(exec, 1, Half::before, 1.9, spins));
   auto const before = numbers_of(spins);
   ThermalNoise<Spins>(spins, 0.5, {}).turn(exec, 1, Half::before, 0.1, spins);
   EXPECT_EQ(numbers_of(spins), before) << "at temperature 0";
