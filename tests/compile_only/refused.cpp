@@ -4,6 +4,7 @@
 // regular expression, from the next line.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/dear.hpp>
+#include <cayspin/field/field_of_moments.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
 #define MISTAKE(number) (CAYSPIN_TEST_MISTAKE == (number) || CAYSPIN_TEST_MISTAKE == -1)
@@ -242,5 +243,14 @@ inline void refused() {
 #if MISTAKE(36)  // energy_projection_under_a_torque
   // This needs a field that is the derivative of an energy, without terms that
   EnergyProjection(spins, LieEuler(spins)).step(exec, torque, spins, 0, 0.1);
+#endif
+#if MISTAKE(37)  // layers_of_moments_with_vacancies
+  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
+  {
+    ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
+    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
+    FieldOfMoments const of_moments(Lattice::chain(3), layers, std::vector<double>{1});
+    FieldWithVacancies const field(of_moments, occupation);
+  }
 #endif
 }

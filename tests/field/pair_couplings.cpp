@@ -201,6 +201,15 @@ TYPED_TEST(Pairs, ThatCannotBe) {
   for (auto const& bond : {Coupling::of({0, 2}, {0, 0, 0}, 1), Coupling::of({1, 1}, {0, 0, 0}, 1),
                            Coupling::of({0, 1}, {0, 0, 0}, std::nan(""))})
     EXPECT_THROW(Term(lattice, {bond}), std::invalid_argument);
+  EXPECT_THROW(Term(Lattice::chain(0, 1, Boundary::periodic), {Coupling::of({0, 0}, {1, 0, 0}, 1)}),
+               std::invalid_argument);
+  // isotropy::Analytic would leave the biquadratic part out.
+  auto spins = spins_of<typename TypeParam::Spins>(Lattice::chain(4), random_directions(4, 3));
+  LieEuler<typename TypeParam::Spins, isotropy::Analytic> stepper(spins);
+  LandauLifshitz const generator(Term(spins.lattice(), {Coupling{{0, 0}, {1, 0, 0}, {}, 0.5}}),
+                                 0.1);
+  typename TypeParam::Exec const exec;
+  EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
 }
 
 }  // namespace

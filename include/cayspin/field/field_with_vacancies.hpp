@@ -21,6 +21,8 @@ template <class Field>
 inline constexpr bool averages_layers = false;
 template <class MemorySpace>
 inline constexpr bool averages_layers<LayerAveragedSlabDemag<MemorySpace>> = true;
+template <class Field, class MemorySpace>
+inline constexpr bool averages_layers<FieldOfMoments<Field, MemorySpace>> = averages_layers<Field>;
 template <class... Terms>
 inline constexpr bool averages_layers<EffectiveField<Terms...>> = (averages_layers<Terms> || ...);
 
