@@ -77,8 +77,9 @@ class DearMethod final : public OpenMethod {
   Summary advance() override {
     // Substeps are integrated over times of their own.
     auto const times = simulation_.times;
-    return integrate(simulation_.exec, stepper_, simulation_.generator, simulation_.spins, times,
-                     *simulation_.observer);
+    return cayspin::detail::integrate_in_any_memory(simulation_.exec, stepper_,
+                                                    simulation_.generator, simulation_.spins, times,
+                                                    *simulation_.observer);
   }
   void exchange_memory(Checkpoint& checkpoint) override {
     cayspin::exchange_memory(stepper_, checkpoint, "method.");

@@ -6,7 +6,10 @@
 #include <cayspin/crystal.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
+#include <cayspin/generator/orthogonal.hpp>
+#include <cayspin/minimize.hpp>
 #include <cayspin/stepper/methods.hpp>
+#include <cayspin/stepper/series4.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -210,6 +213,32 @@ TYPED_TEST(Pairs, ThatCannotBe) {
                                  0.1);
   typename TypeParam::Exec const exec;
   EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
+  // So would Series4, of whichever part they are.
+  Series4<typename TypeParam::Spins> series(spins);
+  EXPECT_THROW(series.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
+  EXPECT_THROW(series.step(exec,
+                           orthogonal(LandauLifshitz(
+                               EffectiveField(Zeeman{{0, 0, 1}}, generator.field()), 0.1)),
+                           spins, 0, 0.1),
+               std::invalid_argument);
+  LandauLifshitz const linear(
+      EffectiveField(Term(spins.lattice(), {Coupling::of({0, 0}, {1, 0, 0}, 0.5)})), 0.1);
+  EXPECT_NO_THROW(series.step(exec, linear, spins, 0, 0.1));
+}
+
+// The curvature at rest is that of the whole field: of m = z in H = 2 B (m.m') m'.
+TYPED_TEST(Pairs, MinimumWithBiquadraticBonds) {
+  using Term = PairCouplings<typename TypeParam::MemorySpace>;
+  auto const lattice = Lattice::chain(12);
+  typename TypeParam::Exec const exec;
+  Term const bonds(lattice, {Coupling{{0, 0}, {1, 0, 0}, {}, 1}});
+  auto start = random_directions(12, 3);
+  for (std::size_t i = 2; i < start.size(); i += 3) start[i] = std::abs(start[i]);
+  auto spins = spins_of<typename TypeParam::Spins>(lattice, start);
+  auto const found = minimize(exec, EffectiveField(bonds, Zeeman{{0, 0, 1}}), spins,
+                              {.torque = sizeof(typename TypeParam::Real) == 8 ? 1e-9 : 1e-4});
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  EXPECT_NEAR(found.energy.value, -11 - 12, 1e-4);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/field/field_of_sites.hpp>
+#include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
@@ -99,6 +100,7 @@ class Dear {
  public:
   using spins_type = Spins;
   static constexpr bool is_conservative = detail::is_conservative<Term>;
+  static constexpr bool depends_on_time = detail::depends_on_time<Term>;
 
   Dear(Lattice const& lattice, Term term)
       : term_(std::move(term)), state_(std::make_shared<State>("Dear::field", lattice)) {}
@@ -123,13 +125,26 @@ class Dear {
       evaluate(exec, spins, t, state_->field);
     return {state_->field.array(), state_->energy_factor};
   }
+  template <class Exec, class Others>
+  bool needs_time_alone(Exec const&, Others const&) const {
+    return false;  // it is stored for the spins
+  }
   /// Throws std::logic_error between evaluations.
   template <class Exec>
   detail::StoredField<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                          double) const {
+    static_assert(!depends_on_time, "A dear field that depends on t has no rate.");
     if (state_->count > 0)
       throw std::logic_error("cayspin::Dear: an interpolated field has no rate");
     return prepare(exec, rates, t);
+  }
+
+  friend auto parts_of(Dear const*) {
+    // A solver of one's own leaves out the spins of vacant sites.
+    if constexpr (detail::is_local<Term> || detail::is_host_field<Term>)
+      return detail::PartsOf<Term>();
+    else
+      return detail::PartsOf<Term, detail::SeesAllSpins<Term>>();
   }
 
   /// Evaluations of the term so far, by all copies.

@@ -95,13 +95,15 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
-    requires has_linear_field<Field, Stencil>
+    requires has_linear_part<Field, Stencil>
   {
     return factors_.at(stencil.site()) * detail::linear_field(field_, stencil);
   }
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const {
+                                                     Stencil const& rates) const
+    requires has_derivative<Field, Stencil>
+  {
     return factors_.at(rates.site()) * detail::field_rate(field_, m, rates);
   }
 
@@ -137,11 +139,13 @@ struct AppliedToMoments {
 /// The field of spins that have a moment mu and a gyromagnetic ratio g each, by sites of a
 /// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms have to
 /// stand inside; an applied field is a ZeemanOfMoments there. What conserves E without damping
-/// conserves it here.
+/// conserves it here, but H is not the derivative of E: EnergyControl and what else follows an
+/// energy by its derivative refuse it, and take the field inside.
 template <class Field, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:
   static constexpr int energy_terms = detail::energy_terms<Field>;
+  static constexpr bool is_conservative = false;
 
   /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a positive number
   /// for each site of a cell.

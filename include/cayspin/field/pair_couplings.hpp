@@ -63,6 +63,8 @@ class PairCouplings {
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 
+  /// Without biquadratic bonds H is linear in the spins.
+  bool is_affine() const { return !has_biquadratic(); }
   /// Is H more than linear in the spins?
   bool has_biquadratic() const { return bonds_.table().has_biquadratic; }
 

@@ -217,13 +217,14 @@ class ThermalNoise {
   /// An observer: the second half of each step. The first among the observers, so that the others
   /// see the spins as they are after it.
   auto after_steps(Times const& times) const {
-    return BetweenSteps{*this, true, false, times.first};
+    return BetweenSteps<true, false>{*this, times.first};
   }
-  /// An observer: the first half of the step that follows. The last among the observers.
-  auto before_steps() const { return BetweenSteps{*this, false, true}; }
-  /// Both in one pass, where no observer is between them.
+  /// An observer: the first half of the step that follows. The last among the observers: one that
+  /// may stop the run is refused after it when compiled.
+  auto before_steps() const { return BetweenSteps<false, true>{*this}; }
+  /// Both in one pass, where no observer is between them; refused as before_steps.
   auto between_steps(Times const& times) const {
-    return BetweenSteps{*this, true, true, times.first};
+    return BetweenSteps<true, true>{*this, times.first};
   }
 
  private:
@@ -277,15 +278,16 @@ class ThermalNoise {
   }
 
   /// Of the two halves between steps, those that are wanted.
+  template <bool After, bool Before>
   struct BetweenSteps {
-    static constexpr bool changes_spins = true;
+    static constexpr bool changes_spins = true, begins_step = Before;
     ThermalNoise noise;
-    bool after, before;
     std::int64_t first = 0;  // no step ends there
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      bool const ends = after && step.number > first, begins = before && !step.last;
+      // A run that is stopped may go on: that begins with this half.
+      bool const ends = After && step.number > first, begins = Before && !step.last && !step.stops;
       if (ends || begins) noise.turn_between(exec, step.number, ends, begins, step.dt, spins);
     }
   };

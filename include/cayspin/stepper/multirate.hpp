@@ -97,6 +97,14 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
     visit("dear_evaluations", dear_evaluations_done_);
   }
 
+  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit)
+    requires requires(Stepper& inner) { inner.visit_exchanged(visit); }
+  {
+    stepper_.visit_exchanged(visit);
+  }
+
   /// Advances `spins` from t to t + dt under `generator`. `spins` must be those at the end of the
   /// step before. A step may exchange the memory of `spins` with the inner method's. What a field
   /// throws leaves them as they were before the step, and the next step is a start.

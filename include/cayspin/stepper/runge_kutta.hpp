@@ -74,6 +74,12 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     memory_.visit_carried(visit);
   }
 
+  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(memory_.end());
+  }
+
   /// Can `batch` take these steps? Few spins on a host space, under a generator that is the same at
   /// every step.
   template <class Exec, class Generator>
