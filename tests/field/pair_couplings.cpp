@@ -8,6 +8,7 @@
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/minimize.hpp>
+#include <cayspin/observer/normalize.hpp>
 #include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/series4.hpp>
 
@@ -226,19 +227,24 @@ TYPED_TEST(Pairs, ThatCannotBe) {
   EXPECT_NO_THROW(series.step(exec, linear, spins, 0, 0.1));
 }
 
-// The curvature at rest is that of the whole field: of m = z in H = 2 B (m.m') m'.
+// The curvature at rest is that of the whole field: without the biquadratic bonds a saddle, with
+// them a minimum.
 TYPED_TEST(Pairs, MinimumWithBiquadraticBonds) {
   using Term = PairCouplings<typename TypeParam::MemorySpace>;
-  auto const lattice = Lattice::chain(12);
+  auto const lattice = Lattice::chain(12, 1, Boundary::periodic);
   typename TypeParam::Exec const exec;
-  Term const bonds(lattice, {Coupling{{0, 0}, {1, 0, 0}, {}, 1}});
+  auto bond = Coupling::of({0, 0}, {1, 0, 0}, -0.5);
+  bond.biquadratic = 1;
+  Term const bonds(lattice, {bond});
   auto start = random_directions(12, 3);
-  for (std::size_t i = 2; i < start.size(); i += 3) start[i] = std::abs(start[i]);
+  for (std::size_t i = 0; i < start.size(); ++i) start[i] = (i % 3 == 2) + 0.05 * start[i];
   auto spins = spins_of<typename TypeParam::Spins>(lattice, start);
-  auto const found = minimize(exec, EffectiveField(bonds, Zeeman{{0, 0, 1}}), spins,
+  normalize(exec, spins);
+  auto const found = minimize(exec, EffectiveField(bonds, Zeeman{{0, 0, 0.25}}), spins,
                               {.torque = sizeof(typename TypeParam::Real) == 8 ? 1e-9 : 1e-4});
   EXPECT_EQ(found.end, MinimizeEnd::converged);
-  EXPECT_NEAR(found.energy.value, -11 - 12, 1e-4);
+  EXPECT_NEAR(found.energy.value, 12 * (0.5 - 1 - 0.25), 1e-4);
+  EXPECT_NEAR(found.curvature, 0.25, 0.1);
 }
 
 }  // namespace
