@@ -13,6 +13,7 @@
 #include "trade/resolved.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
+#include <cayspin/io/notes.hpp>
 
 #include <fmt/format.h>
 
@@ -165,7 +166,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
 // alone.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
-    auto scene = io::read_scene(options.scene, options.overrides);
+    auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
     output_file(scene, options.output);
     io::check_files(scene);
     return scene;
@@ -231,6 +232,7 @@ int run(RunOptions const& options, Ranks& ranks) {
     require_memory(scene, plan, ranks.on_this_machine());
     if (auto const warning = dt_warning(scene, plan); warning && ranks.is_first())
       fmt::print(stderr, "warning: {}\n", *warning);
+    if (ranks.is_first()) warn_of_notes(scene);
     if (!left) return nullptr;
     return std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
   });

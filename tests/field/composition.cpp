@@ -100,8 +100,8 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(UniaxialAnisotropy(1, {0, nan, 0}), std::invalid_argument);
   EXPECT_THROW(CubicAnisotropy(1, {0, 0, 0}, {0, 1, 0}), std::invalid_argument);
   EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {0, nan, 0}), std::invalid_argument);
-  EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {3e-9, 1, 0}), std::invalid_argument);
-  EXPECT_NO_THROW(CubicAnisotropy(1, {2, 0, 0}, {1e-9, 2, 0}));
+  EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {3e-4, 1, 0}), std::invalid_argument);
+  EXPECT_NO_THROW(CubicAnisotropy(1, {2, 0, 0}, {1e-4, 2, 0}));
   EXPECT_THROW(Slonczewski(1, 0, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemag({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({0, 0, 0}), std::invalid_argument);
