@@ -69,7 +69,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
     if (!recorded && !stored && !run_.guard().due(step)) return Next::proceed;
 
-    auto const found = run_.look(exec, step, spins);
+    auto const found = run_.look(exec, step, spins, true, step.last);
     failure_ = found.failure;
     if (failure_) return Next::stop;
     bool const at_rest = found.at_rest && step.number > first_;

@@ -114,7 +114,7 @@ bool is_dear(io::Demagnetization const& demag, io::Scene const& scene) {
 }  // namespace
 
 int order_of_dear(io::Scene const& scene, Variant const& variant) {
-  constexpr double small = 0.02;  // above, order 3 changes linewidths by less than 1 %
+  constexpr double small = 0.015;  // above, order 3 widens lines by less than 1 %
   return variant.order >= (scene.system.damping < small ? 4 : 5) ? 4 : 3;
 }
 

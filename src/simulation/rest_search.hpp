@@ -29,9 +29,9 @@ class RestSearch {
   RestSearch(io::Scene const& scene, double bound) : scene_(scene), bound_(bound) {}
 
   /// `torque`: max |m x H|. `fell`: is the energy below that of the first look? `field`: made for
-  /// energies. The last step of a run is always told.
+  /// energies. With `at_end` a saddle is told in any case.
   Found look(Space const& exec, Step const& step, Spins const& spins,
-             SceneField<Spins> const& field, double torque, bool fell) {
+             SceneField<Spins> const& field, double torque, bool fell, bool at_end) {
     bool const grew = torque > last_torque_;
     last_torque_ = torque;
     if (!(torque < bound_)) {
@@ -39,8 +39,9 @@ class RestSearch {
       return {};
     }
     bool const may_be_at_rest = fell && !grew && step.number >= next_;
-    if (!may_be_at_rest && !step.last) return {};
-    if (!is_saddle(exec, step.time, spins, field)) return {.at_minimum = may_be_at_rest};
+    if (!may_be_at_rest && !at_end) return {};
+    bool const at_saddle = is_saddle(exec, step.time, spins, field);
+    if (!may_be_at_rest || !at_saddle) return {may_be_at_rest && !at_saddle, at_saddle};
     // Spins may stay at a saddle for the rest of the run: the next search is ever later.
     wait_ = std::max<std::int64_t>(1, 2 * wait_);
     next_ = step.number + wait_;

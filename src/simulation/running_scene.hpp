@@ -68,8 +68,9 @@ class RunningScene : public Simulation<Real, Space> {
   Guard const& guard() const { return guard_; }
 
   /// Samples and judges the spins. Rest is looked for where the scene has until_torque, and
-  /// `for_rest` is not false.
-  Found look(Space const& exec, Step const& step, Spins const& spins, bool for_rest = true) {
+  /// `for_rest` is not false; `at_end` asks for saddles, too.
+  Found look(Space const& exec, Step const& step, Spins const& spins, bool for_rest = true,
+             bool at_end = false) {
     bool const with_torque = torque_ && for_rest;
     Found found{with_torque ? sample_scene(exec, this->generator, step, spins, *torque_)
                             : sample_scene(exec, this->generator, step, spins)};
@@ -78,7 +79,7 @@ class RunningScene : public Simulation<Real, Space> {
     if (with_torque && !found.failure) {
       auto const rest = rest_->look(
           exec, step, spins, this->generator.landau_lifshitz().field().made_for(FieldFor::energy),
-          now.largest_rate, now.energy.value < guard_.first_energy());
+          now.largest_rate, now.energy.value < guard_.first_energy(), at_end);
       found.at_rest = rest.at_minimum;
       found.at_saddle = rest.at_saddle;
     }
