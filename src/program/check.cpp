@@ -52,7 +52,7 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
 }
 
 int order(io::Scene const& scene, Variant const& variant) {
-  return has_dear_field(scene) ? order_around_dear(variant) : variant.order;
+  return has_dear_field(scene) ? order_around_dear(scene, variant) : variant.order;
 }
 
 // Two passes through the substeps of the method.
