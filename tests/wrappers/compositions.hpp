@@ -133,8 +133,8 @@ void for_each_term(Setting<Real> const& on, Visit const& visit) {
 
 template <class Term>
 inline constexpr bool sees_vacant_spins =
-    detail::holds<LayerAveragedSlabDemag, Term> || detail::holds<PairCouplings, Term> ||
-    detail::holds<detail::SeesAllSpins, Term>;
+    detail::holds<LayerAveragedSlabDemag, Term>() || detail::holds<PairCouplings, Term>() ||
+    detail::holds<detail::SeesAllSpins, Term>();
 
 /// Calls visit(name, wrapped, factors, is_alone) for each of the library's wrappers around a term,
 /// and for some around each other. `is_alone`: it answers as the term does.

@@ -15,13 +15,22 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
+template <template <class> class Wanted, class Term>
+inline constexpr bool is_a = false;
+template <template <class> class Wanted, class Argument>
+inline constexpr bool is_a<Wanted, Wanted<Argument>> = true;
+
 /// Is a term, or a part of it at any depth, a Wanted<..>?
 template <template <class> class Wanted, class Term>
-inline constexpr bool holds = []<class... Parts>(PartsOf<Parts...>) {
-  return (holds<Wanted, Parts> || ...);
-}(decltype(parts_of(std::declval<Term const*>()))());
-template <template <class> class Wanted, class MemorySpace>
-inline constexpr bool holds<Wanted, Wanted<MemorySpace>> = true;
+constexpr bool holds();
+template <template <class> class Wanted, class... Parts>
+constexpr bool any_holds(PartsOf<Parts...>) {
+  return (holds<Wanted, Parts>() || ...);
+}
+template <template <class> class Wanted, class Term>
+constexpr bool holds() {
+  return is_a<Wanted, Term> || any_holds<Wanted>(decltype(parts_of(std::declval<Term const*>()))());
+}
 
 /// A stencil in which a vacant neighbour is a missing one: the spin itself stands for it.
 template <class Stencil, class Real>
@@ -156,12 +165,12 @@ inline constexpr bool comes_in_parts<FieldAmongVacancies<Field, Real>, Stencil> 
 /// A HostField's solver is given the vacant spins too, and has to leave them out.
 template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
-  static_assert(!detail::holds<LayerAveragedSlabDemag, Field>,
+  static_assert(!detail::holds<LayerAveragedSlabDemag, Field>(),
                 "LayerAveragedSlabDemag counts the spins of vacant sites in its averages.");
-  static_assert(!detail::holds<PairCouplings, Field>,
+  static_assert(!detail::holds<PairCouplings, Field>(),
                 "PairCouplings read the spins of vacant sites: where these are zero vectors, no "
                 "FieldWithVacancies is needed.");
-  static_assert(!detail::holds<detail::SeesAllSpins, Field>,
+  static_assert(!detail::holds<detail::SeesAllSpins, Field>(),
                 "Dear evaluates its term for the spins of vacant sites, too: inside "
                 "FieldWithVacancies it takes a HostField or a local term.");
 
