@@ -105,8 +105,7 @@ TEST(DearModes, KeepTheirLinewidths) {
   constexpr double dt = 0.22;
   for (double const damping : {0.002, 0.004, 0.008, 0.01}) {
     double const now = error_of_linewidths<4, Spins>(damping, dt);
-    expect_below("order 4, damping " + std::to_string(damping), now,
-                 0.001 * std::max(1.0, 0.004 / damping));
+    expect_below("order 4, damping " + std::to_string(damping), now, 0.0005);
   }
   // What order 3 adds to damping .008.
   EXPECT_GT((error_of_linewidths<3, Spins>(0.008, dt)), 0.01);
@@ -159,7 +158,7 @@ TEST(DearModes, DoNotGrow) {
     double damping, stable, of_order_3;
   };
   for (auto const& [damping, stable, of_order_3] :
-       {Case{0.002, 0.05, 0.02}, {0.008, 0.25, 0.08}, {0.02, 0.35, 0.14}, {0.1, 0.5, 0.4}})
+       {Case{0.002, 0.05, 0.02}, {0.008, 0.24, 0.08}, {0.02, 0.35, 0.14}, {0.1, 0.5, 0.4}})
     for (Elliptical const& shape : {Elliptical{0, 1}, {0.5, 0.5}, {0.25, 0.75}}) {
       EXPECT_LT(growth<4>(damping, stable, shape, 400), 1) << damping << " " << shape.z;
       EXPECT_LT(growth<3>(damping, of_order_3, shape, 400), 1) << damping << " " << shape.z;

@@ -32,20 +32,20 @@ inline double with_mean(double mean, double slope, double curvature, double x) {
 // The polynomials of Multirate of order 4. A mode that turns by half a turn a step is seen as one
 // that alternates, and its image turns the other way: the polynomial of degree 3 through the last
 // values amplifies both. These keep the conditions of order 4, which are interpolation by degree 1
-// or 2 and one mean, and spend the rest on damping: linear modes m' = (i - damping) (w + D) m, of
-// any w and elliptical D, grow up to the largest dt that was found by a search over 10 numbers.
+// or 2 and one mean. The other 10 numbers come from a search over linear modes m' = (i - damping)
+// (w + D) m with D elliptical: none grows up to the longest step, and linewidths change least.
 
 /// Predicts: values at 0, -1, -2, -3.
 inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {
-  double const second = with_mean(5.0 / 12, -3.05, -11.47, x);
-  double const third = with_mean(-0.27, 2.18, 6.23, x);
+  double const second = with_mean(5.0 / 12, -6.58, -0.91, x);
+  double const third = with_mean(-0.23, 4.19, 1.32, x);
   return {1 + x + second + third, -x - 2 * second - 3 * third, second + 3 * third, -third, 0};
 }
 
 /// Corrects: values at 1, 0, -1, -2, -3.
 inline MultirateWeights damping_corrector(double x, std::span<double const> /*nodes*/) {
-  double const third = with_mean(-1.0 / 24, 0.83, -5.04, x);
-  double const fourth = with_mean(0.07, -0.43, 2.14, x);
+  double const third = with_mean(-1.0 / 24, 0.77, -4.61, x);
+  double const fourth = with_mean(0.06, -0.41, 1.8, x);
   return {0.5 * x * (x + 1) + third + fourth, 1 - x * x - 3 * third - 4 * fourth,
           0.5 * x * (x - 1) + 3 * third + 6 * fourth, -third - 4 * fourth, fourth};
 }

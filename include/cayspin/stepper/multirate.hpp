@@ -37,9 +37,9 @@ struct MultirateOptions {
 /// Order 2 and 3: the polynomials through the last Order - 1 values, then Order of them. A mode of
 /// frequency w that the dear field carries is damped by about (w dt)^4 / 3 more a step.
 /// Order 4: polynomials that were chosen for stability (multirate_weights.hpp), through 4 and 5
-/// values; after steps that differ, the polynomial of degree 3. The damping changes by (w dt)^6.
+/// values; after steps that differ, the polynomial of degree 3. It changes the damping by (w dt)^6.
 ///
-/// With D the largest eigenvalue of the dear field, no linear mode grew up to dt D = .05, .25, .35,
+/// With D the largest eigenvalue of the dear field, no linear mode grew up to dt D = .05, .24, .35,
 /// .5 at damping .002, .008, .02, .1 (order 4; .02, .08, .14, .4 at order 3). Without damping short
 /// waves gain energy slowly.
 ///
