@@ -36,7 +36,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
-      : Base(name, like, isotropy) {}
+      : Base(name, like, isotropy, {name, like.lattice()}) {}
 
   /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
   /// `spins` with its own, so take arrays of `spins` again after it.

@@ -137,7 +137,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
     for (auto const* own : {&x_, &stage_})
       for (Spins const& field : *own) this->require_other_memory(spins, field);
     if (exchange_.known) return;
-    evaluations_done_ += exchange_.measure(exec, measure_label_, generator, stage_[0], t);
+    evaluations_done_ += exchange_.measure(exec, measure_label_, generator, spins, stage_[0], t);
     make_solver();
     contraction_ = 1;
   }
