@@ -164,12 +164,12 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   }
   if (ranks.is_first()) watch.progress().close(summary, frames, path.string());
   if (watch.failure()) fail(*watch.failure());
-  if (watch.at_saddle() && ranks.is_first())
-    fmt::print(stderr,
-               "{}: ended at a saddle or a maximum of the energy: max |m x H| is below "
-               "integrator.until_torque, but the energy has a direction down; accepted: another "
-               "start, or cayspin relax\n",
-               scene.path.string());
+  if (watch.at_saddle() && ranks.is_first() && options.listener == Listener::user)
+    fmt::print(
+        "{}: ended at a saddle or a maximum of the energy: max |m x H| is below "
+        "integrator.until_torque, but the energy has a direction down; accepted: another "
+        "start, or cayspin relax\n",
+        scene.path.string());
   if (!watch.interrupted()) return Status::done;
   if (ranks.is_first())
     fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
