@@ -105,7 +105,7 @@ CubicAnisotropy read_cubic(Table const& table) {
   auto const& [a, b] = term.axes;
   double const skew = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
   if (!(skew <= most_skew))
-    axes.fail(fmt::format("the axes are {:.3g} away from right angles", skew), accepted);
+    axes.fail(fmt::format("the axes are not at right angles, by {:.3g}", skew), accepted);
   term.site = read_site(table);
   return term;
 }
