@@ -105,7 +105,7 @@ CubicAnisotropy read_cubic(Table const& table) {
   auto const& [a, b] = term.axes;
   double const skew = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
   if (!(skew <= most_skew))
-    axes.fail(fmt::format("the axes are {:.3g} away from right angles", skew), accepted);
+    axes.fail(fmt::format("the axes are not at right angles, by {:.3g}", skew), accepted);
   term.site = read_site(table);
   return term;
 }
@@ -157,6 +157,15 @@ bool option(Table const& table, std::string_view name, std::string_view only) {
   return true;
 }
 
+// A direction within 1e-4 of an axis, as rounded digits may leave it, is that axis.
+Triple along_axis_if_close(Triple const& direction) {
+  constexpr double close = 1e-4;
+  auto axis = direction;
+  for (double& component : axis)
+    if (std::abs(component) <= close) component = 0;
+  return std::ranges::count(axis, 0.0) == 2 ? normalise(axis).value_or(direction) : direction;
+}
+
 SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   auto slab = read_term<SlabDemagnetization>(item, scene);
   Table const table(item, scene);
@@ -165,6 +174,7 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   if (slab.dear && !slab.average_layer && !slab.on_host)
     table.find("dear")->fail("site by site the field is of each spin alone, and cheap",
                              "average = \"layer\" or where = \"host\" beside it, or no such key");
+  if (slab.average_layer) slab.normal = along_axis_if_close(slab.normal);
   if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2)
     table.find("normal")->fail("average = \"layer\" needs a normal along an axis",
                                "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");

@@ -100,7 +100,7 @@ struct Start {
                                                 plane / sites);
     detail::refuse(scene, key,
                    fmt::format("the spin of {} is ({}, {}, {})", where, m[0], m[1], m[2]),
-                   scene.lattice.occupied.there()
+                   key != "initial.given" || scene.lattice.occupied.there()
                        ? "a finite vector that is not zero"
                        : "a finite vector that is not zero, or lattice.occupied that is 0 there");
   }

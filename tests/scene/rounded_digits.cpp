@@ -35,8 +35,8 @@ TEST(RoundedDigits, OfCubicAxesAreTaken) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   EXPECT_EQ(refusal([&] {
-              scene_of(single, {"field.anisotropy={cubic=1,axes=[[.577350,.577350,.577350],"
-                                "[.408248,.408248,-.816497]]}"});
+              scene_of(single, {"field.anisotropy={cubic=1,axes=[[0.577350,0.577350,0.577350],"
+                                "[0.408248,0.408248,-0.816497]]}"});
             }),
             "accepted");
   for (int round = 0; round < 200; ++round) {
@@ -57,8 +57,16 @@ TEST(RoundedDigits, OfCubicAxesAreTaken) {
   }
   auto const said =
       refusal([&] { scene_of(single, {"field.anisotropy={cubic=1,axes=[[1,0,0],[0.001,1,0]]}"}); });
-  EXPECT_NE(said.find("0.001 away from right angles"), said.npos) << said;
+  EXPECT_NE(said.find("not at right angles, by 0.001"), said.npos) << said;
   EXPECT_NE(said.find("to 1e-4"), said.npos) << said;
+}
+
+TEST(RoundedDigits, OfANormalAlongAnAxisAreThatAxis) {
+  auto const scene = scene_of(single, {"field.slab_demag={normal=[1e-6,-3,2e-5],average='layer'}"});
+  EXPECT_EQ(scene.field.slab_demag->normal, (Triple{0, -1, 0}));
+  expect_holds(
+      refusal([&] { scene_of(single, {"field.slab_demag={normal=[1e-3,1,0],average='layer'}"}); }),
+      "needs a normal along an axis");
 }
 
 // The bonds of exact vectors and of these rounded are the same.

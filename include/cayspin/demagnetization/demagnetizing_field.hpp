@@ -32,8 +32,9 @@ class DemagnetizingField {
  public:
   static constexpr int degree = 2;
 
-  /// Throws std::invalid_argument for a crystal, a strength that is not finite, a negative number
-  /// of images, and on a device for a part of a lattice.
+  /// Throws std::invalid_argument for a crystal, edges of a cell that differ by more than 1e9 : 1,
+  /// a strength that is not finite, a negative number of images, infinitely_many_images along three
+  /// axes, and on a device for a part of a lattice.
   explicit DemagnetizingField(Lattice const& lattice, DemagnetizationOptions const& options = {})
       : lattice_(lattice),
         convolution_(std::make_shared<Convolution const>(
