@@ -38,7 +38,8 @@ int write_new(NewOptions const& options) {
   io::FileBeside file(path, options.overwrite);
   file.stream() << replaced(std::string(scene->text), scene->path, path.string());
   file.commit();
-  fmt::print("{0}: try `cayspin check {0}`, then `cayspin run {0}`\n", path.string());
+  fmt::print("{0}: try `cayspin check {1}`, then `cayspin run {1}`\n", path.string(),
+             simulation::shell_word(path.string()));
   return Status::done;
 }
 
