@@ -142,9 +142,10 @@ std::string noise_text(io::Scene const& scene, Plan const& plan) {
   double const of_moments = io::largest_noise(scene);
   auto const per_step =
       of_moments * scene.system.damping * scene.thermal->temperature * plan.times.dt;
-  return fmt::format("{}damping x temperature x dt = {:.3g}, turns a spin by {:.3g} radians a step{}",
-                     of_moments == 1 ? "" : "gyromagnetic / moment x ", per_step, plan.noise_turn,
-                     plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
+  return fmt::format(
+      "{}damping x temperature x dt = {:.3g}, turns a spin by {:.3g} radians a step{}",
+      of_moments == 1 ? "" : "gyromagnetic / moment x ", per_step, plan.noise_turn,
+      plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
 }
 
 std::string output_text(io::Scene const& scene, Plan const& plan) {

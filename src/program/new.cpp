@@ -3,6 +3,7 @@
 #include "files/file_beside.hpp"
 #include "new_scenes.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/text.hpp"
 
 #include <fmt/format.h>
 

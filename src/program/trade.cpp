@@ -164,8 +164,8 @@ std::string command_of(AdviseOptions const& options, io::Scene const& scene,
     for (auto const& override : overrides)
       command += fmt::format(" --set {}", shell_word(override));
   if (!scene.output.file)
-    command += " --set " +
-               shell_word(fmt::format("output.file=\"{}.h5\"", options.scene.stem().string()));
+    command +=
+        " --set " + shell_word(fmt::format("output.file=\"{}.h5\"", options.scene.stem().string()));
   if (precision == Precision::single_precision) command += " --precision single";
   auto const space = chosen_space(options.space);
   command += " --space " + space;
@@ -238,7 +238,8 @@ io::Scene scene_to_try(std::filesystem::path const& path,
   auto const scene = io::read_scene(path, overrides);
   io::check_files(scene);
   // With one, the scene's own method is of no account.
-  if (!has_dear_field(scene)) require_dear_field_fits(scene, find_variant(scene));
+  if (!scene.integrator.method->automatic && !has_dear_field(scene))
+    require_dear_field_fits(scene, find_variant(scene));
   return scene;
 }
 

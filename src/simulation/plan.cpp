@@ -362,7 +362,8 @@ Plan make_plan(io::Scene const& scene, Precision precision,
     followed.field.couplings.clear();
     followed.field.couplings_file.clear();
   }
-  plan.turn = integrator.dt / substeps * largest_rate(followed, lattice, plan.times, *plan.features);
+  plan.turn =
+      integrator.dt / substeps * largest_rate(followed, lattice, plan.times, *plan.features);
   plan.substep = integrator.dt / substeps;
   return plan;
 }
@@ -381,8 +382,8 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
     return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,
                        plan.turn);
   if (auto const& shortest = plan.features->shortest; shortest && plan.substep > shortest->length)
-    return fmt::format("{} is longer than {}, a feature of {} at t = {}, which steps may miss", text,
-                       time_text(units, shortest->length, 3), shortest->key,
+    return fmt::format("{} is longer than {}, a feature of {} at t = {}, which steps may miss",
+                       text, time_text(units, shortest->length, 3), shortest->key,
                        time_text(units, shortest->time, 6));
   if (plan.noise_turn > Plan::most_noise)
     return fmt::format("{} lets noise turn spins by {:.3g} radians a step, too many to follow",

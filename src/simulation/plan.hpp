@@ -36,7 +36,7 @@ struct Plan {
   double turn;       // the most that a spin can turn in a step, in radians; some without exchange
   Memory memory;
   std::int64_t frames;
-  double file_bytes;      // may be more than an integer holds
+  double file_bytes;                             // may be more than an integer holds
   std::shared_ptr<TimeFeatures const> features;  // of what depends on t
   double substep = 0;     // the time between evaluations of what is not dear: dt or shorter
   double noise_turn = 0;  // root mean square of the angle by which noise turns a spin in a step

@@ -32,7 +32,7 @@ class RunningScene : public Simulation<Real, Space> {
   struct Found {
     Sample sample;
     std::optional<std::string> failure = {};  // of the guard
-    bool at_rest = false;                     // below the scene's until_torque, and the energy fell
+    bool at_rest = false;  // below the scene's until_torque, the energy fell, the field stays
   };
 
   RunningScene(io::Scene const& scene, Plan const& plan, Times const& times,
@@ -40,7 +40,8 @@ class RunningScene : public Simulation<Real, Space> {
       : Base(scene, plan.lattice, times, start),
         method_(open_method(scene, plan, static_cast<Base*>(this))),
         guard_(scene, epsilon),
-        until_torque_(scene.integrator.until_torque) {
+        until_torque_(scene.integrator.until_torque),
+        last_change_(plan.features->last_change) {
     if (until_torque_) torque_.emplace(this->generator.precession_alone());
     if (scene.integrator.energy_control) control_.emplace(this->generator, this->spins);
     if (is_thermal(scene)) noise_.emplace(scene, this->generator, this->spins);
@@ -72,7 +73,8 @@ class RunningScene : public Simulation<Real, Space> {
     auto const& now = found.sample;
     found.failure = guard_.judge(step, now.energy, now.norm_defect);
     if (with_torque && !found.failure)
-      found.at_rest = now.energy.value < guard_.first_energy() && now.largest_rate < *until_torque_;
+      found.at_rest = now.energy.value < guard_.first_energy() &&
+                      now.largest_rate < *until_torque_ && step.time >= last_change_;
     return found;
   }
 
@@ -122,6 +124,7 @@ class RunningScene : public Simulation<Real, Space> {
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
   std::optional<double> until_torque_;
+  double last_change_;  // of what depends on t
   std::optional<SceneGenerator<Spins>> torque_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
   std::optional<RunNoise<Spins>> noise_;

@@ -135,7 +135,8 @@ FeatureSearch search_of(io::Scene const& scene, std::optional<double> error) {
     search.samples = 1 << 12;
     search.most_evaluations = 100'000;
   } else if (!error) {
-    search.samples = std::clamp<std::int64_t>(1024 * std::min<std::int64_t>(integrator.steps, 1024), 1 << 14, search.samples);
+    search.samples = std::clamp<std::int64_t>(1024 * std::min<std::int64_t>(integrator.steps, 1024),
+                                              1 << 14, search.samples);
   }
   return search;
 }
@@ -150,8 +151,8 @@ std::shared_ptr<TimeFeatures const> features_of(io::Scene const& scene,
     return std::make_shared<TimeFeatures>();
   auto const search = search_of(scene, error);
   bool const is_own = static_cast<bool>(scene.field.own.uniform);
-  auto const key = fmt::format("{}{} {} {}", text_of(scene.field), search.end, search.angle,
-                               search.samples);
+  auto const key =
+      fmt::format("{}{} {} {}", text_of(scene.field), search.end, search.angle, search.samples);
   if (auto features = is_own ? nullptr : known.find(key)) return features;
   auto const vectors = vectors_of(scene);
   if (!are_finite(vectors, search.end)) return std::make_shared<TimeFeatures>();

@@ -36,7 +36,8 @@ std::vector<std::size_t> turning_points(Points const& points, double height) {
 }
 
 // The time after or before `from` where the value crosses a level, if it does.
-std::optional<double> crossing(Points const& points, std::size_t from, int direction, double level) {
+std::optional<double> crossing(Points const& points, std::size_t from, int direction,
+                               double level) {
   bool const above = points[from].second > level;
   auto at = from;
   while (direction > 0 ? at + 1 < points.size() : at > 0) {

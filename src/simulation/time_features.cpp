@@ -48,8 +48,7 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
     if (range == 0) continue;
     for (std::size_t i = 0; i + 1 < samples.count(); ++i) {
       if (samples.evaluations() > most_evaluations) return std::nullopt;
-      double const change = samples.change(i, c);
-      if (change > 1e-9 * range && change > 3 * samples.usual_change(i, c))
+      if (samples.change(i, c) > 1e-9 * range && samples.changes_unusually(i, c))
         if (auto const jump = bisect(samples, c, samples.time(i), samples.time(i + 1)))
           jumps.push_back(*jump);
     }
@@ -204,10 +203,11 @@ TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch
     part_until(jump.before);
     features.bounds.push_back({jump.before, jump.after, 0});
     ++features.jumps;
-    features.last_jump = begin = jump.after;
+    begin = jump.after;
   }
   part_until(search.end);
   if (!resolved) features.unresolved = samples.key_of_fastest();
+  features.last_change = samples.last_change();
   features.shortest = shortest_feature(samples);
   for (std::size_t v = 0; v < vectors.size(); ++v)
     features.largest.emplace_back(vectors[v].key, samples.largest()[v]);

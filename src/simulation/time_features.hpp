@@ -28,7 +28,7 @@ struct TimeFeatures {
 
   std::vector<StepBound> bounds;  // by which no step of a method misses a feature
   std::int64_t jumps = 0;
-  double last_jump = 0;
+  double last_change = 0;  // from then on all is constant
   std::optional<Shortest> shortest;
   std::vector<std::pair<std::string, double>> largest;  // length of the vector of each key
   std::optional<std::string> unresolved;  // the key of what changes too fast to be looked at

@@ -2,7 +2,6 @@
 #include "time_samples.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -84,17 +83,25 @@ double TimeSamples::change(std::size_t i, std::size_t component) const {
   return std::abs(values[i + 1] - values[i]);
 }
 
-double TimeSamples::usual_change(std::size_t i, std::size_t component) const {
+bool TimeSamples::changes_unusually(std::size_t i, std::size_t component) const {
   constexpr std::size_t beside = 4;
-  std::array<double, 2 * beside> changes;
-  std::size_t found = 0;
+  double const usual = change(i, component) / 3;
+  int more = 0, less = 0;
   std::size_t const first = i > beside ? i - beside : 0;
   for (std::size_t at = first; at <= i + beside && at + 1 < count(); ++at)
-    if (at != i) changes[found++] = change(at, component);
-  if (found == 0) return 0;
-  auto const middle = changes.begin() + static_cast<std::ptrdiff_t>(found / 2);
-  std::nth_element(changes.begin(), middle, changes.begin() + static_cast<std::ptrdiff_t>(found));
-  return *middle;
+    if (at != i) (change(at, component) > usual ? more : less)++;
+  return less > more;
+}
+
+double TimeSamples::last_change() const {
+  double last = 0;
+  for (std::size_t c = 0; c < components(); ++c)
+    for (std::size_t i = count() - 1; i-- > 0;)
+      if (change(i, c) > 1e-12 * range(c)) {
+        last = std::max(last, time(i + 1));
+        break;
+      }
+  return last;
 }
 
 std::pair<std::size_t, std::size_t> TimeSamples::within(double begin, double end) const {
@@ -127,7 +134,8 @@ std::vector<std::pair<double, double>> TimeSamples::all(std::size_t component) c
   both.reserve(later.size() + count());
   std::size_t next = 0;
   for (std::size_t i = 0; i < count(); ++i) {
-    for (; next < later.size() && later[next].first < times_[i]; ++next) both.push_back(later[next]);
+    for (; next < later.size() && later[next].first < times_[i]; ++next)
+      both.push_back(later[next]);
     both.emplace_back(times_[i], values_[component][i]);
   }
   both.insert(both.end(), later.begin() + static_cast<std::ptrdiff_t>(next), later.end());

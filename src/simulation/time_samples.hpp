@@ -25,9 +25,12 @@ class TimeSamples {
   double sample(std::size_t i, std::size_t component) const { return values_[component][i]; }
   /// Largest minus least sample.
   double range(std::size_t component) const { return ranges_[component]; }
-  /// |sample(i + 1) - sample(i)|, and the median of its neighbors'.
+  /// |sample(i + 1) - sample(i)|
   double change(std::size_t i, std::size_t component) const;
-  double usual_change(std::size_t i, std::size_t component) const;
+  /// Is that three times as much as most changes nearby?
+  bool changes_unusually(std::size_t i, std::size_t component) const;
+  /// The first sample from which on none changes.
+  double last_change() const;
   /// First and last + 1 of the samples between two times.
   std::pair<std::size_t, std::size_t> within(double begin, double end) const;
 

@@ -216,8 +216,8 @@ TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
        {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 1e-15}, StepOptions{.tolerance = 2},
         StepOptions{.min_dt = -1}, StepOptions{.max_dt = 0}, StepOptions{.min_dt = 2, .max_dt = 1},
         StepOptions{.first_dt = -1}, StepOptions{.tolerance = std::nan("")},
-        StepOptions{.bounds = {{1, 2, 0.1}, {1.5, 3, 0.1}}},
-        StepOptions{.bounds = {{1, 2, -0.1}}}, StepOptions{.bounds = {{2, 1, 0.1}}}})
+        StepOptions{.bounds = {{1, 2, 0.1}, {1.5, 3, 0.1}}}, StepOptions{.bounds = {{1, 2, -0.1}}},
+        StepOptions{.bounds = {{2, 1, 0.1}}}})
     EXPECT_THROW(TypeParam(spins, options), std::invalid_argument);
   TypeParam stepper(spins, {.tolerance = 1e-4, .end = 1});
   EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, -0.1),

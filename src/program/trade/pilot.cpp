@@ -134,8 +134,7 @@ bool Pilot::is_representative(double horizon) const {
   constexpr double alike = 0.9;
   for (std::size_t i = 0; i < part->largest.size(); ++i)
     if (part->largest[i].second < alike * features_->largest[i].second) return false;
-  return part->jumps == features_->jumps &&
-         shortest_bound(*part) <= 2 * shortest_bound(*features_);
+  return part->jumps == features_->jumps && shortest_bound(*part) <= 2 * shortest_bound(*features_);
 }
 
 std::int64_t Pilot::bytes(Candidate const& candidate) const {

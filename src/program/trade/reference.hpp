@@ -17,10 +17,10 @@ std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double ho
 /// A solution by an adaptive method up to a horizon, by which errors are measured.
 ///
 /// Runs are looked at after their first step, and after the first steps that end at one of
-/// times_of_looks or later. An error is that of frames during the whole motion. What comes to rest does so
-/// early, hence half of the times are in the first quarter: at four equal times any stable step
-/// would do. Steps need not end at the times, which would rule out coarse ones. The solution is
-/// continued to where they end.
+/// times_of_looks or later. An error is that of frames during the whole motion. What comes to rest
+/// does so early, hence half of the times are in the first quarter: at four equal times any stable
+/// step would do. Steps need not end at the times, which would rule out coarse ones. The solution
+/// is continued to where they end.
 class FineSolution {
  public:
   static constexpr std::int64_t parts = 1024;  // of the horizon
