@@ -169,8 +169,8 @@ std::string command_of(AdviseOptions const& options, io::Scene const& scene,
   if (precision == Precision::single_precision) command += " --precision single";
   auto const space = chosen_space(options.space);
   command += " --space " + space;
-  if (int const threads = threads_in(space); threads > 1 || options.threads)
-    command += fmt::format(" --threads {}", threads);
+  if (auto const threads = is_on_host(space) ? std::optional(threads_in(space)) : options.threads)
+    command += fmt::format(" --threads {}", *threads);
   return command;
 }
 

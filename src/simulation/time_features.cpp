@@ -115,6 +115,7 @@ class Parts {
   // As what came before, if that is short enough at some places, too.
   bool bound_the_rest(double begin, double end, std::vector<StepBound>& bounds) {
     constexpr int places = 256, halvings = 12;
+    if (samples_.evaluations() > 2 * search_.most_evaluations) return false;  // one of many
     double length = end - begin;
     for (auto const& bound : bounds)
       if (bound.max_dt > 0) length = std::min(length, bound.max_dt);

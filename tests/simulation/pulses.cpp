@@ -99,7 +99,7 @@ TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {
 
 TEST(Pulses, ThatAreShorterThanEqualStepsAreRefusedWhereTheSceneSaysSo) {
   auto const scene = [](std::string const& more) {
-    return scene_of(pulse_scene("method = 'rkmk4', dt = 2, end = 502" + more));
+    return scene_of(pulse_scene("method = 'rkmk8', dt = 2, end = 502" + more));
   };
   auto const warning = dt_warning(scene(""), make_plan(scene(""), Precision::double_precision));
   ASSERT_TRUE(warning);
@@ -148,7 +148,7 @@ TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
       "field = { applied = ['t>500 && t<501.5 ? 1.0 : 0', '0', '1.0'] }\n"
       "initial = { uniform = [1, 0, 1] }\nintegrator = { method = 'tsit5', tolerance = 1e-6, "
       "dt = 0.5, end = 1000, until_torque = 1e-6 }\n");
-  auto const run = SceneRun::open(scene);
+  auto const run = SceneRun::open(scene, {});
   EXPECT_EQ(run->advance(scene.integrator.steps, {.until_torque = true}), Advanced::at_rest);
   EXPECT_GT(run->time(), 501.5);
   EXPECT_LT(run->time(), 600);
