@@ -39,7 +39,8 @@ typedef enum cayspin_precision CAYSPIN_AS_INT {
 } cayspin_precision;
 
 /* Vectors of all sites in host memory, float or double: component c of site (x, y, z) is number
-   z strides[0] + y strides[1] + x strides[2] + c strides[3] after `data`. */
+   z strides[0] + y strides[1] + x strides[2] + c strides[3] after `data`. Of a crystal with n sites
+   in a cell, plane z = k n + s has site s of the cells k, and nz is cells times n. */
 typedef struct cayspin_array {
   void const* data;
   cayspin_precision precision;

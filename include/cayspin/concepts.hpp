@@ -9,6 +9,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -90,6 +91,7 @@ concept counts_evaluations = requires(Stepper const& stepper) {
 /// | `static bool depends_on_time` | H changes with t, not by what is prepared | false |
 /// | `bool is_stationary(exec, spins)` | prepared once for all t and spins | true without prepare |
 /// | `bool needs_time_alone(exec, spins)` | t is enough to prepare | one of the two above |
+/// | `bool is_affine()` | is linear_field all that there is? | true |
 /// | `static bool is_conservative` | false: H is the derivative of no energy, as a torque | true |
 ///
 /// A term with a prepare has the device members in what that returns. One that is made of others
@@ -138,6 +140,10 @@ concept Generator =
 /// | `batch(exec, generator, spins, t, dt, count)` | count steps, same bits | one by one |
 /// | `static int work_fields` | fields of three numbers per site | not known |
 /// | `size_t work_bytes()` | bytes of work memory | not known |
+/// | `visit_exchanged(visit)` | visit(field) for fields that a step exchanges for the spins | none
+/// |
+///
+/// integrate() ends in the memory that the spins had at first, by visit_exchanged.
 template <class Type>
 concept Stepper =
     requires(Type& stepper, detail::ExecutionOf<typename Type::spins_type> const& exec,
@@ -189,15 +195,18 @@ constexpr std::optional<int> evaluations_per_step() {
 
 namespace detail {
 
+/// An observer may be a std::reference_wrapper of one, too.
 template <class Observer>
-inline constexpr bool changes_spins = requires { requires Observer::changes_spins; };
+inline constexpr bool changes_spins =
+    requires { requires std::remove_cvref_t<std::unwrap_ref_decay_t<Observer>>::changes_spins; };
 
 template <class Observer>
 bool is_due(Observer const& observer, Step const& step) {
+  std::unwrap_reference_t<Observer> const& itself = observer;
   if constexpr (requires {
-                  { observer.due(step) } -> std::convertible_to<bool>;
+                  { itself.due(step) } -> std::convertible_to<bool>;
                 })
-    return observer.due(step);
+    return itself.due(step);
   else
     return true;
 }

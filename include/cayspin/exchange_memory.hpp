@@ -4,7 +4,11 @@
 #include <cayspin/checkpoint.hpp>
 #include <cayspin/spin_field.hpp>
 
+#include <cmath>
 #include <concepts>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -25,7 +29,15 @@ class ExchangeMemory {
   void operator()(std::string const& name, Number& number) const {
     double value = static_cast<double>(number);
     with_.number(prefix_ + name, value);
+    if constexpr (std::integral<Number>) require_held<Number>(name, value);
     number = static_cast<Number>(value);
+  }
+  /// A count that says how many fields follow: one of a damaged checkpoint may be larger than
+  /// there is memory for.
+  template <class Number>
+  void count(std::string const& name, Number& number, std::size_t most) const {
+    (*this)(name, number);
+    if (static_cast<std::size_t>(number) > most) refuse(name);
   }
 
   template <class Real, int Components, class MemorySpace>
@@ -44,6 +56,18 @@ class ExchangeMemory {
   }
 
  private:
+  template <class Number>
+  void require_held(std::string const& name, double value) const {
+    constexpr double end = static_cast<double>(std::numeric_limits<Number>::max()) + 1;
+    bool const is_held = static_cast<double>(std::numeric_limits<Number>::min()) <= value &&
+                         value < end && value == std::floor(value);
+    if (!is_held) refuse(name);
+  }
+  [[noreturn]] void refuse(std::string const& name) const {
+    throw std::invalid_argument("cayspin::exchange_memory: the checkpoint's " + prefix_ + name +
+                                " is not one that the stepper can have");
+  }
+
   Checkpoint& with_;
   std::string prefix_;
 };
@@ -58,7 +82,8 @@ inline constexpr bool remembers_steps = requires(Stepper& stepper) { stepper.res
 /// Brings what `stepper`, or an EnergyControl, remembers to a checkpoint that takes, or from one
 /// that gives back. Then integrate with times.continues goes on as the other one would have. Work
 /// on the stepper's fields must have finished; waits.
-/// Throws what the checkpoint throws, and std::invalid_argument for fields of another size.
+/// Throws what the checkpoint throws, and std::invalid_argument for fields of another size and
+/// counts that the stepper cannot have.
 template <class Stepper>
 void exchange_memory(Stepper& stepper, Checkpoint& checkpoint, std::string const& prefix = {}) {
   detail::ExchangeMemory const visit(checkpoint, prefix);

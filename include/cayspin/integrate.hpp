@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/concepts.hpp>
+#include <cayspin/detail/callers_memory.hpp>
 #include <cayspin/detail/execution.hpp>
 
 #include <Kokkos_Timer.hpp>
@@ -39,13 +40,18 @@ struct Summary {
 };
 
 /// Calls an observer after every `period` steps, counted from step 0, and after the last one; where
-/// the observer has a due(Step) of its own, only if that wants the call, too.
+/// the observer has a due(Step) of its own, only if that wants the call, too. Like integrate(), it
+/// refers to an observer with a name, which has to live as long. A temporary moves into it.
+///   Every(10, control)             control.energy() is that of the run
+///   Every(10, Record(field, to))
 template <class Observer>
 class Every {
  public:
   static constexpr bool changes_spins = detail::changes_spins<Observer>;
 
-  Every(std::int64_t period, Observer observer) : period_(period), observer_(std::move(observer)) {
+  /// Throws std::invalid_argument for a period below 1.
+  Every(std::int64_t period, Observer&& observer)
+      : period_(period), observer_(std::forward<Observer>(observer)) {
     if (period < 1) throw std::invalid_argument("cayspin::Every: the period must be at least 1");
   }
 
@@ -60,8 +66,11 @@ class Every {
 
  private:
   std::int64_t period_;
-  Observer observer_;
+  Observer observer_;  // a reference to one with a name
 };
+
+template <class Observer>
+Every(std::int64_t, Observer&&) -> Every<Observer>;
 
 namespace detail {
 
@@ -87,6 +96,27 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
     observer(exec, step, spins);
     return Next::proceed;
   }
+}
+
+/// Does an observer begin the next step, as the noise of a temperature does?
+template <class Observer>
+inline constexpr bool begins_step = requires { requires Observer::begins_step; };
+
+/// Of observers in their order: is there one that may stop a run after one that begins a step?
+template <class Exec, class Spins, class... Observers>
+constexpr bool may_stop_in_a_step() {
+  bool begun = false, stops = false;
+  [[maybe_unused]] auto const next = [&](bool begins, bool may_stop) {
+    stops = stops || (begun && may_stop);
+    begun = begun || begins;
+  };
+  (next(
+       begins_step<std::remove_cvref_t<Observers>>,
+       requires(Observers& one, Exec const& exec, Step const& step, Spins const& spins) {
+         { one(exec, step, spins) } -> std::same_as<Next>;
+       }),
+   ...);
+  return stops;
 }
 
 /// Throws when a term or generator, or a part of it, was made for spins of another lattice.
@@ -166,13 +196,13 @@ class IntegrationOf final : public Integration {
     return std::apply([&](auto&... one) { return (detail::is_due(one, step) || ...); }, observers_);
   }
   Next observe(Step const& step) override {
-    bool stop = false;
+    Step now = step;
     std::apply(
         [&](auto&... one) {
-          ((stop = detail::observe(exec_, one, step, spins_) == Next::stop || stop), ...);
+          ((now.stops = detail::observe(exec_, one, now, spins_) == Next::stop || now.stops), ...);
         },
         observers_);
-    return stop ? Next::stop : Next::proceed;
+    return now.stops ? Next::stop : Next::proceed;
   }
   void take_step(Step const& from) override {
     stepper_.step(exec_, generator_, spins_, from.time, from.dt);
@@ -190,19 +220,10 @@ class IntegrationOf final : public Integration {
   std::tuple<Observers&...> observers_;
 };
 
-}  // namespace detail
-
-/// Advances `spins` over `times`. A stepper that remembers steps forgets those of runs before,
-/// unless times.continues: then runs in pieces give the bits of one run.
-/// Observers see the state before the first step and after each one.
-/// Returns what was done; `spins` holds the state at the end, and the work has finished.
-/// Lengths of spins are not checked: require_unit_spins does that for spins of one's own.
-/// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
-/// stepper or a term of the field was made for another lattice than that of the spins: before an
-/// observer is called, and for 0 steps, too.
+/// integrate(), which may leave the spins in memory that was the stepper's.
 template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
-Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
-                  Times const& times, Observers&&... observers) {
+Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator const& generator,
+                                Spins& spins, Times const& times, Observers&&... observers) {
   static_assert(std::is_same_v<Spins, typename Stepper::spins_type>,
                 "The stepper was made for another type of spin field.");
   static_assert(
@@ -210,34 +231,36 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
       "A stepper needs step(exec, generator, spins, t, dt), and either a static constexpr "
       "int evaluations (of the generator, per step) or evaluations_done().");
   static_assert(
-      !(AdaptiveStepper<Stepper> && (detail::changes_spins<std::remove_cvref_t<Observers>> || ...)),
+      !(AdaptiveStepper<Stepper> && (changes_spins<std::remove_cvref_t<Observers>> || ...)),
       "An observer that changes spins (EnergyControl, Normalize) does not go with an "
       "adaptive stepper, which goes on from a state of its own.");
-  detail::check_access<Exec, typename Spins::memory_space>();
+  static_assert(!may_stop_in_a_step<Exec, Spins, std::remove_reference_t<Observers>...>(),
+                "ThermalNoise's before_steps() and between_steps() come after every observer that "
+                "may stop the run.");
+  check_access<Exec, typename Spins::memory_space>();
   if (!std::isfinite(times.dt) || !std::isfinite(times.begin))
     throw std::invalid_argument("cayspin::integrate: begin and dt must be finite");
   if (times.first < 0 || times.steps < times.first)
     throw std::invalid_argument("cayspin::integrate: the number of steps is negative");
   // Before an observer sees them, and also where there are no steps to take.
   if constexpr (requires { stepper.check_spins(spins); }) stepper.check_spins(spins);
-  detail::check_spins_of_parts(generator, spins);
+  check_spins_of_parts(generator, spins);
 
   if constexpr (requires { stepper.reset(); }) {
     if (!times.continues) stepper.reset();
   }
   std::int64_t evaluations_before = 0;
-  if constexpr (detail::counts_evaluations<Stepper>)
-    evaluations_before = stepper.evaluations_done();
+  if constexpr (counts_evaluations<Stepper>) evaluations_before = stepper.evaluations_done();
   std::pair<std::int64_t, std::int64_t> own_before;
   if constexpr (AdaptiveStepper<Stepper>)
     own_before = {stepper.accepted_steps(), stepper.rejected_steps()};
   bool batches = false;
-  if constexpr (detail::has_batches<Stepper, Exec, Generator, Spins>)
+  if constexpr (has_batches<Stepper, Exec, Generator, Spins>)
     batches = stepper.takes_batches(exec, generator, spins);
-  detail::IntegrationOf<Exec, Stepper, Generator, Spins, std::remove_reference_t<Observers>...>
-  integration(exec, stepper, generator, spins, observers...);
+  IntegrationOf<Exec, Stepper, Generator, Spins, std::remove_reference_t<Observers>...> integration(
+      exec, stepper, generator, spins, observers...);
   Summary summary = integration.run(times, batches);
-  if constexpr (detail::counts_evaluations<Stepper>)
+  if constexpr (counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;
   else
     summary.evaluations = summary.steps * evaluations_per_step<Stepper>().value_or(0);
@@ -246,6 +269,32 @@ Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator
     summary.rejected = stepper.rejected_steps() - own_before.second;
   }
   return summary;
+}
+
+}  // namespace detail
+
+/// Advances `spins` over `times`. A stepper that remembers steps forgets those of runs before,
+/// unless times.continues: then runs in pieces give the bits of one run.
+/// Observers see the state before the first step and after each one.
+/// Returns what was done; `spins` holds the state at the end, and the work has finished. That is in
+/// the memory that `spins` had at first, whichever method: copies of it see the state, too.
+/// Lengths of spins are not checked: require_unit_spins does that for spins of one's own.
+/// Throws std::invalid_argument when dt is not finite, the number of steps is negative, or the
+/// stepper or a term of the field was made for another lattice than that of the spins: before an
+/// observer is called, and for 0 steps, too.
+template <class Exec, class Stepper, class Generator, class Spins, class... Observers>
+Summary integrate(Exec const& exec, Stepper& stepper, Generator const& generator, Spins& spins,
+                  Times const& times, Observers&&... observers) {
+  auto const run = [&] {
+    return detail::integrate_in_any_memory(exec, stepper, generator, spins, times, observers...);
+  };
+  if constexpr (requires(void (*visit)(Spins&)) { stepper.visit_exchanged(visit); }) {
+    detail::check_access<Exec, typename Spins::memory_space>();
+    detail::CallersMemory const memory(exec, stepper, spins);
+    return run();
+  } else {
+    return run();
+  }
 }
 
 }  // namespace cayspin::inline v0_1

@@ -57,7 +57,8 @@ struct Lattice {
 
   friend bool operator==(Lattice const&, Lattice const&) = default;
 
-  /// Throws std::invalid_argument naming the first extent or spacing that no lattice can have.
+  /// Throws std::invalid_argument naming the first extent, spacing or number of sites in a cell
+  /// that no lattice can have.
   void validate() const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::string const which(1, "xyz"[axis]);
@@ -72,6 +73,13 @@ struct Lattice {
         throw std::invalid_argument("cayspin::Lattice: the ghosts along " + which +
                                     " leave no sites of the part's own");
     }
+    if (cell_sites < 1)
+      throw std::invalid_argument("cayspin::Lattice: a cell has " + std::to_string(cell_sites) +
+                                  " sites; it must have at least 1");
+    if (part == nullptr && shape[2] % cell_sites != 0)
+      throw std::invalid_argument("cayspin::Lattice: the extent along z is " +
+                                  std::to_string(shape[2]) + "; it must be a multiple of the " +
+                                  std::to_string(cell_sites) + " sites of a cell");
     if (static_cast<double>(shape[0]) * static_cast<double>(shape[1]) *
             static_cast<double>(shape[2]) >
         1e15)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/callers_memory.hpp>
 #include <cayspin/minimizer/lbfgs.hpp>
 #include <cayspin/minimizer/lowest_curvature.hpp>
 #include <cayspin/minimizer/minimum.hpp>
@@ -49,7 +50,7 @@ class Minimizer {
     detail::require_whole("cayspin::Minimizer", like.lattice());
   }
 
-  /// Moves `spins`, which may exchange their memory with its own, to a minimum. Waits. Throws
+  /// Moves `spins` to a minimum. Waits. Throws
   /// std::invalid_argument for spins of another lattice, options that cannot be, and a field that
   /// is not finite at the start.
   template <class Exec, class Field>
@@ -65,6 +66,7 @@ class Minimizer {
           "more");
     if (options.evaluations < 1)
       throw std::invalid_argument("cayspin::minimize: the evaluations must be at least 1");
+    detail::CallersMemory const memory(exec, *this, spins);
     begin(exec, field, spins, options);
     for (;;) {
       auto const end = descend(exec, field, spins, options);
@@ -74,6 +76,12 @@ class Minimizer {
         return ended(end ? *end : *at_rest);
       if (so_far_.evaluations >= options.evaluations) return ended(MinimizeEnd::evaluation_limit);
     }
+  }
+
+  /// The field whose memory a search exchanges for that of the spins, until it ends.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(search_.trial);
   }
 
  private:

@@ -30,6 +30,14 @@ concept has_field_rate = requires(Term const& term, Stencil const& stencil) {
   { term.field_rate(stencil.center(), stencil) } -> std::convertible_to<VectorOf<Stencil>>;
 };
 
+/// Does a prepared term have the linear part of H?
+template <class Term, class Stencil>
+concept has_linear_part = has_linear_field<Term, Stencil> || requires { Term::degree; };
+
+/// Does it have the derivative of H along rates, of what prepare_rate returns?
+template <class Term, class Stencil>
+concept has_derivative = has_field_rate<Term, Stencil> || has_linear_part<Term, Stencil>;
+
 template <class Generator, class Stencil>
 concept is_generator = requires(Generator const& generator, Stencil const& stencil) {
   { generator(stencil) } -> std::convertible_to<VectorOf<Stencil>>;
@@ -184,6 +192,19 @@ bool needs_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
     return term.needs_time_alone(exec, spins);
   else
     return depends_on_time<Term> || is_stationary(term, exec, spins);
+}
+
+/// Is H affine in the spins, of a term with a linear part? What a term says at run time, and all
+/// parts of a sum or a wrapper.
+template <class Term>
+bool has_affine_field(Term const& term) {
+  auto const all = [](auto const& part) { return has_affine_field(part); };
+  if constexpr (requires { term.is_affine(); })
+    return term.is_affine();
+  else if constexpr (requires { term.all_parts(all); })
+    return term.all_parts(all);
+  else
+    return true;
 }
 
 template <class Term, class Spins>

@@ -65,8 +65,11 @@ inline double cells_within(Crystal const& crystal, double length) {
 
 }  // namespace detail
 
-/// Exchange between all pairs at the first, second, ... distance of a crystal. Distances that
-/// differ by a millionth are one. `repeats`: along which vectors there are other cells.
+/// Distances that differ by less than this fraction are one: vectors are typed with a few digits.
+inline constexpr double same_distance = 1e-4;
+
+/// Exchange between all pairs at the first, second, ... distance of a crystal. `repeats`: along
+/// which vectors there are other cells.
 inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
                                                  std::vector<double> const& exchange,
                                                  std::array<bool, 3> const& repeats = {true, true,
@@ -80,7 +83,7 @@ inline std::vector<Coupling> couplings_of_shells(Crystal const& crystal,
     double length = 0;
     bool is_whole = is_bounded;
     for (auto const& bond : detail::bonds_within(crystal, reach, repeats)) {
-      if (bond.length > length * (1 + 1e-6)) {
+      if (bond.length > length * (1 + same_distance)) {
         if (shells == exchange.size()) {
           is_whole = true;
           break;

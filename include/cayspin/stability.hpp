@@ -17,6 +17,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <type_traits>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, known before a run:
 // the method's own stages act on one transverse mode of a nearly uniform state,
@@ -234,9 +235,13 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
 /// Throws std::invalid_argument for a bound or a damping that is negative or not finite.
 /// A stepper that is no Runge-Kutta method has a function of its own, of the first three arguments.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
-template <class Stepper>
-double largest_stable_step(double field_bound, double damping, bool precession = true,
+template <class Stepper, class Precession = bool>
+double largest_stable_step(double field_bound, double damping, Precession precession = true,
                            double sigma = 0) {
+  static_assert(
+      std::is_same_v<Precession, bool>,
+      "largest_stable_step takes the field bound, the damping, the precession, which is a "
+      "bool, and sigma.");
   detail::check_bound(field_bound, damping);
   detail::finite(sigma, "cayspin::largest_stable_step: sigma");
   if constexpr (requires { Stepper::largest_stable_step(field_bound, damping, precession); }) {

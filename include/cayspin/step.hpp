@@ -10,6 +10,7 @@ struct Step {
   std::int64_t number = 0;  // steps taken
   double time = 0, dt = 0;
   bool last = false;
+  bool stops = false;  // an observer before this one ends the run here
 };
 
 /// What an observer may return to end an integration early. Observers that return nothing proceed.

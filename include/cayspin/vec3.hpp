@@ -109,6 +109,21 @@ inline Vec3<double> finite(Vec3<double> const& v, char const* what) {
   return {finite(v.x, what), finite(v.y, what), finite(v.z, what)};
 }
 
+/// Squares below this are not resolved.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
+  using Scalar = scalar_t<Value>;
+  return sizeof(Scalar) == sizeof(double) ? static_cast<Scalar>(0x1p-970)
+                                          : static_cast<Scalar>(0x1p-103);
+}
+
+/// |m|^2 to divide by: of a vacant site, whose spin is zero, a number by which zeros stay zeros.
+/// NaN stays NaN.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Value square_to_divide_by(Vec3<Value> const& m) {
+  return maximum<Value>(dot(m, m), Value(smallest_square<Value>()));
+}
+
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> select(typename ValueTraits<Value>::mask const& condition,
                                                Vec3<Value> const& yes, Vec3<Value> const& no) {

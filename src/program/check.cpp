@@ -13,9 +13,11 @@
 #include "terminal_picture.hpp"
 #include "trade/resolved.hpp"
 
+#include <cayspin/io/notes.hpp>
 #include <cayspin/io/relax.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +52,7 @@ std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& 
 }
 
 int order(io::Scene const& scene, Variant const& variant) {
-  return has_dear_field(scene) ? order_around_dear(variant) : variant.order;
+  return has_dear_field(scene) ? order_around_dear(scene, variant) : variant.order;
 }
 
 // Two passes through the substeps of the method.
@@ -75,6 +77,18 @@ std::string units_json(io::Units const& units) {
       ", \"units\": \"SI\", \"time_unit\": {}, \"length_unit\": {}, \"field_unit\": {}, "
       "\"energy_unit\": {}",
       units.time, units.length, units.field, units.energy);
+}
+
+void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
+
+void print_notes(io::Scene const& scene) {
+  for (auto const& note : io::notes(scene)) print("note", note);
+}
+
+// Nothing without notes.
+std::string notes_json(io::Scene const& scene) {
+  auto const all = io::notes(scene);
+  return all.empty() ? std::string() : fmt::format(", \"notes\": {}", nlohmann::json(all).dump());
 }
 
 void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
@@ -103,15 +117,15 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
                    : "null",
                plan.features->jumps);
   if (repeated) fmt::print(", \"repeated\": {}", *repeated);
-  fmt::print("}}\n");
+  fmt::print("{}}}\n", notes_json(scene));
 }
 
 void print_json_to_relax(io::Scene const& scene, Plan const& plan, Precision precision) {
   fmt::print(
       "{{\"stable_dt\": null, {}, \"evaluations_per_step\": null, \"states\": {}, "
-      "\"file_bytes\": {:.0f}, \"precision\": \"{}\"{}}}\n",
+      "\"file_bytes\": {:.0f}, \"precision\": \"{}\"{}{}}}\n",
       memory_json(plan), plan.frames, plan.file_bytes, to_string(precision),
-      units_json(scene.units));
+      units_json(scene.units), notes_json(scene));
 }
 
 // In SI with the reduced number after it.
@@ -188,8 +202,6 @@ void draw(io::Scene const& scene, std::vector<double> const& start) {
     fmt::print("{}", terminal_picture(scene.lattice, start));
 }
 
-void print(std::string_view name, std::string_view text) { fmt::print("{:<11} {}\n", name, text); }
-
 void print_output(io::Scene const& scene, Plan const& plan) {
   print("output", output_text(scene, plan));
   if (auto const refusal = output_refusal(scene.output)) print("", "as it stands: " + *refusal);
@@ -225,6 +237,7 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
     cost += fmt::format(" per step, {:.4g} spin updates in all", updates);
   print("cost", cost);
   print_memory(plan, precision, "method");
+  print_notes(scene);
   if (repeated)
     print("ranks",
           fmt::format("each repeats {:.3g} % of its work, and has {} of its neighbours at each "
@@ -253,13 +266,15 @@ int check_to_relax(CheckOptions const& options, io::Scene const& scene) {
   for (auto const& [name, text] : describe(scene)) print(name, text);
   print("relax", search_text(scene));
   print_memory(plan, options.precision, "search");
+  print_notes(scene);
   print_output(scene, plan);
   draw(scene, start);
   return Status::done;
 }
 
 int check(CheckOptions const& options) {
-  auto scene = io::read_scene_to_run_or_relax(options.scene, options.overrides);
+  auto scene =
+      io::with_shape_of_start(io::read_scene_to_run_or_relax(options.scene, options.overrides));
   io::check_files(scene);
   if (io::is_to_relax(scene)) return check_to_relax(options, scene);
   if (scene.integrator.method->automatic) {

@@ -5,12 +5,16 @@
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
+#include <cayspin/demagnetization/images.hpp>
+#include <cayspin/io/notes.hpp>
+
 #include <fmt/args.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 
 namespace cayspin::program {
@@ -210,12 +214,21 @@ std::string slab_text(io::Field const& field) {
                                     : "");
 }
 
+std::string images_text(std::array<int, 3> const& images) {
+  std::string infinite, text;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (images[axis] == infinitely_many_images)
+      infinite += fmt::format("{}{}", infinite.empty() ? "" : " and ", "xyz"[axis]);
+    else if (images[axis] > 0)
+      text += fmt::format(", {} images on each side along {}", images[axis], "xyz"[axis]);
+  if (!infinite.empty()) text += ", infinitely many images along " + infinite;
+  return text;
+}
+
 std::string demag_text(io::Scene const& scene) {
   auto const& demag = *scene.field.demag;
-  auto const& [x, y, z] = demag.periodic_images;
   return fmt::format("H = -{:.6g} N m, of all cells on all cells by FFTs{}{}",
-                     scene.field.mu0 * demag.strength,
-                     x + y + z > 0 ? fmt::format(", images {}, {}, {}", x, y, z) : "",
+                     scene.field.mu0 * demag.strength, images_text(demag.periodic_images),
                      has_dear_field(scene) ? ", dear: once a step" : "");
 }
 
@@ -276,6 +289,10 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
   if (scene.thermal) lines.emplace_back("temperature", thermal_text(scene));
   lines.emplace_back("start", initial_text(scene.initial));
   return lines;
+}
+
+void warn_of_notes(io::Scene const& scene) {
+  for (auto const& note : io::notes(scene)) fmt::print(stderr, "warning: {}\n", note);
 }
 
 std::string describe_method(io::Scene const& scene) {

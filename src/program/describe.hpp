@@ -18,4 +18,7 @@ std::string describe_units(io::Units const& units);
 /// "rkmk4, orthogonal generator, sigma = 0.7, cayley rotation"
 std::string describe_method(io::Scene const& scene);
 
+/// Prints the notes on a scene as warnings.
+void warn_of_notes(io::Scene const& scene);
+
 }  // namespace cayspin::program

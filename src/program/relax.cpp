@@ -9,6 +9,7 @@
 #include "simulation/space.hpp"
 #include "simulation/text.hpp"
 
+#include <cayspin/io/notes.hpp>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/io/run_output.hpp>
 #include <cayspin/observer/record.hpp>
@@ -118,7 +119,8 @@ class Relaxation {
 };
 
 int relax(RelaxOptions const& options) {
-  auto const scene = io::read_scene_to_relax(options.scene, options.overrides);
+  auto const scene =
+      io::with_shape_of_start(io::read_scene_to_relax(options.scene, options.overrides));
   require_rest(scene);
   output_file(scene, options.output);
   io::check_files(scene);
@@ -130,6 +132,7 @@ int relax(RelaxOptions const& options) {
   KokkosSession const kokkos(space, options.threads, options.device);
   auto const plan = make_plan_to_relax(scene, options.precision);
   require_memory(scene, plan);
+  warn_of_notes(scene);
   catch_signals();
   return in_space(space, options.precision, [&]<class Real, class Space>() {
     return Relaxation<Real, Space>(scene, plan.lattice, options).run();

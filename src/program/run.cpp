@@ -13,6 +13,7 @@
 #include "trade/resolved.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
+#include <cayspin/io/notes.hpp>
 
 #include <fmt/format.h>
 
@@ -47,10 +48,20 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
                           accepted + "or a normal along y or z on a host without where = \"host\"");
 }
 
+// What is refused, with the option that names the file.
+template <class Work>
+auto as_restart(Work const& work) {
+  try {
+    return work();
+  } catch (UsageError const& error) {
+    throw UsageError(std::string("--restart ") + error.what());
+  }
+}
+
 Restart restart_of(EarlierRun left, io::Scene const& scene, Plan const& plan,
                    RunOptions const& options) {
   auto const output = output_file(scene, options.output);
-  try {
+  return as_restart([&] {
     Restart restart(std::move(left), scene, plan, options.precision, scene.integrator.steps);
     std::error_code ignored;
     for (auto const& file : restart.files())
@@ -60,9 +71,7 @@ Restart restart_of(EarlierRun left, io::Scene const& scene, Plan const& plan,
               fmt::format("{}: the run would write into it; accepted: another file for --output",
                           file.string()));
     return restart;
-  } catch (UsageError const& error) {
-    throw UsageError(std::string("--restart ") + error.what());
-  }
+  });
 }
 
 std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
@@ -71,7 +80,8 @@ std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
   // An expression that fails at one site has to end all ranks, which later wait for each other.
   io::occupied(scene, own);
   io::frozen(scene, own);
-  return restart ? restart->spins(own) : io::initial_spins(scene, own);
+  if (!restart) return io::initial_spins(scene, own);
+  return as_restart([&] { return restart->spins(scene, own); });
 }
 
 template <class Real, class Space>
@@ -154,6 +164,12 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
   }
   if (ranks.is_first()) watch.progress().close(summary, frames, path.string());
   if (watch.failure()) fail(*watch.failure());
+  if (watch.at_saddle() && ranks.is_first())
+    fmt::print(stderr,
+               "{}: ended at a saddle or a maximum of the energy: max |m x H| is below "
+               "integrator.until_torque, but the energy has a direction down; accepted: another "
+               "start, or cayspin relax\n",
+               scene.path.string());
   if (!watch.interrupted()) return Status::done;
   if (ranks.is_first())
     fmt::print(stderr, "{}: interrupted after step {} of {}; {}\n", scene.path.string(),
@@ -165,7 +181,7 @@ int run_on(io::Scene const& typed, io::Scene const& scene, Plan const& plan,
 // alone.
 io::Scene typed_scene(RunOptions const& options, Ranks& ranks) {
   auto typed = ranks.together([&] {
-    auto scene = io::read_scene(options.scene, options.overrides);
+    auto scene = io::with_shape_of_start(io::read_scene(options.scene, options.overrides));
     output_file(scene, options.output);
     io::check_files(scene);
     return scene;
@@ -231,8 +247,12 @@ int run(RunOptions const& options, Ranks& ranks) {
     require_memory(scene, plan, ranks.on_this_machine());
     if (auto const warning = dt_warning(scene, plan); warning && ranks.is_first())
       fmt::print(stderr, "warning: {}\n", *warning);
+    if (ranks.is_first()) warn_of_notes(scene);
     if (!left) return nullptr;
-    return std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
+    auto from = std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
+    if (auto const& warning = from->warning(); warning && ranks.is_first())
+      fmt::print(stderr, "warning: --restart {}\n", *warning);
+    return from;
   });
   catch_signals();
   return in_space(space, options.precision, [&]<class Real, class Space>() {

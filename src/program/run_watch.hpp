@@ -69,10 +69,11 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
     bool const recorded = frame_due(step) || scalars_due(step) || interrupt;
     if (!recorded && !stored && !run_.guard().due(step)) return Next::proceed;
 
-    auto const found = run_.look(exec, step, spins);
+    auto const found = run_.look(exec, step, spins, true, step.last);
     failure_ = found.failure;
     if (failure_) return Next::stop;
     bool const at_rest = found.at_rest && step.number > first_;
+    at_saddle_ = found.at_saddle && step.last;
     bool const ends = interrupt || at_rest;
     interrupted_ = interrupt && !at_rest && !step.last;
     if (recorded || ends)
@@ -92,6 +93,8 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   /// Why the run failed, if it did.
   std::optional<std::string> const& failure() const { return failure_; }
   bool interrupted() const { return interrupted_; }
+  /// Ended without torque, but where the energy has a direction down.
+  bool at_saddle() const { return at_saddle_; }
   Sample const& last_frame() const { return last_frame_; }
   std::optional<io::RunOutput>& file() { return file_; }
   Progress& progress() { return progress_; }
@@ -171,7 +174,7 @@ class Watch : public RunObserver<Space, SpinField<Real, typename Space::memory_s
   Kokkos::View<Real* [3], Kokkos::LayoutRight, Kokkos::HostSpace> part_;  // on its way to the first
   Sample last_frame_;
   std::optional<std::string> failure_;
-  bool interrupted_ = false;
+  bool interrupted_ = false, at_saddle_ = false;
 };
 
 }  // namespace cayspin::program

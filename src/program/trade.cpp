@@ -8,6 +8,8 @@
 #include "trade/resolved.hpp"
 #include "trade/verdict.hpp"
 
+#include <cayspin/io/notes.hpp>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -235,7 +237,7 @@ void print_text(AdviseOptions const& options, io::Scene const& scene, Advised co
 
 io::Scene scene_to_try(std::filesystem::path const& path,
                        std::vector<std::string> const& overrides) {
-  auto const scene = io::read_scene(path, overrides);
+  auto const scene = io::with_shape_of_start(io::read_scene(path, overrides));
   io::check_files(scene);
   // With one, the scene's own method is of no account.
   if (!scene.integrator.method->automatic && !has_dear_field(scene))

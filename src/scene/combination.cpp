@@ -145,12 +145,6 @@ void check_pass(Scene const& scene) {
            "no such key");
   if (has_torque(field) && integrator.until_torque)
     refuse(scene, "integrator.until_torque", "a current moves spins for ever", "no such key");
-  // Those that divide by the length of a spin, or by that of all.
-  bool const divides = method.stiff || (method.is_baseline() && method.keeps_length);
-  refuse_method(scene.lattice.occupied.there() && divides, "needs a spin on every site");
-  if (scene.lattice.occupied.there() && integrator.generator == Generator::tangent)
-    refuse(scene, "integrator.generator", "\"tangent\" needs a spin on every site",
-           "\"default\", \"orthogonal\"");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -53,6 +54,18 @@ std::array<double, 9> read_tensor(Item const& item, Scene& scene) {
   return tensor;
 }
 
+// Bonds past an open end are none: here all of them.
+void refuse_beyond(Item const& item, Lattice const& lattice, std::array<int, 3> const& offset) {
+  auto cells = lattice.shape;
+  cells[2] /= static_cast<std::int64_t>(lattice.basis.size());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lattice.boundary[axis] == BoundaryKind::open && std::abs(offset[axis]) >= cells[axis])
+      item.fail(fmt::format("leaves the lattice from every cell: the offset along {} is {}, and "
+                            "there are {} cells",
+                            "xyz"[axis], offset[axis], cells[axis]),
+                "a shorter offset, a larger shape, or boundary \"periodic\"");
+}
+
 Coupling read_coupling(Item const& item, Scene& scene) {
   Table const table(item, scene);
   table.accept_only({"between", "offset", "J", "D", "tensor", "biquadratic"});
@@ -75,6 +88,7 @@ Coupling read_coupling(Item const& item, Scene& scene) {
   }
   if (between[0] == between[1] && offset == std::array<int, 3>{})
     item.fail("couples a site to itself", "another site, or an offset");
+  refuse_beyond(item, scene.lattice, offset);
   Coupling made{between, offset};
   auto const tensor = table.find("tensor"), J = table.find("J"), D = table.find("D"),
              biquadratic = table.find("biquadratic");

@@ -2,6 +2,8 @@
 #include "quantity.hpp"
 #include "sections.hpp"
 
+#include <cayspin/demagnetization/images.hpp>
+#include <cayspin/demagnetization/tensor.hpp>
 #include <cayspin/io/expression.hpp>
 
 #include <fmt/format.h>
@@ -36,30 +38,30 @@ Term read_lattice_term(Item const& item, Scene& scene) {
   }
 }
 
-// The interaction of a chiral crystal, or one that differs from site to site.
-bool read_other_dmi(Item const& item, Scene& scene, Field& field) {
-  constexpr std::string_view accepted = "{ interfacial = D, normal = [x, y, z] } or { bulk = D }";
+// Of an interface, or of the bulk of a chiral crystal. free_boundary is read after all sections.
+void read_dmi(Item const& item, Scene& scene, Field& field) {
+  constexpr std::string_view accepted =
+      "{ interfacial = D, normal = [x, y, z] } or { bulk = D }, and free_boundary";
   if (!item.node->is_table()) item.wrong_type(accepted);
   Table const table(item, scene);
   auto const bulk = table.find("bulk");
-  table.accept_only({"interfacial", "normal", "bulk"});
-  if (bulk && item.node->as_table()->size() > 1)
+  table.accept_only({"interfacial", "normal", "bulk", "free_boundary"});
+  if (bulk && (table.contains("interfacial") || table.contains("normal")))
     item.fail("is of an interface and of the bulk", accepted);
   if (bulk) {
     field.bulk_dmi = {number_of_sites(*bulk, scene, field.dmi_factors)};
-    return true;
+    return;
   }
-  auto const interfacial = table.find("interfacial");
-  if (!interfacial || !read_site_numbers(*interfacial, scene, field.dmi_factors)) return false;
-  field.dmi = {1, direction(table.required("normal", "three numbers"))};
-  return true;
+  auto const interfacial = table.required("interfacial", Limits().accepted);
+  double const constant = number_of_sites(interfacial, scene, field.dmi_factors);
+  field.dmi = {constant, direction(table.required("normal", "three numbers"))};
 }
 
 void read_lattice_terms(Table const& table, Field& field) {
   for_each_lattice_term(field, [&]<class Term>(std::optional<Term>& term) {
     auto const item = table.find(Term::key);
     if (!item) return;
-    if (std::is_same_v<Term, InterfacialDmi> && read_other_dmi(*item, table.scene(), field)) return;
+    if (std::is_same_v<Term, InterfacialDmi>) return read_dmi(*item, table.scene(), field);
     if (std::is_same_v<Term, Exchange> &&
         read_site_numbers(*item, table.scene(), field.exchange_factors)) {
       field.exchange = {1};
@@ -90,7 +92,8 @@ int read_site(Table const& table) {
 }
 
 CubicAnisotropy read_cubic(Table const& table) {
-  constexpr std::string_view accepted = "two vectors at right angles";
+  constexpr std::string_view accepted = "two vectors at right angles, to 1e-4";
+  constexpr double most_skew = 1e-4;  // of cayspin::CubicAnisotropy
   CubicAnisotropy term;
   for (auto const* const other : {"constant", "axis"})
     if (auto const item = table.find(other)) item->fail("belongs to a uniaxial one", "no such key");
@@ -100,8 +103,9 @@ CubicAnisotropy read_cubic(Table const& table) {
   auto const axes = table.required("axes", accepted);
   std::ranges::transform(entries(axes, 2, 2, accepted), term.axes.begin(), direction);
   auto const& [a, b] = term.axes;
-  if (!(std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) < 1e-9))
-    axes.fail("the axes are not at right angles", accepted);
+  double const skew = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+  if (!(skew <= most_skew))
+    axes.fail(fmt::format("the axes are {:.3g} away from right angles", skew), accepted);
   term.site = read_site(table);
   return term;
 }
@@ -167,14 +171,49 @@ SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   return slab;
 }
 
+// Along periodic axes of more than one cell the lattice goes on for ever.
+std::array<int, 3> usual_images(Item const& item, Lattice const& lattice) {
+  std::array<int, 3> images{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lattice.boundary[axis] == BoundaryKind::periodic && lattice.shape[axis] > 1)
+      images[axis] = infinitely_many_images;
+  if (std::ranges::count(images, 0) == 0)
+    item.fail(
+        "the field of a lattice that is periodic along x, y and z depends on the shape of "
+        "the whole",
+        "demag = { periodic_images = [nx, ny, nz] }, or an open axis");
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (images[axis] == 0) continue;
+    double const length = static_cast<double>(lattice.shape[axis]) * lattice.spacing[axis];
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+  }
+  if (longest > largest_period_ratio * shortest)
+    item.fail(
+        fmt::format("the lengths of the periodic axes differ by {:.3g} : 1", longest / shortest),
+        "up to 1e4 : 1, or demag = { periodic_images = [nx, ny, nz] }");
+  return images;
+}
+
 // `demag = true`, or a table.
 std::optional<Demagnetization> read_demag(Item const& item, Scene& scene) {
+  auto const [shortest, longest] = std::ranges::minmax(scene.lattice.spacing);
+  auto const check_cell = [&, shortest = shortest, longest = longest] {
+    if (longest > largest_edge_ratio * shortest)
+      item.fail(fmt::format("the edges of a cell differ by {:.3g} : 1", longest / shortest),
+                "edges of up to 1e9 : 1");
+  };
   if (item.node->is_boolean()) {
-    if (boolean(item)) return Demagnetization();
-    return std::nullopt;
+    if (!boolean(item)) return std::nullopt;
+    check_cell();
+    Demagnetization demag;
+    demag.periodic_images = usual_images(item, scene.lattice);
+    return demag;
   }
   constexpr std::string_view accepted = "true, or { strength, periodic_images, dear }";
   if (!item.node->is_table()) item.wrong_type(accepted);
+  check_cell();
   auto demag = read_term<Demagnetization>(item, scene);
   if (auto const images = Table(item, scene).find("periodic_images")) {
     constexpr std::string_view of_images = "three numbers of images, 0 to 1000";
@@ -183,6 +222,8 @@ std::optional<Demagnetization> read_demag(Item const& item, Scene& scene) {
       if (count > 1000) each.fail(fmt::format("{} images are too many", count), of_images);
       return static_cast<int>(count);
     });
+  } else {
+    demag.periodic_images = usual_images(item, scene.lattice);
   }
   return demag;
 }

@@ -100,7 +100,9 @@ struct Start {
                                                 plane / sites);
     detail::refuse(scene, key,
                    fmt::format("the spin of {} is ({}, {}, {})", where, m[0], m[1], m[2]),
-                   "a finite vector that is not zero");
+                   scene.lattice.occupied.there()
+                       ? "a finite vector that is not zero"
+                       : "a finite vector that is not zero, or lattice.occupied that is 0 there");
   }
 
   void operator()(UniformStart const& uniform) const {
@@ -139,7 +141,9 @@ struct Start {
 
   void operator()(FileStart const& file) const {
     auto const read = [&] { return detail::read_start_file(file.path, scene.lattice, box); };
-    set_all(detail::for_key(scene, "initial.file", read), "initial.file");
+    auto const values = detail::for_key(scene, "initial.file", read);
+    require_shape(values, file.path.lexically_proximate(scene.path.parent_path()).string());
+    set_all(values, "initial.file");
   }
 
   void operator()(GivenStart const& start) const {
@@ -149,6 +153,22 @@ struct Start {
                      fmt::format("{} numbers were given", start.spins->size()),
                      fmt::format("{}, three for each site", numbers));
     set_all(numbers_in(box, scene.lattice.shape, 3, *start.spins), "initial.given");
+  }
+
+  // Zero vectors are sites without a spin: they have to be so in the scene, too.
+  void require_shape(std::vector<double> const& values, std::string const& name) const {
+    if (occupied.empty()) return;
+    std::int64_t there = 0, zeros = 0;
+    for (std::size_t site = 0; site < size(); ++site) {
+      auto const* const m = values.data() + 3 * site;
+      there += occupied[site];
+      zeros += occupied[site] && m[0] == 0 && m[1] == 0 && m[2] == 0;
+    }
+    if (zeros > 0)
+      detail::refuse(
+          scene, "initial.file",
+          fmt::format("is zero on {} of the {} sites that lattice.occupied fills", zeros, there),
+          fmt::format("lattice.occupied = {{ file = \"{}\" }}, or no such key", name));
   }
 
   void set_all(std::vector<double> const& values, std::string_view key) const {

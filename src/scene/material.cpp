@@ -95,7 +95,7 @@ void read_material(Table const& root, Scene& scene) {
     root.find("units")->fail("\"SI\" has no meaning for kind = \"rigid_body\"", "\"reduced\"");
   auto const table = root.table("material", "a table [material] with Ms in A/m, or mu_s in J/T");
   table.accept_only({"Ms", "A", "Ku", "mu_s", "J", "K", "axis", "D", "normal", "D_bulk", "alpha",
-                     "damping_form", "gamma"});
+                     "free_boundary", "damping_form", "gamma"});
   auto& material = scene.material.emplace();
   material.atomistic = is_atomistic(table);
   auto const& keys = material.atomistic ? atomistic : continuum;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "free_boundary.hpp"
 #include "sections.hpp"
 
 #include <cayspin/io/relax.hpp>
@@ -125,6 +126,7 @@ Scene parse_scene_for(Purpose purpose, std::string text, std::filesystem::path c
     detail::check_si(scene);
     detail::convert_to_reduced(scene);
   }
+  if (detail::has_free_boundary(root)) detail::add_free_boundaries(scene);
   if (write_cell(document, scene) || !overrides.empty()) {
     std::ostringstream stream;
     stream << document << '\n';

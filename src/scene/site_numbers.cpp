@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "dataset_of_sites.hpp"
+#include "free_boundary.hpp"
 #include "hdf5/read_in_child.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
+#include "start_file.hpp"
 
 #include <cayspin/io/scene.hpp>
 
@@ -20,6 +22,11 @@ detail::DatasetOfSites open_values(std::filesystem::path const& path, Lattice co
   detail::DatasetOfSites values(path, "/values", lattice, 1);
   if (!values.fits()) values.refuse_extents(fmt::format("({})", values.expected()));
   return values;
+}
+
+// Sites are occupied where a file has spins.
+bool is_file_of_spins(SiteNumbers const& numbers, std::string_view key) {
+  return key == "lattice.occupied" && detail::holds_spins(numbers.file);
 }
 
 bool are_finite(std::vector<double> const& values) {
@@ -53,8 +60,11 @@ std::vector<double> typed_numbers(Scene const& scene, SiteNumbers const& numbers
       throw scene_error(scene, key, "a number that was given is not finite");
     return numbers_in(box, scene.lattice.shape, 1, *numbers.given);
   }
+  if (auto at_sides = detail::numbers_at_free_sides(scene, numbers, box)) return *at_sides;
   if (numbers.file.empty()) return values_at_sites(scene, numbers.expression, key, box);
   return detail::for_key(scene, key, [&] {
+    if (is_file_of_spins(numbers, key))
+      return detail::sites_with_spins(numbers.file, scene.lattice, box);
     auto values = read_guarded(numbers.file,
                                [&] { return open_values(numbers.file, scene.lattice).in(box); });
     if (!are_finite(values))
@@ -107,8 +117,10 @@ double number_of_sites(Item const& item, Scene& scene, SiteNumbers& numbers) {
 void check_site_numbers(Scene const& scene) {
   auto const check = [&](SiteNumbers const& numbers, std::string_view key) {
     if (numbers.file.empty()) return;
-    for_key(scene, numbers.key_or(key),
-            [&] { try_in_child(numbers.file, [&] { open_values(numbers.file, scene.lattice); }); });
+    for_key(scene, numbers.key_or(key), [&] {
+      if (is_file_of_spins(numbers, key)) return check_start_file(numbers.file, scene.lattice);
+      try_in_child(numbers.file, [&] { open_values(numbers.file, scene.lattice); });
+    });
   };
   auto const& field = scene.field;
   check(scene.lattice.occupied, "lattice.occupied");

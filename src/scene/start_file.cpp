@@ -2,6 +2,7 @@
 #include "start_file.hpp"
 
 #include "dataset_of_sites.hpp"
+#include "hdf5/error.hpp"
 #include "hdf5/read_in_child.hpp"
 #include "trajectory/stored_spins.hpp"
 
@@ -74,6 +75,27 @@ std::vector<double> read_start_file(std::filesystem::path const& path, Lattice c
   refuse_crystals(lattice, path);
   require_nodes(read_ovf_mesh(path), path, lattice.shape);
   return numbers_in(box, lattice.shape, 3, read_ovf(path).values);
+}
+
+std::vector<double> sites_with_spins(std::filesystem::path const& path, Lattice const& lattice,
+                                     SiteBox const& box) {
+  auto const spins = read_start_file(path, lattice, box);
+  std::vector<double> there(spins.size() / 3);
+  for (std::size_t site = 0; site < there.size(); ++site) {
+    auto const* const m = &spins[3 * site];
+    there[site] = m[0] == 0 && m[1] == 0 && m[2] == 0 ? 0 : 1;
+  }
+  return there;
+}
+
+bool holds_spins(std::filesystem::path const& path) {
+  if (is_ovf(path)) return true;
+  return read_guarded(path, [&] {
+    QuietErrors const quiet;
+    auto const file = open_file(path);
+    auto const has = [&](char const* name) { return H5Lexists(file.get(), name, H5P_DEFAULT) > 0; };
+    return has("/spins") && !has("/values");
+  });
 }
 
 }  // namespace cayspin::inline v0_1::io::detail

@@ -16,4 +16,11 @@ void check_start_file(std::filesystem::path const& path, Lattice const& lattice)
 std::vector<double> read_start_file(std::filesystem::path const& path, Lattice const& lattice,
                                     SiteBox const& box);
 
+/// 0 where that spin is the zero vector, and 1 elsewhere.
+std::vector<double> sites_with_spins(std::filesystem::path const& path, Lattice const& lattice,
+                                     SiteBox const& box);
+
+/// Does a file hold spins, and no numbers of sites?
+bool holds_spins(std::filesystem::path const& path);
+
 }  // namespace cayspin::inline v0_1::io::detail

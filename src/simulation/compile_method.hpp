@@ -163,8 +163,9 @@ class Compiled {
         : simulation_(simulation), stepper_(make<Of>(simulation.spins, options)) {}
 
     Summary advance() override {
-      return integrate(simulation_.exec, stepper_, generator(simulation_.generator),
-                       simulation_.spins, simulation_.times, *simulation_.observer);
+      return cayspin::detail::integrate_in_any_memory(
+          simulation_.exec, stepper_, generator(simulation_.generator), simulation_.spins,
+          simulation_.times, *simulation_.observer);
     }
     void exchange_memory(Checkpoint& checkpoint) override {
       cayspin::exchange_memory(stepper_, checkpoint, "method.");

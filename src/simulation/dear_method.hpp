@@ -24,16 +24,16 @@ void require_dear_field_fits(io::Scene const& scene, Variant const& variant);
 /// An override by which no term is dear.
 std::string without_dear(io::Scene const& scene);
 
-/// The order in time of its interpolation: 4 for methods of a higher order, otherwise 3, which
-/// stands longer steps.
-int order_of_dear(Variant const& variant);
+/// The order in time of its interpolation: 4 for methods of a higher order, and for those of order
+/// 4 where the damping is small, to which order 3 adds; otherwise 3.
+int order_of_dear(io::Scene const& scene, Variant const& variant);
 /// The method's order around a dear field.
-inline int order_around_dear(Variant const& variant) {
-  return std::min(variant.order, order_of_dear(variant));
+inline int order_around_dear(io::Scene const& scene, Variant const& variant) {
+  return std::min(variant.order, order_of_dear(scene, variant));
 }
 /// Fields of three numbers per site that the method keeps for a dear field.
-inline std::int64_t work_fields_of_dear(Variant const& variant) {
-  return order_of_dear(variant) + 1;
+inline std::int64_t work_fields_of_dear(io::Scene const& scene, Variant const& variant) {
+  return order_of_dear(scene, variant) == 4 ? 6 : 4;
 }
 
 /// The method of the plan, in substeps between evaluations of a dear field where there is one.

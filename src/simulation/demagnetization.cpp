@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 #endif
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -22,9 +23,12 @@ namespace {
 
 /// All that the tensors depend on.
 std::string text_of(Lattice const& lattice, DemagnetizationOptions const& options) {
-  return fmt::format("cells {}, spacing {:a}, images {}, strength {:a}",
+  // Version 2 of the tensors of cells whose edges differ by more than 1000 : 1.
+  auto const [shortest, longest] = std::ranges::minmax(lattice.spacing);
+  return fmt::format("cells {}, spacing {:a}, images {}, strength {:a}{}",
                      fmt::join(lattice.shape, " "), fmt::join(lattice.spacing, " "),
-                     fmt::join(options.periodic_images, " "), options.strength);
+                     fmt::join(options.periodic_images, " "), options.strength,
+                     longest > 1000 * shortest ? ", version 2" : "");
 }
 
 DemagnetizationOptions options_of(io::Demagnetization const& demag, double mu0,

@@ -16,6 +16,7 @@
 #include <cayspin/field/bonds_of_sites.hpp>
 #include <cayspin/io/ovf.hpp>
 #include <cayspin/io/trajectory.hpp>
+#include <cayspin/minimize.hpp>
 #include <cayspin/stability.hpp>
 
 #include <fmt/format.h>
@@ -236,9 +237,12 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   if (scene.field.demag)
     memory.field += memory.spins + demagnetization_bytes<Real>(*scene.field.demag, lattice);
   if (has_dear_field(scene)) {
-    memory.work += work_fields_of_dear(variant) * memory.spins;
+    memory.work += work_fields_of_dear(scene, variant) * memory.spins;
     memory.field += memory.spins;
   }
+  // Of the search for a direction down, where the torque is small.
+  if (scene.integrator.until_torque && lattice.part == nullptr)
+    memory.work += (1 + Minimizer<SpinField<double>>::work_fields) * memory.spins;
   // A rank reads its sites by some planes at once, but OVF whole. The first one writes.
   auto const& all = whole(lattice);
   std::int64_t const numbers = 3 * lattice.sites(), numbers_of_all = 3 * all.sites();

@@ -3,6 +3,7 @@
 
 #include "dear_method.hpp"
 #include "guard.hpp"
+#include "rest_search.hpp"
 #include "run_noise.hpp"
 #include "simulate.hpp"
 #include "thermal.hpp"
@@ -32,7 +33,8 @@ class RunningScene : public Simulation<Real, Space> {
   struct Found {
     Sample sample;
     std::optional<std::string> failure = {};  // of the guard
-    bool at_rest = false;  // below the scene's until_torque, the energy fell, the field stays
+    // By the scene's until_torque. At a saddle of the energy a run goes on; its last look tells.
+    bool at_rest = false, at_saddle = false;
   };
 
   RunningScene(io::Scene const& scene, Plan const& plan, Times const& times,
@@ -40,9 +42,11 @@ class RunningScene : public Simulation<Real, Space> {
       : Base(scene, plan.lattice, times, start),
         method_(open_method(scene, plan, static_cast<Base*>(this))),
         guard_(scene, epsilon),
-        until_torque_(scene.integrator.until_torque),
         last_change_(plan.features->last_change) {
-    if (until_torque_) torque_.emplace(this->generator.precession_alone());
+    if (auto const& bound = scene.integrator.until_torque) {
+      torque_.emplace(this->generator.precession_alone());
+      rest_.emplace(scene, *bound);
+    }
     if (scene.integrator.energy_control) control_.emplace(this->generator, this->spins);
     if (is_thermal(scene)) noise_.emplace(scene, this->generator, this->spins);
   }
@@ -65,22 +69,28 @@ class RunningScene : public Simulation<Real, Space> {
   Guard const& guard() const { return guard_; }
 
   /// Samples and judges the spins. Rest is looked for where the scene has until_torque, and
-  /// `for_rest` is not false.
-  Found look(Space const& exec, Step const& step, Spins const& spins, bool for_rest = true) {
+  /// `for_rest` is not false; `at_end` asks for saddles, too.
+  Found look(Space const& exec, Step const& step, Spins const& spins, bool for_rest = true,
+             bool at_end = false) {
     bool const with_torque = torque_ && for_rest;
     Found found{with_torque ? sample_scene(exec, this->generator, step, spins, *torque_)
                             : sample_scene(exec, this->generator, step, spins)};
     auto const& now = found.sample;
     found.failure = guard_.judge(step, now.energy, now.norm_defect);
-    if (with_torque && !found.failure)
-      found.at_rest = now.energy.value < guard_.first_energy() &&
-                      now.largest_rate < *until_torque_ && step.time >= last_change_;
+    if (with_torque && !found.failure) {
+      auto const rest = rest_->look(
+          exec, step, spins, this->generator.landau_lifshitz().field().made_for(FieldFor::energy),
+          now.largest_rate, now.energy.value < guard_.first_energy(), at_end);
+      found.at_rest = rest.at_minimum && step.time >= last_change_;
+      found.at_saddle = rest.at_saddle;
+    }
     return found;
   }
 
   /// For after the spins were replaced: forgets what was known of the earlier ones.
   void begin_again(io::Scene const& scene) {
     guard_ = Guard(scene, epsilon);
+    if (rest_) rest_->begin_again();
     if (control_) control_->reset();
     if (noise_) noise_->reset();
   }
@@ -94,7 +104,9 @@ class RunningScene : public Simulation<Real, Space> {
     visit("continues", continues);
     method_->exchange_memory(checkpoint);
     exchange_memory(guard_, checkpoint, "guard.");
+    if (rest_) exchange_memory(*rest_, checkpoint, "rest.");
     if (control_) exchange_memory(*control_, checkpoint, "energy_control.");
+    if (noise_ && checkpoint.restores()) noise_->reset();
   }
 
  private:
@@ -123,9 +135,9 @@ class RunningScene : public Simulation<Real, Space> {
 
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
-  std::optional<double> until_torque_;
   double last_change_;  // of what depends on t
   std::optional<SceneGenerator<Spins>> torque_;
+  std::optional<RestSearch<Real, Space>> rest_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;
   std::optional<RunNoise<Spins>> noise_;
 };

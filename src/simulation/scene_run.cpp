@@ -6,6 +6,7 @@
 #include "scene_run_in_space.hpp"
 
 #include <cayspin/io/checkpoint.hpp>
+#include <cayspin/io/notes.hpp>
 #include <cayspin/io/relax.hpp>
 #include <cayspin/minimize.hpp>
 #include <cayspin/spin_field.hpp>
@@ -151,8 +152,9 @@ template std::vector<float> packed(io::HostVectors const&);
 SceneRun::SceneRun(io::Scene const& scene, Plan const& plan, Precision precision, std::string space)
     : scene_(scene), plan_(plan), precision_(precision), space_(std::move(space)) {}
 
-std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings const& settings) {
+std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& typed, RunSettings const& settings) {
   Turn const turn;
+  auto const scene = io::with_shape_of_start(typed);
   io::check_files(scene);
   auto const space = space_of(settings.space);
   if (settings.threads && *settings.threads < 1)
@@ -168,10 +170,11 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& scene, RunSettings con
       space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
         return std::make_unique<SceneRunInSpace<Real, Space>>(
             own, plan, settings.precision, space,
-            restart ? restart->spins() : normalised<io::SceneError>(own, "initial"));
+            restart ? restart->spins(own) : normalised<io::SceneError>(own, "initial"));
       });
   if (!restart) return run;
   run->number_ = restart->step();
+  run->restart_warning_ = restart->warning();
   if (restart->memory()) run->exchange(*restart->memory());
   return run;
 }

@@ -12,7 +12,9 @@
 
 #include <cayspin/io/checkpoint.hpp>
 
+#include <array>
 #include <cstring>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -20,6 +22,7 @@ namespace cayspin::inline v0_1::io {
 namespace {
 
 constexpr char const* format_mark = "checkpoint_format";
+constexpr char const* sum_mark = "checksum";  // of the file, and of each field
 constexpr std::int64_t checkpoint_version = 1;
 constexpr std::uint64_t checkpoint_overhead_bytes = 64 * 1024;
 constexpr hsize_t most_components = 3;
@@ -28,6 +31,49 @@ constexpr hsize_t most_components = 3;
 std::int64_t checksum(Fletcher32 const& sum) { return std::int64_t{1} + sum.value(); }
 
 }  // namespace
+
+/// What a checkpoint holds beside the numbers of its fields.
+struct CheckpointContents {
+  CheckpointHeader header;
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::int64_t> fields;  // their checksums
+
+  std::int64_t checksum() const {
+    Bytes bytes;
+    for (auto const* const text :
+         {&header.scene_text, &header.resolved_scene, &header.cayspin_version, &header.precision})
+      bytes.add(*text);
+    for (auto const number : {header.cell_sites, header.step, std::int64_t{header.si}})
+      bytes.add(number);
+    bytes.add(header.time);
+    for (auto const& [name, number] : numbers) {
+      bytes.add(name);
+      bytes.add(number);
+    }
+    for (auto const& [name, sum] : fields) {
+      bytes.add(name);
+      bytes.add(sum);
+    }
+    Fletcher32 sum;
+    sum.add(std::as_bytes(std::span(bytes.all)));
+    return io::checksum(sum);
+  }
+
+ private:
+  struct Bytes {
+    std::string all;
+    void add(std::string const& text) {
+      add(static_cast<std::int64_t>(text.size()));
+      all += text;
+    }
+    template <class Number>
+    void add(Number const& number) {
+      std::array<char, sizeof(Number)> bytes;
+      std::memcpy(bytes.data(), &number, sizeof(Number));
+      all.append(bytes.data(), bytes.size());
+    }
+  };
+};
 
 std::filesystem::path checkpoint_beside(std::filesystem::path trajectory) {
   return trajectory.replace_extension(".checkpoint.h5");
@@ -39,7 +85,8 @@ class CheckpointWriter::Implementation {
       : path_(std::move(path)),
         stored_(header.precision == single_precision ? H5T_IEEE_F32LE : H5T_IEEE_F64LE),
         file_(path_, true, true),
-        space_(file_.get(), path_) {
+        space_(file_.get(), path_),
+        contents_{header, {}, {}} {
     auto const [nx, ny, nz] = header.shape;
     for (auto const extent : {nz, ny, nx}) extents_.push_back(static_cast<hsize_t>(extent));
     space_.reserve(
@@ -60,6 +107,7 @@ class CheckpointWriter::Implementation {
   void number(std::string const& name, double value) {
     require_open();
     RootAttributes(numbers_.get(), path_).create(name.c_str(), value);
+    contents_.numbers[name] = value;
   }
 
   void field(std::string const& name, std::vector<double> const& numbers) {
@@ -92,7 +140,8 @@ class CheckpointWriter::Implementation {
     sum_.add(std::as_bytes(std::span(numbers)));
     written_planes_ += planes;
     if (written_planes_ < extents_[0]) return;
-    RootAttributes(field_.get(), path_).create("checksum", checksum(sum_));
+    RootAttributes(field_.get(), path_).create(sum_mark, checksum(sum_));
+    contents_.fields[name] = checksum(sum_);
     field_.close();
     has_spins_ = has_spins_ || name == "spins";
     written_planes_ = 0;
@@ -105,6 +154,7 @@ class CheckpointWriter::Implementation {
     if (!has_spins_)
       throw std::logic_error(path_.string() + ": a checkpoint without a field spins is of no use");
     std::string const action = "cannot write the file";
+    RootAttributes(file_.get(), path_).create(sum_mark, contents_.checksum());
     numbers_.close();
     check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), path_, action);
     space_.trim();
@@ -134,6 +184,7 @@ class CheckpointWriter::Implementation {
   NewFile file_;
   OpenFileSpace space_;
   GroupHandle numbers_;
+  CheckpointContents contents_;
   bool has_spins_ = false;
   DatasetHandle field_;  // of which some planes are written, but not all
   std::string name_;
@@ -194,6 +245,9 @@ class CheckpointReader::Implementation {
     for (int axis = 0; axis < 3; ++axis)
       header_.shape[axis] = static_cast<std::int64_t>(extents[2 - axis]);
     numbers_ = open_group(file_.get(), "numbers", path_);
+    // Files of earlier versions have none.
+    if (attributes.has(sum_mark) && attributes.read_integer(sum_mark) != contents().checksum())
+      throw_failure(path_, "cannot read the checkpoint", "its contents are not those written");
   }
 
   double number(std::string const& name) const {
@@ -220,12 +274,20 @@ class CheckpointReader::Implementation {
           sum.add(std::as_bytes(std::span(numbers)));
           return numbers;
         });
-    if (RootAttributes(dataset.get(), path_).read_integer("checksum") != checksum(sum))
+    if (RootAttributes(dataset.get(), path_).read_integer(sum_mark) != checksum(sum))
       throw_failure(path_, "cannot read dataset " + name, "its numbers are not those written");
     return chosen;
   }
 
   void read_all() const {
+    for (auto const& [name, sum] : contents().fields) field(name, {});
+  }
+
+  CheckpointHeader const& header() const { return header_; }
+  std::filesystem::path const& path() const { return path_; }
+
+ private:
+  CheckpointContents contents() const {
     std::vector<std::string> fields, numbers;
     auto const keep = [](hid_t, char const* name, auto const*, void* to) -> herr_t {
       static_cast<std::vector<std::string>*>(to)->emplace_back(name);
@@ -235,15 +297,16 @@ class CheckpointReader::Implementation {
           "cannot read the checkpoint");
     check(H5Aiterate2(numbers_.get(), H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep, &numbers),
           path_, "cannot read the checkpoint");
+    CheckpointContents found{header_, {}, {}};
+    for (auto const& name : numbers) found.numbers[name] = number(name);
     for (auto const& name : fields)
-      if (name != "numbers") field(name, {});
-    for (auto const& name : numbers) number(name);
+      if (name != "numbers")
+        found.fields[name] =
+            RootAttributes(open_dataset(file_.get(), name.c_str(), 4, path_).get(), path_)
+                .read_integer(sum_mark);
+    return found;
   }
 
-  CheckpointHeader const& header() const { return header_; }
-  std::filesystem::path const& path() const { return path_; }
-
- private:
   std::filesystem::path path_;
   FileHandle file_;
   GroupHandle numbers_;

@@ -58,6 +58,11 @@ static_assert(!detail::is_local<LandauLifshitz<EffectiveField<Zeeman>>>);
 static_assert(detail::is_local<Orthogonal<RigidBody>>);
 static_assert(detail::energy_terms<Orthogonal<Llg<double>>> == 2);
 
+// The precession is a bool.
+using Applied = EffectiveField<Zeeman>;
+static_assert(std::is_constructible_v<LandauLifshitz<Applied>, Applied, double, bool> &&
+              !std::is_constructible_v<LandauLifshitz<Applied>, Applied, double, double>);
+
 using WithTorque = EffectiveField<Exchange, Slonczewski>;
 template <class Field>
 using WithVacancies = FieldWithVacancies<Field, double, Kokkos::HostSpace>;

@@ -4,6 +4,8 @@
 // regular expression, from the next line.
 #include <cayspin/cayspin.hpp>
 #include <cayspin/field/dear.hpp>
+#include <cayspin/field/field_of_moments.hpp>
+#include <cayspin/observer/thermal_noise.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
 #define MISTAKE(number) (CAYSPIN_TEST_MISTAKE == (number) || CAYSPIN_TEST_MISTAKE == -1)
@@ -242,5 +244,62 @@ inline void refused() {
 #if MISTAKE(36)  // energy_projection_under_a_torque
   // This needs a field that is the derivative of an energy, without terms that
   EnergyProjection(spins, LieEuler(spins)).step(exec, torque, spins, 0, 0.1);
+#endif
+#if MISTAKE(37)  // layers_of_moments_with_vacancies
+  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
+  {
+    ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
+    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
+    FieldOfMoments const of_moments(Lattice::chain(3), layers, std::vector<double>{1});
+    FieldWithVacancies const field(of_moments, occupation);
+  }
+#endif
+#if MISTAKE(38)  // dear_layers_with_vacancies
+  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
+  {
+    ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
+    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
+    FieldWithVacancies const field(EffectiveField(Dear(spins, layers)), occupation);
+  }
+#endif
+#if MISTAKE(44)  // dear_exchange_with_vacancies
+  // Dear evaluates its term for the spins of vacant sites, too
+  {
+    ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
+    FieldWithVacancies const field(Dear(spins, Exchange(Lattice::chain(3), 1)), occupation);
+  }
+#endif
+#if MISTAKE(39)  // sigma_in_place_of_precession
+  // largest_stable_step takes the field bound, the damping, the precession
+  largest_stable_step<Rkmk4<Spins>>(1, 0.1, 0.5);
+#endif
+#if MISTAKE(40)  // options_of_errors_that_are_not_estimated
+  // FieldExtrapolationOptions are those of a method that estimates its errors
+  FieldExtrapolation3(spins, {.restart_angle = 0.2});
+#endif
+#if MISTAKE(41)  // stop_after_the_noise_of_the_next_step
+  // ThermalNoise's before_steps.. and between_steps.. come after every observer
+  {
+    LieEuler stepper(spins);
+    ThermalNoise const noise(spins, 0.1, {.temperature = 1});
+    integrate(exec, stepper, spin_chain, spins, times, noise.before_steps(),
+              [](auto const&, Step const&, auto const&) { return Next::stop; });
+  }
+#endif
+#if MISTAKE(42)  // energy_control_of_moments
+  // This needs a field that is the derivative of an energy, without terms that
+  {
+    FieldOfMoments const of_moments(Lattice::chain(3), Exchange(Lattice::chain(3), 1),
+                                    std::vector<double>{2});
+    EnergyControl const control{LandauLifshitz(of_moments, 0), spins};
+  }
+#endif
+#if MISTAKE(43)  // energy_control_by_reference_with_adaptive_steps
+  // An observer that changes spins .EnergyControl, Normalize. does not go with an
+  {
+    AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
+    EnergyControl control(body, spins);
+    integrate(exec, adaptive, body, spins, times, Every(10, std::ref(control)));
+  }
 #endif
 }

@@ -39,14 +39,15 @@ TEST(Dear, Orders) {
                     std::declval<Spins>(), std::declval<DearLongRange<Spins>>(), 1))::order == 2);
 }
 
-TEST(Dear, UnequalStepsKeepTheOrder) {
+template <int Order>
+void expect_order_of_unequal_steps() {
   Spins const start = random_spins(block, 5);
   auto const dear = dear_long_range(start, 0.4);
   auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
   Spins const exact = run<Rkmk4<Spins>>(generator, start, 1e-3, 1000);
-  expect_convergence("unequal steps", 1, ladder, 3, 0.2, [&](int pairs, double) {
+  expect_convergence("unequal steps", 1, ladder, Order, 0.2, [&](int pairs, double) {
     Spins spins = copy_of(start);
-    auto stepper = multirate(spins, dear, 2);
+    auto stepper = multirate<Order>(spins, dear, 2);
     double t = 0;
     for (int n = 0; n < 2 * pairs; ++n) {
       double const dt = (n % 2 == 0 ? 1 : 2) / (3. * pairs);
@@ -56,6 +57,21 @@ TEST(Dear, UnequalStepsKeepTheOrder) {
     EXPECT_EQ(stepper.dear_evaluations_done(), 2 * pairs + 1 + 2 * 4);
     return largest_distance(spins, exact);
   });
+  expect_convergence("twice as long from the half on", 1, std::array{40, 80, 160, 320}, Order, 0.2,
+                     [&](int steps, double) {
+                       Spins spins = copy_of(start);
+                       auto stepper = multirate<Order>(spins, dear, 2);
+                       double const dt = 1. / (1.5 * steps);
+                       advance(stepper, generator, spins, dt, steps);
+                       for (int n = 0; 2 * n < steps / 2; ++n)
+                         stepper.step(Space{}, generator, spins, (steps + 2 * n) * dt, 2 * dt);
+                       return largest_distance(spins, exact);
+                     });
+}
+
+TEST(Dear, UnequalStepsKeepTheOrder) {
+  expect_order_of_unequal_steps<3>();
+  expect_order_of_unequal_steps<4>();
 }
 
 /// Without the second pass: the dear field through its last two values alone.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Writes demagnetizing_tensors.json: python3 tensor_table.py > ../data/demagnetizing_tensors.json
+"""Writes demagnetizing_tensors.json: python3 tensor_table.py > ../data/demagnetizing_tensors.json,
+and with the argument `slender` slender_demagnetizing_tensors.json.
 
 Each entry is a second difference of the functions of Newell, Williams and Dunlop, J. Geophys. Res.
 98, 9551 (1993), eqs. 27 and 32, at 160 digits, rounded to a double. Needs mpmath.
@@ -7,6 +8,7 @@ Each entry is a second difference of the functions of Newell, Williams and Dunlo
 
 import itertools
 import json
+import sys
 
 from mpmath import asinh, atan, mp, mpf, pi, sqrt
 
@@ -15,6 +17,10 @@ mp.dps = 160
 # A cube, films, needles, and cells of three edges.
 CELLS = [(1.0, 1.0, 1.0), (1.0, 1.0, 0.1), (1.0, 1.0, 0.01), (1.0, 0.001, 1.0), (10.0, 1.0, 1.0),
          (1.0, 1.0, 1000.0), (3.90625, 2.5, 3.0), (1.0, 0.3, 0.007)]
+
+# Edges of more than 1000 : 1.
+SLENDER_CELLS = [(1.0, 1.0, 1e-4), (1.0, 1e-4, 1e-4), (1.0, 0.7, 1e-6), (1e-6, 1.0, 1e-6),
+                 (1.0, 1e-3, 1e-6), (1.0, 1.0, 1e-9), (1e-9, 1e-9, 1.0), (1e-5, 1.0, 1e-9)]
 
 # In cells along each axis.
 STEPS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 1), (0, 1, 1), (1, 1, 1),
@@ -85,10 +91,19 @@ def positions(cell):
             yield tuple(distance * max(cell) * d / length for d in direction)
 
 
+def positions_of_slender(cell):
+    yield from (tuple(s * h for s, h in zip(steps, cell)) for steps in STEPS)
+    yield from (tuple(s * max(cell) for s in steps)
+                for steps in [(0.0, 0.0, 0.3), (0.5, 0.1, 1.7), (3.0, 0.0, 1.0)])
+    yield 0.0, 0.0, 1000 * cell[2]
+
+
 def main():
+    slender = sys.argv[1:] == ["slender"]
+    of_cell = positions_of_slender if slender else positions
     rows = [json.dumps({"position": position, "cell": cell,
                         "tensor": [float(entry) for entry in tensor(position, cell)]})
-            for cell in CELLS for position in positions(cell)]
+            for cell in (SLENDER_CELLS if slender else CELLS) for position in of_cell(cell)]
     print("[\n" + ",\n".join(rows) + "\n]")
 
 

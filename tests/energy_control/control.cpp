@@ -251,6 +251,14 @@ TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
   EXPECT_FALSE(control.energy());
   control(Space{}, Step{5, 0, 0.1}, other);
   EXPECT_EQ(*control.energy(), energy_of(random_spins(slab.lattice, 4)));
+
+  // A checkpoint from before the first call holds none.
+  CheckpointInMemory checkpoint;
+  EnergyControl before(slab.natural(), start);
+  exchange_memory(before, checkpoint);
+  checkpoint.close();
+  exchange_memory(control, checkpoint);
+  EXPECT_FALSE(control.energy());
 }
 
 TEST(EnergyControl, LeavesWhatIsNotFinite) {

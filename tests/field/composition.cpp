@@ -3,6 +3,8 @@
 #include "../support/wrong_call.hpp"
 #include "terms.hpp"
 
+#include <cayspin/field/field_of_moments.hpp>
+
 #include <limits>
 #include <stdexcept>
 
@@ -89,26 +91,32 @@ TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
 }
 
 TYPED_TEST(Fields, WhatTermsRefuse) {
-  using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
+  using Memory = typename TypeParam::MemorySpace;
+  using Layers = LayerAveragedSlabDemag<Memory>;
+  using Moments = FieldOfMoments<EffectiveField<>, Memory>;
   double const nan = std::numeric_limits<double>::quiet_NaN();
   auto const lattice = Lattice::chain(4);
   EXPECT_THROW(UniaxialAnisotropy(1, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(UniaxialAnisotropy(1, {0, nan, 0}), std::invalid_argument);
   EXPECT_THROW(CubicAnisotropy(1, {0, 0, 0}, {0, 1, 0}), std::invalid_argument);
   EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {0, nan, 0}), std::invalid_argument);
-  EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {3e-9, 1, 0}), std::invalid_argument);
-  EXPECT_NO_THROW(CubicAnisotropy(1, {2, 0, 0}, {1e-9, 2, 0}));
+  EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {3e-4, 1, 0}), std::invalid_argument);
+  EXPECT_NO_THROW(CubicAnisotropy(1, {2, 0, 0}, {1e-4, 2, 0}));
   EXPECT_THROW(Slonczewski(1, 0, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemag({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({1, 1, 0}, 1, true), std::invalid_argument);
   EXPECT_THROW(Layers(lattice, 3), std::invalid_argument);
   EXPECT_THROW(Layers(lattice, -1), std::invalid_argument);
+  EXPECT_THROW(Moments(lattice, {}, {-1}), std::invalid_argument);
+  EXPECT_THROW(Moments(lattice, {}, {1}, {-1}), std::invalid_argument);
+  EXPECT_THROW(Moments(lattice, {}, {-1}, {-1}), std::invalid_argument);
 }
 
 TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
   using Spins = typename TypeParam::Spins;
-  using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
+  using Memory = typename TypeParam::MemorySpace;
+  using Layers = LayerAveragedSlabDemag<Memory>;
   Vec3<double> const x{1, 0, 0}, y{0, 1, 0};
   auto const lattice = Lattice::square(4, 3);
   auto const start = [=] {
@@ -135,6 +143,10 @@ TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
         {"SlabDemag: the strength", [&] { SlabDemag(x, bad); }},
         {"SlabDemagOnHost: the strength", [&] { SlabDemagOnHost(x, bad); }},
         {"LayerAveragedSlabDemag: the strength", [&] { Layers(lattice, 1, bad); }},
+        {"ZeemanOfMoments: the applied field",
+         [&] {
+           ZeemanOfMoments<Memory>(lattice, Vec3<double>{0, bad, 0}, {1});
+         }},
     };
     for (Zeeman const zeeman : {Zeeman{{bad, 0, 1}}, Zeeman{{0, bad, 1}}, Zeeman{{1, 0, bad}}}) {
       EffectiveField const field(Exchange(lattice, 1), zeeman);

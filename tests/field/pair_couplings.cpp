@@ -6,7 +6,11 @@
 #include <cayspin/crystal.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
+#include <cayspin/generator/orthogonal.hpp>
+#include <cayspin/minimize.hpp>
+#include <cayspin/observer/normalize.hpp>
 #include <cayspin/stepper/methods.hpp>
+#include <cayspin/stepper/series4.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -201,6 +205,46 @@ TYPED_TEST(Pairs, ThatCannotBe) {
   for (auto const& bond : {Coupling::of({0, 2}, {0, 0, 0}, 1), Coupling::of({1, 1}, {0, 0, 0}, 1),
                            Coupling::of({0, 1}, {0, 0, 0}, std::nan(""))})
     EXPECT_THROW(Term(lattice, {bond}), std::invalid_argument);
+  EXPECT_THROW(Term(Lattice::chain(0, 1, Boundary::periodic), {Coupling::of({0, 0}, {1, 0, 0}, 1)}),
+               std::invalid_argument);
+  // isotropy::Analytic would leave the biquadratic part out.
+  auto spins = spins_of<typename TypeParam::Spins>(Lattice::chain(4), random_directions(4, 3));
+  LieEuler<typename TypeParam::Spins, isotropy::Analytic> stepper(spins);
+  LandauLifshitz const generator(Term(spins.lattice(), {Coupling{{0, 0}, {1, 0, 0}, {}, 0.5}}),
+                                 0.1);
+  typename TypeParam::Exec const exec;
+  EXPECT_THROW(stepper.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
+  // So would Series4, of whichever part they are.
+  Series4<typename TypeParam::Spins> series(spins);
+  EXPECT_THROW(series.step(exec, generator, spins, 0, 0.1), std::invalid_argument);
+  EXPECT_THROW(series.step(exec,
+                           orthogonal(LandauLifshitz(
+                               EffectiveField(Zeeman{{0, 0, 1}}, generator.field()), 0.1)),
+                           spins, 0, 0.1),
+               std::invalid_argument);
+  LandauLifshitz const linear(
+      EffectiveField(Term(spins.lattice(), {Coupling::of({0, 0}, {1, 0, 0}, 0.5)})), 0.1);
+  EXPECT_NO_THROW(series.step(exec, linear, spins, 0, 0.1));
+}
+
+// The curvature at rest is that of the whole field: without the biquadratic bonds a saddle, with
+// them a minimum.
+TYPED_TEST(Pairs, MinimumWithBiquadraticBonds) {
+  using Term = PairCouplings<typename TypeParam::MemorySpace>;
+  auto const lattice = Lattice::chain(12, 1, Boundary::periodic);
+  typename TypeParam::Exec const exec;
+  auto bond = Coupling::of({0, 0}, {1, 0, 0}, -0.5);
+  bond.biquadratic = 1;
+  Term const bonds(lattice, {bond});
+  auto start = random_directions(12, 3);
+  for (std::size_t i = 0; i < start.size(); ++i) start[i] = (i % 3 == 2) + 0.05 * start[i];
+  auto spins = spins_of<typename TypeParam::Spins>(lattice, start);
+  normalize(exec, spins);
+  auto const found = minimize(exec, EffectiveField(bonds, Zeeman{{0, 0, 0.25}}), spins,
+                              {.torque = sizeof(typename TypeParam::Real) == 8 ? 1e-9 : 1e-4});
+  EXPECT_EQ(found.end, MinimizeEnd::converged);
+  EXPECT_NEAR(found.energy.value, 12 * (0.5 - 1 - 0.25), 1e-4);
+  EXPECT_NEAR(found.curvature, 0.25, 0.1);
 }
 
 }  // namespace

@@ -50,5 +50,17 @@ TYPED_TEST(FieldRates, AreDerivativesOfTheField) {
                                   UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
 }
 
+// A step of no time asks for the rate of an applied field, too.
+TYPED_TEST(FieldRates, OverNoTimeLeaveSpinsAsTheyAre) {
+  using Spins = typename TypeParam::Spins;
+  auto spins = spins_of<Spins>(Lattice::chain(5), random_directions(5, 3));
+  auto const before = numbers_of(spins);
+  TimeDependentZeeman const applied([](double t) { return Vec3<double>{t, 0, 1}; });
+  typename TypeParam::Exec const exec;
+  LieEuler<Spins, isotropy::Analytic>(spins).step(exec, LandauLifshitz(applied, 0.1), spins, 1, 0);
+  exec.fence();
+  EXPECT_EQ(numbers_of(spins), before);
+}
+
 }  // namespace
 }  // namespace cayspin::test

@@ -140,8 +140,8 @@ TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
     return numbers_of(spins);
   };
   Spins const like("like", lattice);
-  auto const expect_same = [&](auto const& field, auto const& method) {
-    auto const expected = run(field, Rkmk4<Spins>(like)), found = run(field, method);
+  auto const expect_same = [&](auto const& field, auto method) {
+    auto const expected = run(field, Rkmk4<Spins>(like)), found = run(field, std::move(method));
     for (std::size_t i = 0; i < found.size(); ++i) ASSERT_NEAR(found[i], expected[i], bound) << i;
   };
   Exchange const exchange(lattice, 0.6);

@@ -36,6 +36,22 @@ TEST(LatticeValidate, NamesWhatIsWrong) {
     }
 }
 
+// Planes along z are the sites of a cell in turn.
+TEST(LatticeValidate, CellsAreWhole) {
+  auto const of_cell = [](std::int64_t planes, std::int64_t cell_sites) {
+    Lattice lattice = Lattice::cubic(2, 2, planes);
+    lattice.cell_sites = cell_sites;
+    return refusal_of(lattice);
+  };
+  EXPECT_EQ(of_cell(6, 3), "taken");
+  EXPECT_EQ(of_cell(6, 4),
+            "cayspin::Lattice: the extent along z is 6; it must be a multiple of the 4 sites of a "
+            "cell");
+  for (std::int64_t const sites : {0, -1, -3})
+    EXPECT_EQ(of_cell(6, sites), "cayspin::Lattice: a cell has " + std::to_string(sites) +
+                                     " sites; it must have at least 1");
+}
+
 TEST(LatticeValidate, EqualWhenEveryAxisIs) {
   EXPECT_EQ(Lattice::chain(3, 0.5), Lattice::chain(3, 0.5));
   EXPECT_NE(Lattice::chain(3, 0.5), Lattice::chain(3, 0.25));

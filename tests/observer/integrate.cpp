@@ -148,6 +148,45 @@ TYPED_TEST(Integrate, AnObserverEndsIt) {
   EXPECT_TRUE(by_every.stopped);
 }
 
+TYPED_TEST(Integrate, ObserversAfterOneThatStopsAreTold) {
+  std::vector<bool> told;
+  integrate(
+      this->exec, this->stepper, this->generator, this->spins, {0, 0.1, 5}, this->remember(),
+      [](auto const&, Step const& step, auto const&) {
+        return step.number == 2 ? Next::stop : Next::proceed;
+      },
+      [&](auto const&, Step const& step, auto const&) { told.push_back(step.stops); });
+  EXPECT_EQ(told, (std::vector<bool>{false, false, true}));
+  for (auto const& step : this->seen) EXPECT_FALSE(step.stops);
+}
+
+// As integrate does; only temporaries move into it.
+TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
+  using Spins = typename TypeParam::Spins;
+  copy_from_host(random_directions(3, 9), this->spins);
+  LandauLifshitz const conserving(EffectiveField(Zeeman{{0, 0, 1}}), 0);
+  LieEuler<Spins> stepper(this->spins);
+  double const before = energy(this->exec, conserving, this->spins).value;
+  EnergyControl control(conserving, this->spins), within(conserving, this->spins);
+  integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, Every(2, control),
+            Every(1, std::ref(within)));
+  ASSERT_TRUE(control.energy());
+  EXPECT_EQ(*control.energy(), before);
+  EXPECT_EQ(control.evaluations_done(), 3);
+  EXPECT_EQ(within.evaluations_done(), 5);
+
+  using Control = decltype(control);
+  static_assert(std::is_same_v<decltype(Every(2, control)), Every<Control&>>);
+  static_assert(std::is_same_v<decltype(Every(2, Control(control))), Every<Control>>);
+  static_assert(detail::changes_spins<Every<Control&>>);
+  static_assert(detail::changes_spins<std::reference_wrapper<Control>>);
+  static_assert(detail::changes_spins<Every<std::reference_wrapper<Control>>>);
+  // A reference asks it, too, whether it wants the call.
+  EnergyControl seldom(conserving, this->spins, {.period = 3});
+  integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, std::ref(seldom));
+  EXPECT_EQ(seldom.evaluations_done(), 2);
+}
+
 TYPED_TEST(Integrate, NoStepsIsOneLook) {
   Summary const summary = integrate(this->exec, this->stepper, this->generator, this->spins,
                                     {2, 0.1, 0}, this->remember());

@@ -61,7 +61,7 @@ TYPED_TEST(RigidBodyOracles, Steps) {
     auto const expect = [&](std::string const& method, std::vector<double> const& expected) {
       auto const found = with_body_method(
           method, body, entry.at("sigma_const"), typename TypeParam::Spins("like", lattice),
-          [&](auto const& stepper, auto const& of) {
+          [&](auto stepper, auto const& of) {
             return step_once<typename TypeParam::Exec>(stepper, of, start);
           });
       for (std::size_t i = 0; i < found.size(); ++i)

@@ -37,7 +37,7 @@ struct Start {
 };
 
 template <class Exec, class Stepper, class Generator>
-std::vector<double> step_once(Stepper stepper, Generator const& generator, Start const& start) {
+std::vector<double> step_once(Stepper& stepper, Generator const& generator, Start const& start) {
   using Spins = typename Stepper::spins_type;
   Exec const exec;
   auto spins = spins_of<Spins>(start.lattice, start.spins);
@@ -98,7 +98,7 @@ std::vector<double> one_step(std::string const& method, Generator const& generat
                              Start const& start) {
   return with_method(
       method, generator, constant, Spins("like", start.lattice),
-      [&](auto const& stepper, auto const& of) { return step_once<Exec>(stepper, of, start); });
+      [&](auto stepper, auto const& of) { return step_once<Exec>(stepper, of, start); });
 }
 
 }  // namespace cayspin::test

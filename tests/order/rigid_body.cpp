@@ -49,7 +49,7 @@ struct Errors {
 };
 
 template <class Stepper, class Generator>
-Errors errors(Stepper stepper, Generator const& generator, int steps) {
+Errors errors(Stepper& stepper, Generator const& generator, int steps) {
   Errors found;
   auto spins = make_spins(lattice, [](auto i, auto, auto) {
     return Vector{start[3 * i], start[3 * i + 1], start[3 * i + 2]};
@@ -86,8 +86,7 @@ std::vector<int> ladder(int order, bool orthogonal) {
 }
 
 template <class Stepper, class Generator>
-void expect(char const* what, Stepper const& stepper, Generator const& generator,
-            Orders const& expected) {
+void expect(char const* what, Stepper stepper, Generator const& generator, Orders const& expected) {
   bool const orthogonal = requires { generator.bare(); };
   std::vector<double> dts;
   std::vector<Errors> found;

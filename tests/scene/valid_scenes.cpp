@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_file.hpp"
 
+#include <cayspin/demagnetization/images.hpp>
+
 #include <cmath>
 
 namespace cayspin::inline v0_1::io::test {
@@ -113,7 +115,7 @@ TEST(Scene, TheWholeDemagnetizingField) {
   };
   auto const demag = with("demag = true").value();
   EXPECT_EQ(demag.strength, 1);
-  EXPECT_EQ(demag.periodic_images, (std::array{0, 0, 0}));
+  EXPECT_EQ(demag.periodic_images, (std::array{0, infinitely_many_images, 0}));
   EXPECT_FALSE(demag.dear.has_value());
   EXPECT_FALSE(with("demag = false"));
   auto const typed =

@@ -186,7 +186,7 @@ TEST(DearFields, AreInThePlan) {
         .memory;
   };
   EXPECT_EQ(of("field.slab_demag.dear=true").work,
-            of("field.slab_demag.dear=false").work + 5 * cheap.memory.spins);
+            of("field.slab_demag.dear=false").work + 6 * cheap.memory.spins);
 }
 
 }  // namespace

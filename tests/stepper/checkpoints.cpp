@@ -3,7 +3,11 @@
 // that continues has the bits of one run.
 #include "../order/chain.hpp"
 
+#include <cmath>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 using namespace cayspin;
 using namespace cayspin::test;
@@ -86,6 +90,49 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
     EXPECT_EQ(copy_to_host(second), copy_to_host(whole));
     EXPECT_EQ(counts(other), counts(first));
   }
+}
+
+/// Gives back another number under one name.
+class Altered final : public Checkpoint {
+ public:
+  Altered(Checkpoint& right, std::string name, double value)
+      : right_(right), name_(std::move(name)), value_(value) {}
+  bool restores() const override { return true; }
+  void number(std::string const& name, double& value) override {
+    right_.number(name, value);
+    if (name == name_) value = value_;
+  }
+  void field(std::string const& name, std::vector<double>& numbers) override {
+    right_.field(name, numbers);
+  }
+
+ private:
+  Checkpoint& right_;
+  std::string name_;
+  double value_;
+};
+
+template <class Stepper>
+void expect_counts_are_checked(std::vector<std::string> const& names) {
+  Field<double> spins = random_spins(slab.lattice, 5);
+  Stepper stepper(spins), other(spins);
+  for (int n = 0; n < 5; ++n) stepper.step(Space{}, slab.natural(), spins, 0.05 * n, 0.05);
+  CheckpointInMemory checkpoint;
+  exchange_memory(stepper, checkpoint);
+  checkpoint.close();
+  for (auto const& name : names)
+    for (double const wrong : {1000.0, -1.0, 0.5, 1e300, std::nan("")}) {
+      Altered altered(checkpoint, name, wrong);
+      EXPECT_THROW(exchange_memory(other, altered), std::invalid_argument) << name << ' ' << wrong;
+    }
+  exchange_memory(other, checkpoint);
+}
+
+TEST(Checkpoint, CountsThatNoStepperHasAreRefused) {
+  expect_counts_are_checked<FieldExtrapolation3<Field<double>>>({"known"});
+  expect_counts_are_checked<FieldExtrapolation4<Field<double>>>({"known"});
+  expect_counts_are_checked<StiffGauss2<Field<double>>>({"known", "exchange_known"});
+  expect_counts_are_checked<StiffGauss4<Field<double>>>({"known"});
 }
 
 TEST(Checkpoint, HoldsNothingOfAnotherLattice) {

@@ -103,10 +103,10 @@ TEST(StiffFields, Antiferromagnet) {
 TEST(StiffFields, ExchangeIsMeasured) {
   auto lattice = film();
   lattice.spacing = {0.5, 2, 1};
-  Spins const work("work", lattice);
+  Spins const spins = wavy(lattice), work("work", lattice);
   auto const measured = [&](auto const& generator) {
     detail::MeasuredExchange exchange;
-    EXPECT_EQ(exchange.measure(Space(), "measure", generator, work, 0), 6);
+    EXPECT_EQ(exchange.measure(Space(), "measure", generator, spins, work, 0), 6);
     return exchange;
   };
   EffectiveField const field(Exchange(lattice, 3), UniaxialAnisotropy(1, {1, 2, -1}),

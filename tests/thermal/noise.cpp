@@ -6,6 +6,7 @@
 #include "kept_of_direction.hpp"
 
 #include <cayspin/cayspin.hpp>
+#include <cayspin/crystal.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 
 #include <array>
@@ -195,6 +196,66 @@ TEST(ThermalBits, AreThoseOfEveryHostSpace) {
   EXPECT_EQ(run(Kokkos::Serial()), run(Kokkos::DefaultHostExecutionSpace()));
 }
 
+// A run that an observer stops, and that goes on, is one run.
+TYPED_TEST(Thermal, BitsDoNotDependOnWhereARunIsStopped) {
+  using Spins = typename TypeParam::Spins;
+  auto const lattice = Lattice::square(21, 6);
+  auto const run = [&](std::int64_t stop, bool at_once) {
+    auto spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+    LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1)), 0.3);
+    ThermalNoise<Spins> const noise(spins, 0.3, {.temperature = 0.2, .seed = 9});
+    Rkmk4<Spins> stepper(spins);
+    auto const stop_at = [&](auto const&, Step const& step, auto const&) {
+      return step.number == stop ? Next::stop : Next::proceed;
+    };
+    for (std::int64_t const first : {std::int64_t{0}, stop}) {
+      Times const times{0, 0.05, 12, first};
+      auto const watch = [&, first](auto const& exec, Step const& step, auto const& seen) {
+        return step.number > first || first == 0 ? stop_at(exec, step, seen) : Next::proceed;
+      };
+      if (at_once)
+        integrate(this->exec, stepper, generator, spins, times, watch, noise.between_steps(times));
+      else
+        integrate(this->exec, stepper, generator, spins, times, noise.after_steps(times), watch,
+                  noise.before_steps());
+    }
+    return numbers_of(spins);
+  };
+  auto const whole = run(12, false);
+  for (std::int64_t const stop : {1, 5, 11})
+    for (bool const at_once : {false, true}) EXPECT_EQ(run(stop, at_once), whole) << stop;
+}
+
+// A copy has turns of its own, for its length of step.
+TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
+  using Spins = typename TypeParam::Spins;
+  using Noise = typename TestFixture::Noise;
+  auto const lattice = Crystal::bcc().lattice({5, 3, 2});
+  Spins const like("like", lattice);
+  Noise const noise(like, 0.5, {.temperature = 0.4, .seed = 3, .cell_sites = {1, 0.5}});
+  Noise const copy = noise;
+  auto const turned = [&](Noise const& by, double dt) {
+    auto const spins = spins_of<Spins>(lattice, random_directions(lattice.sites(), 3));
+    by.turn(this->exec, 1, TestFixture::Half::after, dt, spins);
+    this->exec.fence();
+    return numbers_of(spins);
+  };
+  auto const expected = turned(noise, 0.1);
+  EXPECT_NE(turned(copy, 0.2), expected);
+  EXPECT_EQ(turned(noise, 0.1), expected);
+  EXPECT_EQ(turned(copy, 0.1), expected);
+  // With spins that do not move there are turns of a cell's sites, too.
+  ScalarField<typename TypeParam::Real, typename TypeParam::MemorySpace> const moves("moves",
+                                                                                     lattice, 1);
+  Noise const moving(like, 0.5, {.temperature = 0.4, .seed = 3}, moves);
+  auto assigned = moving;
+  auto const of_all = turned(moving, 0.1);
+  EXPECT_NE(turned(assigned, 0.2), of_all);
+  EXPECT_EQ(turned(moving, 0.1), of_all);
+  assigned = noise;
+  EXPECT_EQ(turned(assigned, 0.1), expected);
+}
+
 TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   using Spins = SpinField<double, Kokkos::HostSpace>;
   Spins const spins("spins", Lattice::chain(4)), others("others", Lattice::chain(5));
@@ -208,6 +269,10 @@ TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 1.1, spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, std::nan(""), spins), std::invalid_argument);
   EXPECT_THROW(noise.turn(exec, 1, Half::before, 0.1, others), std::invalid_argument);
+  // By the largest turn of a cell's sites.
+  ThermalNoise<Spins> const slow(spins, 0.5, {.temperature = 2, .cell_sites = {0.5}});
+  EXPECT_THROW(slow.turn(exec, 1, Half::before, 2.1, spins), std::invalid_argument);
+  EXPECT_NO_THROW(slow.turn(exec, 1, Half::before, 1.9, spins));
   auto const before = numbers_of(spins);
   ThermalNoise<Spins>(spins, 0.5, {}).turn(exec, 1, Half::before, 0.1, spins);
   EXPECT_EQ(numbers_of(spins), before) << "at temperature 0";

@@ -113,6 +113,87 @@ TEST_F(TrajectoryTest, NumberOfACheckpointThatIsNoneIsRefused) {
                        "cannot read attribute a"));
 }
 
+class CheckpointContents : public TrajectoryTest {
+ protected:
+  CheckpointContents() {
+    CheckpointHeader header;
+    header.scene_text = "a scene";
+    header.step = 12;
+    header.time = 0.5;
+    CheckpointWriter writer(path_, header);
+    double count = 3, dt = 0.25;
+    writer.number("known", count);
+    writer.number("dt", dt);
+    std::vector<double> spins{1, 2, 3}, others{4, 5, 6};
+    writer.field("spins", spins);
+    writer.field("field_0", spins);
+    writer.field("field_1", others);
+    writer.commit();
+  }
+
+  template <class Change>
+  void change(Change const& work) const {
+    FileHandle const file(H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+    GroupHandle const numbers(H5Gopen2(file.get(), "numbers", H5P_DEFAULT));
+    work(file.get(), numbers.get());
+  }
+  void expect_refused(std::string const& what) const {
+    EXPECT_TRUE(contains(error_line(path_, [&] { CheckpointReader reader(path_); }),
+                         "its contents are not those written"))
+        << what;
+  }
+
+  template <class Number>
+  static void replace(hid_t parent, std::filesystem::path const& path, char const* name,
+                      Number value) {
+    ASSERT_GE(H5Adelete(parent, name), 0);
+    RootAttributes(parent, path).create(name, value);
+  }
+
+  std::filesystem::path const path_ = folder_ / "a.checkpoint.h5";
+};
+
+TEST_F(CheckpointContents, ChangedNumberIsNoticed) {
+  change([&](hid_t, hid_t numbers) { replace(numbers, path_, "known", 1000.0); });
+  expect_refused("known");
+}
+TEST_F(CheckpointContents, ChangedStepIsNoticed) {
+  change([&](hid_t file, hid_t) { replace(file, path_, "step", std::int64_t{13}); });
+  expect_refused("step");
+}
+TEST_F(CheckpointContents, ChangedTimeIsNoticed) {
+  change([&](hid_t file, hid_t) { replace(file, path_, "time", 0.75); });
+  expect_refused("time");
+}
+TEST_F(CheckpointContents, ChangedSceneIsNoticed) {
+  change([&](hid_t file, hid_t) { replace(file, path_, "scene", std::string("another")); });
+  expect_refused("scene");
+}
+TEST_F(CheckpointContents, LostNumberIsNoticed) {
+  change([](hid_t, hid_t numbers) { ASSERT_GE(H5Adelete(numbers, "dt"), 0); });
+  expect_refused("dt");
+}
+TEST_F(CheckpointContents, FieldsThatChangedPlacesAreNoticed) {
+  change([](hid_t file, hid_t) {
+    auto const move = [&](char const* from, char const* to) {
+      ASSERT_GE(H5Lmove(file, from, file, to, H5P_DEFAULT, H5P_DEFAULT), 0);
+    };
+    move("field_0", "between");
+    move("field_1", "field_0");
+    move("between", "field_1");
+  });
+  expect_refused("fields");
+}
+
+TEST_F(CheckpointContents, AreReadFromAFileOfAnEarlierVersion) {
+  change([](hid_t file, hid_t) { ASSERT_GE(H5Adelete(file, "checksum"), 0); });
+  CheckpointReader reader(path_);
+  double known = 0;
+  reader.number("known", known);
+  EXPECT_EQ(known, 3);
+  EXPECT_EQ(reader.header().step, 12);
+}
+
 // A file of version 3 would be refused after its writer was killed.
 TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
   auto const path = folder_ / "a.h5";

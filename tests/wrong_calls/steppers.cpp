@@ -4,6 +4,8 @@
 
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
+#include <memory>
+
 namespace cayspin::test {
 namespace {
 
@@ -90,10 +92,11 @@ TEST(WrongCallsOfSteppers, MadeForNoField) {
 TEST(WrongCallsOfSteppers, BatchesOfNoSteps) {
   Lattice const own = own_lattices[0];
   for (std::int64_t const count : {0, -1, -2}) {
-    auto const batch = [&](auto stepper) {
-      return [&own, count, stepper]() mutable {
+    auto const batch = [&](auto made) {
+      auto const stepper = std::make_shared<decltype(made)>(std::move(made));
+      return [&own, count, stepper] {
         Spins spins("spins", own);
-        stepper.batch(Exec(), generator_on(own), spins, 0, 0.1, count);
+        stepper->batch(Exec(), generator_on(own), spins, 0, 0.1, count);
       };
     };
     Spins const like("like", own);

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/demagnetization/far_images_table.hpp>
+#include <cayspin/demagnetization/images.hpp>
 #include <cayspin/demagnetization/tensor.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -18,7 +22,9 @@ namespace cayspin::inline v0_1 {
 
 struct DemagnetizationOptions {
   double strength = 1;
-  /// More images on each side than the nearest one, along the axes that have any.
+  /// More images on each side than the nearest one, along the axes that have any. Along one or two
+  /// axes they may be infinitely_many_images: not along three, where the sum depends on the shape
+  /// of the whole.
   std::array<int, 3> periodic_images{};
   TensorOfCells* tensor = demagnetizing_tensor;
   /// Is given what computes the tensors of a whole lattice, and returns what that returns: for a
@@ -41,6 +47,10 @@ class InteractionsOfCells {
     if (lattice.cell_sites != 1)
       throw std::invalid_argument(
           "cayspin::DemagnetizingField: a lattice must have one site in a cell");
+    auto const [shortest, longest] = std::ranges::minmax(cell_);
+    if (longest > largest_edge_ratio * shortest)
+      throw std::invalid_argument(
+          "cayspin::DemagnetizingField: the edges of a cell differ by more than 1e9 : 1");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (images(axis) < 0)
         throw std::invalid_argument(
@@ -48,6 +58,7 @@ class InteractionsOfCells {
       cells_[axis] = static_cast<int>(shape[axis]);
       period_[axis] = images(axis) > 0 ? cells_[axis] : good_length(2 * cells_[axis] - 1);
     }
+    choose_nearest();
   }
 
   std::array<int, 3> const& cells() const { return cells_; }
@@ -70,13 +81,14 @@ class InteractionsOfCells {
   DemagnetizingTensors computed(std::int64_t first, std::int64_t lines) const {
     DemagnetizingTensors found(static_cast<std::size_t>(octant(0)) *
                                static_cast<std::size_t>(lines));
+    auto const far = far_images();
     // Near ones take longest: dealt out one by one.
     auto const count = static_cast<std::int64_t>(found.size());
     Kokkos::parallel_for(
         "cayspin::DemagnetizingField: tensors",
         Kokkos::RangePolicy<Kokkos::DefaultHostExecutionSpace, TaskIndex,
                             Kokkos::Schedule<Kokkos::Dynamic>>(0, count, Kokkos::ChunkSize(64)),
-        Find{*this, first, found.data()});
+        Find{*this, first, far ? &*far : nullptr, found.data()});
     Kokkos::DefaultHostExecutionSpace().fence("cayspin::DemagnetizingField: tensors");
     return found;
   }
@@ -94,24 +106,74 @@ class InteractionsOfCells {
   struct Find {
     InteractionsOfCells const& of;
     std::int64_t first;
+    FarImagesTable const* far;
     DemagnetizingTensor* found;
 
     void operator()(std::int64_t i) const {
       std::int64_t const nx = of.octant(0), ny = of.octant(1), line = first + i / nx;
       found[i] = of.between(
-          {static_cast<int>(i % nx), static_cast<int>(line % ny), static_cast<int>(line / ny)});
+          {static_cast<int>(i % nx), static_cast<int>(line % ny), static_cast<int>(line / ny)},
+          far);
     }
   };
 
   int images(std::size_t axis) const { return options_.periodic_images[axis]; }
+  bool is_infinite(std::size_t axis) const { return images(axis) == infinitely_many_images; }
+  double period_length(std::size_t axis) const { return cells_[axis] * cell_[axis]; }
 
-  DemagnetizingTensor between(std::array<int, 3> const& distance) const {
+  /// Of infinitely many images, those within two of the longer periods are summed for each
+  /// distance.
+  void choose_nearest() {
+    nearest_ = options_.periodic_images;
+    std::vector<double> periods;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (is_infinite(axis)) periods.push_back(period_length(axis));
+    if (periods.empty()) return;
+    auto const [shortest, longest] = std::ranges::minmax(periods);
+    if (periods.size() == 3)
+      throw std::invalid_argument(
+          "cayspin::DemagnetizingField: infinitely many images along three axes");
+    if (longest > largest_period_ratio * shortest)
+      throw std::invalid_argument(
+          "cayspin::DemagnetizingField: infinitely many images along axes whose lengths differ by "
+          "more than 1e4 : 1");
+    if (options_.tensor != demagnetizing_tensor)
+      throw std::invalid_argument(
+          "cayspin::DemagnetizingField: infinitely many images with a tensor of one's own");
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (is_infinite(axis))
+        nearest_[axis] = static_cast<int>(std::ceil(2 * longest / period_length(axis)));
+  }
+
+  /// None where no axis has infinitely many.
+  std::optional<FarImagesTable> far_images() const {
+    std::array<double, 3> period{};
+    std::array<FarImagesTable::Axis, 3> axes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      axes[axis].step = cell_[axis];
+      axes[axis].distances = images(axis) > 0 ? octant(axis) : cells_[axis];
+      axes[axis].is_smooth = is_infinite(axis);
+      if (is_infinite(axis)) {
+        period[axis] = period_length(axis);
+      } else if (images(axis) > 0) {
+        axes[axis].images.clear();
+        for (int image = -images(axis); image <= images(axis); ++image)
+          axes[axis].images.push_back(image * period_length(axis));
+      }
+    }
+    if (period == std::array<double, 3>{}) return std::nullopt;
+    return FarImagesTable(FarImages(cell_, period, nearest_), axes);
+  }
+
+  DemagnetizingTensor between(std::array<int, 3> const& distance, FarImagesTable const* far) const {
     DemagnetizingTensor sum;
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (images(axis) == 0 && distance[axis] >= cells_[axis]) return sum;
-    for (int i = -images(0); i <= images(0); ++i)
-      for (int j = -images(1); j <= images(1); ++j)
-        for (int k = -images(2); k <= images(2); ++k)
+    if (far != nullptr) add(sum, -options_.strength, (*far)(distance));
+    auto const [x, y, z] = nearest_;
+    for (int i = -x; i <= x; ++i)
+      for (int j = -y; j <= y; ++j)
+        for (int k = -z; k <= z; ++k)
           add(sum, -options_.strength,
               options_.tensor(
                   {place(0, distance[0], i), place(1, distance[1], j), place(2, distance[2], k)},
@@ -124,7 +186,7 @@ class InteractionsOfCells {
 
   std::array<double, 3> cell_;
   DemagnetizationOptions options_;
-  std::array<int, 3> cells_{}, period_{};
+  std::array<int, 3> cells_{}, period_{}, nearest_{};
 };
 
 }  // namespace detail

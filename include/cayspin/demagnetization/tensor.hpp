@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <numbers>
 #include <vector>
 
@@ -22,6 +24,9 @@ using DemagnetizingTensors = std::vector<DemagnetizingTensor>;
 /// Such a tensor of a position and of the edges of a cell.
 using TensorOfCells = DemagnetizingTensor(std::array<double, 3> const& position,
                                           std::array<double, 3> const& cell);
+
+/// The largest ratio of a cell's edges that the tensor is known to be right for.
+inline constexpr double largest_edge_ratio = 1e9;
 
 namespace detail {
 
@@ -163,6 +168,8 @@ DemagnetizingTensor far_demagnetizing_tensor(Lengths const& position, Lengths co
 
 inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell);
+inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
+                                                        Lengths const& cell);
 
 /// By the cheapest of these ways that holds its digits at this distance.
 inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position,
@@ -171,6 +178,8 @@ inline DemagnetizingTensor cheapest_demagnetizing_tensor(Lengths const& position
   if (distance >= 50 * edge) return far_demagnetizing_tensor<6>(position, cell, distance);
   if (distance >= 8 * edge) return far_demagnetizing_tensor<12>(position, cell, distance);
   if (distance >= 4 * edge) return far_demagnetizing_tensor<22>(position, cell, distance);
+  if (edge > 1000 * std::min({cell[0], cell[1], cell[2]}))
+    return slender_demagnetizing_tensor(position, cell);
   // Second differences lose digits in proportion to the square of this. The number of pieces is
   // bounded by the other condition.
   double const reach = distance + edge;
@@ -201,6 +210,45 @@ inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
   return sum;
 }
 
+/// The same with the longest edge halved until no edge is over 16 times the shortest. Pairs of
+/// pieces that are far from each other by then are summed as they come, so that few remain.
+inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
+                                                        Lengths const& cell) {
+  using Offset = std::array<std::int64_t, 3>;  // between the pieces of a pair, in pieces
+  std::map<Offset, double> near{{Offset{}, 1.}};
+  Lengths piece = cell;
+  DemagnetizingTensor sum;
+  auto const at = [&](Offset const& offset) {
+    Lengths place = position;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      place[axis] += static_cast<double>(offset[axis]) * piece[axis];
+    return place;
+  };
+  for (;;) {
+    auto const longest = std::max_element(piece.begin(), piece.end());
+    if (*longest <= 16 * std::min({piece[0], piece[1], piece[2]})) break;
+    auto const axis = static_cast<std::size_t>(longest - piece.begin());
+    piece[axis] /= 2;
+    double const reach = 4 * std::max({piece[0], piece[1], piece[2]});
+    std::map<Offset, double> nearer;
+    for (auto const& [offset, weight] : near)
+      for (int const shift : {-1, 0, 1}) {
+        auto halved = offset;
+        halved[axis] = 2 * offset[axis] + shift;
+        nearer[halved] += shift == 0 ? weight : weight / 2;
+      }
+    near.clear();
+    for (auto const& [offset, weight] : nearer)
+      if (norm(at(offset)) < reach)
+        near.emplace(offset, weight);
+      else
+        add(sum, weight, cheapest_demagnetizing_tensor(at(offset), piece));
+  }
+  for (auto const& [offset, weight] : near)
+    add(sum, weight, cheapest_demagnetizing_tensor(at(offset), piece));
+  return sum;
+}
+
 }  // namespace detail
 
 /// N between two rectangular cells whose centres differ by `position` and whose edges along x, y
@@ -213,8 +261,9 @@ inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
 /// differences in edge / distance, of order 22, 12 (from 8 edges) and 6 (from 50 edges). Long and
 /// flat cells are divided where the differences would cancel.
 ///
-/// For edges of up to 1000 : 1, the error is at most 3e-11 of the largest entry at this position,
-/// and 1e-12 of it from 4 edges on. This needs a long double of 64 bits or more.
+/// For edges of up to 1e6 : 1, the error is at most 3e-11 of the largest entry at this position,
+/// and 1e-12 of it from 4 edges on. For edges of up to 1e9 : 1, it is at most 1e-15 and 1e-8 of
+/// that entry. This needs a long double of 64 bits or more.
 inline DemagnetizingTensor demagnetizing_tensor(std::array<double, 3> const& position,
                                                 std::array<double, 3> const& cell) {
   auto const [x, y, z] = position;

@@ -15,18 +15,20 @@ namespace cayspin::inline v0_1 {
 class CubicAnisotropy {
  public:
   static constexpr bool is_local = true;
+  static constexpr double most_skew = 1e-4;
 
-  /// The axes are normalised. Throws std::invalid_argument when the constant is not finite, an axis
-  /// is zero or not finite, or the axes are not at right angles: |e1.e2| > 1e-9.
+  /// The axes are normalised, and the second one is turned to a right angle with the first. Throws
+  /// std::invalid_argument when the constant is not finite, an axis is zero or not finite, or
+  /// |e1.e2| > 1e-4, more than the rounding of a few digits.
   CubicAnisotropy(double constant, Vec3<double> const& axis1, Vec3<double> const& axis2)
       : constant_(detail::finite(constant, "cayspin::CubicAnisotropy: the constant")),
         axes_{normalized(axis1, "cayspin::CubicAnisotropy: the first axis"),
               normalized(axis2, "cayspin::CubicAnisotropy: the second axis"),
               {}} {
     double const along = dot(axes_[0], axes_[1]);
-    if (!(std::abs(along) <= 1e-9))
+    if (!(std::abs(along) <= most_skew))
       throw std::invalid_argument(
-          "cayspin::CubicAnisotropy: the axes must be at right angles to each other");
+          "cayspin::CubicAnisotropy: the axes are not at right angles: |e1.e2| is above 1e-4");
     axes_[1] = normalized(axes_[1] - along * axes_[0], "cayspin::CubicAnisotropy: the second axis");
     axes_[2] = cross(axes_[0], axes_[1]);
     along_coordinates_ = is_coordinate(axes_[0]) && is_coordinate(axes_[1]);

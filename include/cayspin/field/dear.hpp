@@ -4,8 +4,10 @@
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/field/field_of_sites.hpp>
+#include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/local_part.hpp>
+#include <cayspin/field/multirate_weights.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 
@@ -28,7 +30,7 @@ namespace detail {
 /// The weighted sum of the first `count` arrays.
 template <class Real>
 struct CombineFields {
-  static constexpr int most = 4;
+  static constexpr std::size_t most = most_multirate_values;
   SiteArray<Real, 3> values[most];
   Real weights[most];
   int count;
@@ -58,17 +60,6 @@ double energy_factor_of(Term const& term) {
   }
 }
 
-/// The weights at x of the polynomial through values at `nodes`.
-inline std::array<double, 4> weights_at(double x, std::span<double const> nodes) {
-  std::array<double, 4> weights{};
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    weights[i] = 1;
-    for (std::size_t j = 0; j < nodes.size(); ++j)
-      if (j != i) weights[i] *= (x - nodes[j]) / (nodes[i] - nodes[j]);
-  }
-  return weights;
-}
-
 }  // namespace detail
 
 /// A field term that costs more than the rest: a demagnetising field by FFTs, for example.
@@ -80,8 +71,9 @@ inline std::array<double, 4> weights_at(double x, std::span<double const> nodes)
 template <class Spins, class Term>
 class Dear {
   using Real = typename Spins::value_type;
-  static constexpr std::size_t most = detail::CombineFields<Real>::most;
+  static constexpr std::size_t most = detail::most_multirate_values;
   struct State {
+    using Weights = detail::MultirateWeights (*)(double x, std::span<double const> nodes);
     State(char const* label, Lattice const& lattice) : field(label, lattice) {}
 
     Spins field;
@@ -90,6 +82,7 @@ class Dear {
 
     std::array<Spins, most> values;
     std::array<double, most> nodes{};
+    Weights weights = nullptr;
     std::size_t count = 0;  // 0: the term itself
     double begin = 0, dt = 0;
     double at = 0;  // the time of `field`
@@ -98,7 +91,9 @@ class Dear {
 
  public:
   using spins_type = Spins;
+  using Weights = typename State::Weights;
   static constexpr bool is_conservative = detail::is_conservative<Term>;
+  static constexpr bool depends_on_time = detail::depends_on_time<Term>;
 
   Dear(Lattice const& lattice, Term term)
       : term_(std::move(term)), state_(std::make_shared<State>("Dear::field", lattice)) {}
@@ -123,13 +118,26 @@ class Dear {
       evaluate(exec, spins, t, state_->field);
     return {state_->field.array(), state_->energy_factor};
   }
+  template <class Exec, class Others>
+  bool needs_time_alone(Exec const&, Others const&) const {
+    return false;  // it is stored for the spins
+  }
   /// Throws std::logic_error between evaluations.
   template <class Exec>
   detail::StoredField<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                          double) const {
+    static_assert(!depends_on_time, "A dear field that depends on t has no rate.");
     if (state_->count > 0)
       throw std::logic_error("cayspin::Dear: an interpolated field has no rate");
     return prepare(exec, rates, t);
+  }
+
+  friend auto parts_of(Dear const*) {
+    // A solver of one's own leaves out the spins of vacant sites.
+    if constexpr (detail::is_local<Term> || detail::is_host_field<Term>)
+      return detail::PartsOf<Term>();
+    else
+      return detail::PartsOf<Term, detail::SeesAllSpins<Term>>();
   }
 
   /// Evaluations of the term so far, by all copies.
@@ -150,15 +158,16 @@ class Dear {
     ++state_->evaluations;
   }
 
-  /// As long as this lives, the field is the polynomial in (time - begin) / dt through `values` at
-  /// `nodes`, at most 4.
+  /// As long as this lives, the field is the sum of `values`, at most 5, with `weights` of
+  /// (time - begin) / dt and `nodes`: unless told otherwise, the polynomial through the values.
   class Interpolated {
    public:
     Interpolated(Dear const& dear, std::span<Spins const> values, std::span<double const> nodes,
-                 double begin, double dt)
+                 double begin, double dt, Weights weights = detail::interpolating_weights)
         : state_(*dear.state_) {
       std::ranges::copy(values, state_.values.begin());
       std::ranges::copy(nodes, state_.nodes.begin());
+      state_.weights = weights;
       state_.begin = begin;
       state_.dt = dt;
       state_.at = std::numeric_limits<double>::quiet_NaN();
@@ -185,7 +194,7 @@ class Dear {
     if (std::abs(t - state.at) <= 1e-12 * std::abs(state.dt)) return;
     state.at = t;
     auto const weights =
-        detail::weights_at((t - state.begin) / state.dt, {state.nodes.data(), state.count});
+        state.weights((t - state.begin) / state.dt, {state.nodes.data(), state.count});
     detail::CombineFields<Real> combine{
         {}, {}, static_cast<int>(state.count), state.field.output(false)};
     for (std::size_t i = 0; i < state.count; ++i) {

@@ -127,14 +127,20 @@ class EffectiveField<First, Rest...>
 
   /// The linear part of H, applied to the stencil's array; every term has to be affine.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
+    requires detail::has_linear_part<First, Stencil> &&
+             detail::has_linear_part<EffectiveField<Rest...>, Stencil>
+  {
     return detail::linear_field(first_, stencil) + detail::linear_field(rest_, stencil);
   }
 
   /// The derivative of H at a spin m, along the rates of the stencil's array.
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const {
+                                                     Stencil const& rates) const
+    requires detail::has_derivative<First, Stencil> &&
+             detail::has_derivative<EffectiveField<Rest...>, Stencil>
+  {
     return detail::field_rate(first_, m, rates) + detail::field_rate(rest_, m, rates);
   }
 

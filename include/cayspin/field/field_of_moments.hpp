@@ -33,7 +33,13 @@ struct NumbersOfCell {
   }
 };
 
-/// The numbers as they were given, for messages, and in memory.
+inline void require_positive(char const* who, std::vector<double> const& numbers) {
+  for (double const number : numbers)
+    if (!(number > 0) || !std::isfinite(number))
+      throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
+}
+
+/// A number for each site of a cell, in memory.
 template <class MemorySpace>
 class CellNumbers {
  public:
@@ -44,9 +50,7 @@ class CellNumbers {
     if (static_cast<std::int64_t>(numbers.size()) != lattice.cell_sites)
       throw std::invalid_argument(std::string(who) +
                                   ": there is not one number for each site of a cell");
-    for (double const number : numbers)
-      if (!(number > 0) || !std::isfinite(number))
-        throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
+    require_positive(who, numbers);
   }
 
   NumbersOfCell numbers() const { return {view_.data(), static_cast<std::int32_t>(view_.size())}; }
@@ -79,14 +83,27 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
     return factors_.at(stencil.site()) * field_.field(stencil);
   }
   template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
+    return factors_.at(stencil.site()) * detail::neighbor_field(field_, stencil);
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
+    return factors_.at(spin.site()) * detail::local_field(field_, spin);
+  }
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
+    return detail::local_field_varies(field_);
+  }
+  template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
-    requires has_linear_field<Field, Stencil>
+    requires has_linear_part<Field, Stencil>
   {
     return factors_.at(stencil.site()) * detail::linear_field(field_, stencil);
   }
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const {
+                                                     Stencil const& rates) const
+    requires has_derivative<Field, Stencil>
+  {
     return factors_.at(rates.site()) * detail::field_rate(field_, m, rates);
   }
 
@@ -94,6 +111,10 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
   Field field_;
   NumbersOfCell factors_;
 };
+
+template <class Field, class Stencil>
+inline constexpr bool comes_in_parts<FieldTimesNumbers<Field>, Stencil> =
+    comes_in_parts<Field, Stencil>;
 
 /// What ZeemanOfMoments is in kernels.
 struct AppliedToMoments {
@@ -118,11 +139,13 @@ struct AppliedToMoments {
 /// The field of spins that have a moment mu and a gyromagnetic ratio g each, by sites of a
 /// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms have to
 /// stand inside; an applied field is a ZeemanOfMoments there. What conserves E without damping
-/// conserves it here.
+/// conserves it here, but H is not the derivative of E: EnergyControl and what else follows an
+/// energy by its derivative refuse it, and take the field inside.
 template <class Field, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:
   static constexpr int energy_terms = detail::energy_terms<Field>;
+  static constexpr bool is_conservative = false;
 
   /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a positive number
   /// for each site of a cell.
@@ -153,6 +176,8 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
     if (!gyromagnetic.empty() && gyromagnetic.size() != moments.size())
       throw std::invalid_argument(
           "cayspin::FieldOfMoments: there is not a gyromagnetic ratio for each moment");
+    detail::require_positive("cayspin::FieldOfMoments", moments);
+    detail::require_positive("cayspin::FieldOfMoments", gyromagnetic);
     auto made = moments;
     for (std::size_t site = 0; site < made.size(); ++site)
       made[site] = (gyromagnetic.empty() ? 1 : gyromagnetic[site]) / moments[site];
@@ -174,10 +199,12 @@ class ZeemanOfMoments : public detail::PreparedOnce {
  public:
   static constexpr bool is_local = true;
 
-  /// Throws std::invalid_argument unless there is a positive moment for each site of a cell.
+  /// Throws std::invalid_argument unless there is a positive moment for each site of a cell, and
+  /// when the applied field is not finite.
   ZeemanOfMoments(Lattice const& lattice, Vec3<double> const& applied,
                   std::vector<double> const& moments)
-      : applied_(applied), moments_("cayspin::ZeemanOfMoments", lattice, moments) {}
+      : applied_(detail::finite(applied, "cayspin::ZeemanOfMoments: the applied field")),
+        moments_("cayspin::ZeemanOfMoments", lattice, moments) {}
 
   template <class Exec, class Spins>
   detail::AppliedToMoments prepare(Exec const&, Spins const&, double) const {

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cayspin/field/coefficient.hpp>
-#include <cayspin/field/effective_field.hpp>
-#include <cayspin/field/field_of_moments.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/local_part.hpp>
@@ -17,21 +15,22 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-template <class Field>
-inline constexpr bool averages_layers = false;
-template <class MemorySpace>
-inline constexpr bool averages_layers<LayerAveragedSlabDemag<MemorySpace>> = true;
-template <class... Terms>
-inline constexpr bool averages_layers<EffectiveField<Terms...>> = (averages_layers<Terms> || ...);
+template <template <class> class Wanted, class Term>
+inline constexpr bool is_a = false;
+template <template <class> class Wanted, class Argument>
+inline constexpr bool is_a<Wanted, Wanted<Argument>> = true;
 
-template <class Field>
-inline constexpr bool has_pairs = false;
-template <class MemorySpace>
-inline constexpr bool has_pairs<PairCouplings<MemorySpace>> = true;
-template <class Field, class MemorySpace>
-inline constexpr bool has_pairs<FieldOfMoments<Field, MemorySpace>> = has_pairs<Field>;
-template <class... Terms>
-inline constexpr bool has_pairs<EffectiveField<Terms...>> = (has_pairs<Terms> || ...);
+/// Is a term, or a part of it at any depth, a Wanted<..>?
+template <template <class> class Wanted, class Term>
+constexpr bool holds();
+template <template <class> class Wanted, class... Parts>
+constexpr bool any_holds(PartsOf<Parts...>) {
+  return (holds<Wanted, Parts>() || ...);
+}
+template <template <class> class Wanted, class Term>
+constexpr bool holds() {
+  return is_a<Wanted, Term> || any_holds<Wanted>(decltype(parts_of(std::declval<Term const*>()))());
+}
 
 /// A stencil in which a vacant neighbour is a missing one: the spin itself stands for it.
 template <class Stencil, class Real>
@@ -108,13 +107,17 @@ class FieldAmongVacancies {
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
+    requires has_linear_part<Field, Inner<Stencil>>
+  {
     return unless_vacant(stencil,
                          detail::linear_field(field_, Inner<Stencil>(stencil, occupation_)));
   }
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const {
+                                                     Stencil const& rates) const
+    requires has_derivative<Field, Inner<Stencil>>
+  {
     return unless_vacant(rates, detail::field_rate(field_, m, Inner<Stencil>(rates, occupation_)));
   }
 
@@ -162,11 +165,14 @@ inline constexpr bool comes_in_parts<FieldAmongVacancies<Field, Real>, Stencil> 
 /// A HostField's solver is given the vacant spins too, and has to leave them out.
 template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
-  static_assert(!detail::averages_layers<Field>,
+  static_assert(!detail::holds<LayerAveragedSlabDemag, Field>(),
                 "LayerAveragedSlabDemag counts the spins of vacant sites in its averages.");
-  static_assert(!detail::has_pairs<Field>,
+  static_assert(!detail::holds<PairCouplings, Field>(),
                 "PairCouplings read the spins of vacant sites: where these are zero vectors, no "
                 "FieldWithVacancies is needed.");
+  static_assert(!detail::holds<detail::SeesAllSpins, Field>(),
+                "Dear evaluates its term for the spins of vacant sites, too: inside "
+                "FieldWithVacancies it takes a HostField or a local term.");
 
  public:
   static constexpr int energy_terms = detail::energy_terms<Field>;

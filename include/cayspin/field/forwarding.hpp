@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/pack.hpp>
+#include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
+#include <cayspin/stencil.hpp>
+
+#include <utility>
 
 namespace cayspin::inline v0_1 {
 
@@ -10,7 +15,9 @@ namespace cayspin::inline v0_1 {
 /// before a kernel are forwarded to its parts from here. Derived has two members:
 ///   auto with_parts(make) const    the same, for kernels, around make(part) of each part
 ///   bool all_parts(test) const     test(part) holds for every part
-/// Members that Derived has itself come first.
+/// Members that Derived has itself come first. What with_parts returns need not have the members
+/// for field extrapolation (neighbor_field) and for rows (begin_row): without them the field is
+/// not split, and evaluated spin by spin.
 template <class Derived, class... Parts>
 class Forwarding {
  public:
@@ -25,8 +32,16 @@ class Forwarding {
   }
   template <class Exec, class Spins>
   auto prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
-    return derived().with_parts(
-        [&](auto const& part) { return detail::prepare_for_rows(part, exec, spins, t); });
+    auto const for_rows = [&](auto const& part) {
+      return detail::prepare_for_rows(part, exec, spins, t);
+    };
+    using ForRows = decltype(derived().with_parts(for_rows));
+    constexpr int of_parts =
+        (0 + ... + detail::row_fields<decltype(for_rows(std::declval<Parts const&>()))>);
+    if constexpr (detail::row_fields<ForRows> == of_parts)
+      return derived().with_parts(for_rows);
+    else
+      return derived().prepare(exec, spins, t);
   }
   template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
@@ -35,8 +50,14 @@ class Forwarding {
   }
   template <class Exec, class Spins>
   auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
-    return derived().with_parts(
-        [&](auto const& part) { return detail::prepare_local(part, exec, spins, t); });
+    using Whole = decltype(derived().prepare(exec, spins, t));
+    using Real = typename Spins::value_type;
+    using Stencil = cayspin::Stencil<detail::Site<detail::Pack<Real>>, Real>;
+    if constexpr (detail::has_field<Whole, Stencil> && !detail::says_its_parts<Whole, Stencil>)
+      return detail::NoField{};
+    else
+      return derived().with_parts(
+          [&](auto const& part) { return detail::prepare_local(part, exec, spins, t); });
   }
   template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {
@@ -54,6 +75,17 @@ class Forwarding {
 };
 
 namespace detail {
+
+/// The parts of a term or generator that forwards to them; none of others.
+template <class... Parts>
+struct PartsOf {};
+template <class Derived, class... Parts>
+PartsOf<Parts...> parts_of(Forwarding<Derived, Parts...> const*);
+PartsOf<> parts_of(void const*);
+
+/// Among the parts of what evaluates Term for all spins, whatever stencil it is given.
+template <class Term>
+struct SeesAllSpins {};
 
 /// The device members about the energy of a generator that is made of one part with an energy,
 /// which Derived::part() gives.

@@ -108,6 +108,13 @@ class HostField {
   HostSpins host_spins_, host_field_;
 };
 
+namespace detail {
+template <class Term>
+inline constexpr bool is_host_field = false;
+template <class Spins, class Solver>
+inline constexpr bool is_host_field<HostField<Spins, Solver>> = true;
+}  // namespace detail
+
 /// Without spins to go by: double precision in the default memory space.
 template <class Solver>
 HostField(Lattice, Solver) -> HostField<SpinField<double>, Solver>;

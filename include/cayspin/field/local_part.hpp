@@ -57,11 +57,14 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Term const& term, Spin co
     return zero<ValueOf<Spin>>();
 }
 
-/// Of a prepared term: does it say what its parts are, each term of a sum for itself?
+/// Of a prepared term: does it say what its parts are?
 template <class Term, class Stencil>
-inline constexpr bool comes_in_parts =
+inline constexpr bool says_its_parts =
     is_local<Term> ||
     requires(Term const& term, Stencil const& stencil) { term.neighbor_field(stencil); };
+/// The same of each term of a sum for itself.
+template <class Term, class Stencil>
+inline constexpr bool comes_in_parts = says_its_parts<Term, Stencil>;
 
 /// Of a prepared term that comes in parts: does its local field change with the spin?
 template <class Term>

@@ -17,16 +17,17 @@ namespace cayspin::inline v0_1 {
 
 /// Bonds between any sites of a crystal: E = -m.T m' - B (m.m')^2 of each Coupling, so that
 /// H = T m' + 2 B (m.m') m', and T transposed the other way. Bonds past an open end are none. A
-/// periodic axis that is shorter than a bond closes on itself. On a part of a lattice its ghosts
-/// have to be up to date before each look, which steppers do not see to.
+/// periodic axis that is shorter than a bond closes on itself. On a part of a lattice
+/// (mpi::Domain) every evaluation is refused: between the stages of a step nobody updates as many
+/// ghosts as bonds reach.
 template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
 class PairCouplings {
  public:
-  /// Throws std::invalid_argument for a coupling of sites that no cell has, one of a site with
-  /// itself, a number that is not finite, and a part of a lattice with fewer ghosts than bonds
-  /// reach.
+  /// Throws std::invalid_argument for an invalid lattice, a coupling of sites that no cell has, one
+  /// of a site with itself, a number that is not finite, and a part of a lattice with fewer ghosts
+  /// than bonds reach.
   PairCouplings(Lattice const& lattice, std::vector<Coupling> const& couplings)
-      : PairCouplings(lattice, detail::BondLists(lattice, couplings)) {}
+      : PairCouplings(lattice, detail::BondLists(detail::validated(lattice), couplings)) {}
 
   template <class Spins>
   void check_spins(Spins const& spins) const {
@@ -49,9 +50,21 @@ class PairCouplings {
       return prepare(exec, spins, t);
   }
 
+  /// Throws std::invalid_argument for biquadratic couplings: their derivative depends on the spins,
+  /// not only on the rates.
+  template <class Exec, class Spins>
+  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double) const {
+    if (has_biquadratic())
+      throw std::invalid_argument(
+          "cayspin::PairCouplings: the derivative of biquadratic couplings is not implemented");
+    return prepare(exec, rates, t);
+  }
+
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 
+  /// Without biquadratic bonds H is linear in the spins.
+  bool is_affine() const { return !has_biquadratic(); }
   /// Is H more than linear in the spins?
   bool has_biquadratic() const { return bonds_.table().has_biquadratic; }
 

@@ -17,8 +17,7 @@ struct Zeeman {
 
   template <class Spins>
   void check_spins(Spins const&) const {
-    for (double const component : {applied.x, applied.y, applied.z})
-      detail::finite(component, "cayspin::Zeeman: the applied field");
+    detail::finite(applied, "cayspin::Zeeman: the applied field");
   }
 
   template <class Stencil>
@@ -49,6 +48,7 @@ struct AppliedRate {
 /// changes of angular frequency w.
 template <class Applied>
 Vec3<double> time_derivative(Applied const& applied, double t, double dt) {
+  if (dt == 0) return {0, 0, 0};  // a step of no time moves no spin
   double const d = dt / 8;
   Vec3<double> const near = applied(t + d) - applied(t - d);
   Vec3<double> const far = applied(t + 2 * d) - applied(t - 2 * d);

@@ -32,6 +32,8 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
     check(damping_);
   }
+  /// Precession is a bool: a number in its place is refused when compiled.
+  LandauLifshitz(Field, std::type_identity_t<Damping>, double) = delete;
 
   KOKKOS_FORCEINLINE_FUNCTION Field const& field() const { return field_; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_precession() const { return precession_; }

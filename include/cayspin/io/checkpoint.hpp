@@ -53,7 +53,8 @@ class CheckpointWriter final : public Checkpoint {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Reads a checkpoint. Each field is held against its checksum.
+/// Reads a checkpoint. Each field is held against its checksum, and all else against that of the
+/// file, which those of earlier versions do not have.
 class CheckpointReader final : public Checkpoint {
  public:
   explicit CheckpointReader(std::filesystem::path path);

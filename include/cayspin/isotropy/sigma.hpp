@@ -7,15 +7,7 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// Squares below this are not resolved: a quotient with such a divisor is taken as zero.
-template <class Value>
-KOKKOS_FORCEINLINE_FUNCTION constexpr scalar_t<Value> smallest_square() {
-  using Scalar = scalar_t<Value>;
-  return sizeof(Scalar) == sizeof(double) ? static_cast<Scalar>(0x1p-970)
-                                          : static_cast<Scalar>(0x1p-103);
-}
-
-/// numerator / square; zero if the square is not resolved.
+/// numerator / square; zero if the square is below the smallest that is resolved.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value guarded_quotient(Value const& numerator, Value const& square) {
   auto const large_enough = Value(smallest_square<Value>()) < square;

@@ -140,7 +140,7 @@ LowestCurvature find_lowest_curvature(Exec const& exec, Field const& field, doub
   ++found.evaluations;
   bool affine = is_affine<decltype(prepare_term(field, exec, spins, time)),
                           Stencil<Site<Pack<double>>, Real>>;
-  if constexpr (requires { field.is_affine(); }) affine = affine && field.is_affine();
+  affine = affine && has_affine_field(field);
   // v.Hv and v.v
   auto const product = [&](Spins const& v, Spins const& hv) {
     combine(exec, 0, v, 0, v, shifted);

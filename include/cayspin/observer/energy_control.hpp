@@ -124,7 +124,7 @@ class EnergyControl {
   void visit_memory(Visit const& visit) {
     bool holds = energy_.has_value();
     visit("holds", holds);
-    if (!holds) return;
+    if (!holds) return reset();
     double energy = energy_.value_or(0);
     visit("energy", energy);
     energy_ = energy;

@@ -56,6 +56,45 @@ struct TurnOfCellSite {
   }
 };
 
+/// The turns of a cell's sites, made for the length of step that was asked for last. A copy has its
+/// own.
+template <class Real, class MemorySpace>
+class CellTurns {
+  static constexpr bool on_host = is_host_execution<typename MemorySpace::execution_space>;
+
+ public:
+  using Turn = RandomTurn<Real, on_host>;
+
+  CellTurns() = default;
+  explicit CellTurns(std::size_t count) : turns_("cayspin::ThermalNoise::cell_sites", count) {}
+  CellTurns(CellTurns const& other) : CellTurns(other.turns_.size()) {}
+  CellTurns(CellTurns&&) noexcept = default;
+  CellTurns& operator=(CellTurns other) noexcept {
+    std::swap(turns_, other.turns_);
+    std::swap(made_for_, other.made_for_);
+    return *this;
+  }
+  ~CellTurns() = default;
+
+  /// turn_of(site) of each site of a cell, unless they were made for `u` before; then waits.
+  template <class Exec, class TurnOf>
+  TurnOfCellSite<Real, on_host> get(Exec const& exec, double u, TurnOf const& turn_of) {
+    if (u != made_for_) {
+      auto const turns = Kokkos::create_mirror_view(turns_);
+      for (std::size_t site = 0; site < turns.size(); ++site) turns(site) = turn_of(site);
+      exec.fence("cayspin::ThermalNoise: the turns before are done");
+      Kokkos::deep_copy(exec, turns_, turns);
+      exec.fence("cayspin::ThermalNoise: turns of a cell's sites");
+      made_for_ = u;
+    }
+    return {turns_.data(), static_cast<std::int32_t>(turns_.size()), {}};
+  }
+
+ private:
+  Kokkos::View<Turn*, MemorySpace> turns_;
+  double made_for_ = -1;
+};
+
 /// Both halves of the noise between two steps, or one of them.
 template <class Real, bool OnHost, class Turns = OneTurn<Real, OnHost>>
 struct TurnAtRandom {
@@ -144,8 +183,7 @@ class ThermalNoise {
       if (!(number > 0) || !std::isfinite(number))
         throw std::invalid_argument(
             "cayspin::ThermalNoise: the numbers of a cell's sites must be finite and > 0");
-    if (sites > 0)
-      cell_sites_ = Turns("cayspin::ThermalNoise::cell_sites", options.cell_sites.size());
+    cell_turns_ = CellTurns(options.cell_sites.size());
   }
   /// The same, without noise where `moves` is 0.
   ThermalNoise(Spins const& like, double damping, ThermalNoiseOptions const& options,
@@ -155,7 +193,7 @@ class ThermalNoise {
     moves_ = moves;
     if (options_.cell_sites.empty()) {
       options_.cell_sites.assign(static_cast<std::size_t>(lattice_.cell_sites), 1);
-      cell_sites_ = Turns("cayspin::ThermalNoise::cell_sites", options_.cell_sites.size());
+      cell_turns_ = CellTurns(options_.cell_sites.size());
     }
   }
 
@@ -179,13 +217,14 @@ class ThermalNoise {
   /// An observer: the second half of each step. The first among the observers, so that the others
   /// see the spins as they are after it.
   auto after_steps(Times const& times) const {
-    return BetweenSteps{*this, true, false, times.first};
+    return BetweenSteps<true, false>{*this, times.first};
   }
-  /// An observer: the first half of the step that follows. The last among the observers.
-  auto before_steps() const { return BetweenSteps{*this, false, true}; }
-  /// Both in one pass, where no observer is between them.
+  /// An observer: the first half of the step that follows. The last among the observers: one that
+  /// may stop the run is refused after it when compiled.
+  auto before_steps() const { return BetweenSteps<false, true>{*this}; }
+  /// Both in one pass, where no observer is between them; refused as before_steps.
   auto between_steps(Times const& times) const {
-    return BetweenSteps{*this, true, true, times.first};
+    return BetweenSteps<true, true>{*this, times.first};
   }
 
  private:
@@ -196,9 +235,8 @@ class ThermalNoise {
     detail::check_access<Exec, typename Spins::memory_space>();
     require_lattice("cayspin::ThermalNoise", lattice_, spins.lattice());
     double const u = damping_ * options_.temperature * std::abs(dt);
-    double largest = u;
-    for (double const number : options_.cell_sites) largest = std::max(largest, number * u);
-    if (!(largest <= 1))
+    double const largest = options_.cell_sites.empty() ? 1 : std::ranges::max(options_.cell_sites);
+    if (!(largest * u <= 1))
       throw std::invalid_argument(
           "cayspin::ThermalNoise: damping temperature dt must be at most 1: a smaller dt");
     if (u == 0) return;
@@ -206,17 +244,8 @@ class ThermalNoise {
       run(exec, step, after, before, spins, detail::OneTurn<Real, on_host<Exec>>{turn_of<Exec>(u)});
       return;
     }
-    if (u != cell_sites_u_) {
-      auto const turns = Kokkos::create_mirror_view(cell_sites_);
-      for (std::size_t site = 0; site < options_.cell_sites.size(); ++site)
-        turns(site) = turn_of<Exec>(u * options_.cell_sites[site]);
-      exec.fence("cayspin::ThermalNoise: the turns before are done");
-      Kokkos::deep_copy(exec, cell_sites_, turns);
-      exec.fence("cayspin::ThermalNoise: turns of a cell's sites");
-      cell_sites_u_ = u;
-    }
-    detail::TurnOfCellSite<Real, on_host<Exec>> turns{
-        cell_sites_.data(), static_cast<std::int32_t>(cell_sites_.size()), {}};
+    auto turns = cell_turns_.get(
+        exec, u, [&](std::size_t site) { return turn_of<Exec>(u * options_.cell_sites[site]); });
     if (moves_.lattice() == lattice_) turns.moves = moves_.array();
     run(exec, step, after, before, spins, turns);
   }
@@ -249,30 +278,27 @@ class ThermalNoise {
   }
 
   /// Of the two halves between steps, those that are wanted.
+  template <bool After, bool Before>
   struct BetweenSteps {
-    static constexpr bool changes_spins = true;
+    static constexpr bool changes_spins = true, begins_step = Before;
     ThermalNoise noise;
-    bool after, before;
     std::int64_t first = 0;  // no step ends there
 
     template <class Exec>
     void operator()(Exec const& exec, Step const& step, Spins const& spins) const {
-      bool const ends = after && step.number > first, begins = before && !step.last;
+      // A run that is stopped may go on: that begins with this half.
+      bool const ends = After && step.number > first, begins = Before && !step.last && !step.stops;
       if (ends || begins) noise.turn_between(exec, step.number, ends, begins, step.dt, spins);
     }
   };
 
-  using Turns = Kokkos::View<
-      detail::RandomTurn<Real,
-                         detail::is_host_execution<typename Spins::memory_space::execution_space>>*,
-      typename Spins::memory_space>;
+  using CellTurns = detail::CellTurns<Real, typename Spins::memory_space>;
 
   Lattice lattice_;
   double damping_;
   ThermalNoiseOptions options_;
   ScalarField<Real, typename Spins::memory_space> moves_;
-  Turns cell_sites_;
-  mutable double cell_sites_u_ = -1;  // what they are made of
+  mutable CellTurns cell_turns_;
 };
 
 }  // namespace cayspin::inline v0_1

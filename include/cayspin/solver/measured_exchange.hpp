@@ -15,18 +15,47 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// z + amplitude sign x on every site.
+/// z + amplitude sign x where there is a spin, 0 on vacant sites.
 template <class Real>
 struct FillWaves {
   AlternatingSigns signs;
   Real amplitude;
+  SiteArray<Real, 3> spins;
   OutputArray<Real, 3> output;
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     Value const wave = Value(amplitude) * signs.template at<Value>(site);
-    site.store(Vec3<Value>{wave, Value(Real(0)), Value(Real(1))}, output);
+    Vec3<Value> const m = site.load(spins);
+    site.store(select<Value>(dot(m, m) == Value(Real(0)), zero<Value>(),
+                             Vec3<Value>{wave, Value(Real(0)), Value(Real(1))}),
+               output);
+  }
+};
+
+/// The bonds along each axis between spins whose waves have opposite signs, counted at both ends.
+template <class Real>
+struct OpposedBonds {
+  SiteArray<Real, 3> waves;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, waves);
+    Value const here = stencil.center().x;
+    auto const missing = zero<Value>();
+    auto const count = [&](Vec3<Value> const& previous, Vec3<Value> const& next) {
+      return opposed(here, previous.x) + opposed(here, next.x);
+    };
+    values[0] = count(stencil.template previous<0>(missing), stencil.template next<0>(missing));
+    values[1] = count(stencil.template previous<1>(missing), stencil.template next<1>(missing));
+    values[2] = count(stencil.template previous<2>(missing), stencil.template next<2>(missing));
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value opposed(Value const& here, Value const& there) {
+    return select<Value>(here * there < Value(Real(0)), Value(Real(1)), Value(Real(0)));
   }
 };
 
@@ -47,19 +76,20 @@ struct ResponseToWaves {
 
 /// How a generator A = precession H + damping m x H answers to the shortest waves of each axis
 /// beside uniform spins: as an exchange field H = sum of couplings times second differences would.
-/// What is local cancels out. Vacancies and constants that differ between sites give means. (For
-/// minimisers `probe` takes m.H instead: couplings of either sign, of a field alone.)
+/// What is local cancels out. Constants that differ between sites give means over the bonds between
+/// spins. (For minimisers `probe` takes m.H instead: couplings of either sign, of a field alone.)
 struct MeasuredExchange {
   std::array<double, 3> couplings{};
   double precession = 1, damping = 0;
   bool known = false;
 
-  /// Evaluates the generator 2 + 2 axes times, on `work`; returns that number. Waits.
+  /// Evaluates the generator 2 + 2 axes times, on `work`, which gets waves where `spins` are not
+  /// zero; returns that number. Waits.
   template <class Exec, class Generator, class Spins>
   int measure(Exec const& exec, std::string const& label, Generator const& generator,
-              Spins const& work, double t) {
+              Spins const& spins, Spins const& work, double t) {
     auto const& lattice = work.lattice();
-    auto const uniform = response(exec, label, generator, work, t, {});
+    auto const uniform = response(exec, label, generator, spins, work, t, {});
     std::array<double, 3> precessing{}, damped{};
     int evaluations = 2;
     double total_precessing = 0, total_damped = 0;
@@ -67,9 +97,10 @@ struct MeasuredExchange {
       if (!lattice.has_neighbors(axis)) continue;
       auto const i = static_cast<std::size_t>(axis);
       auto const answer =
-          response(exec, label, generator, work, t, AlternatingSigns::along_axis(axis));
+          response(exec, label, generator, spins, work, t, AlternatingSigns::along_axis(axis));
       evaluations += 2;
-      double const bonds = opposed_bonds(lattice, axis);
+      double const bonds = opposed_bonds(exec, label, work)[i];
+      if (bonds == 0) continue;
       auto const coupling = [&](double from_uniform, double from_waves) {
         double const difference = from_uniform - from_waves;
         bool const is_noise = std::abs(difference) < 1e-5 * std::abs(from_uniform);
@@ -87,16 +118,27 @@ struct MeasuredExchange {
   }
 
  private:
+  template <class Exec, class Spins>
+  static std::array<double, 3> opposed_bonds(Exec const& exec, std::string const& label,
+                                             Spins const& waves) {
+    using Real = typename Spins::value_type;
+    auto counts =
+        reduce_sites<Sum, 3>(exec, label, waves.layout(), OpposedBonds<Real>{waves.array()});
+    for (double& count : counts) count *= 0.5;
+    return counts;
+  }
+
   // Half the difference between waves of either sign, which cancels what is not linear in them.
   template <class Exec, class Generator, class Spins>
   static std::array<double, 2> response(Exec const& exec, std::string const& label,
-                                        Generator const& generator, Spins const& work, double t,
+                                        Generator const& generator, Spins const& spins,
+                                        Spins const& work, double t,
                                         AlternatingSigns const& signs) {
     using Real = typename Spins::value_type;
     std::array<double, 2> sum{};
     for (Real const amplitude : {Real(1), Real(-1)}) {
       for_each_site<Real>(exec, label, work.layout(),
-                          FillWaves<Real>{signs, amplitude, work.output(false)});
+                          FillWaves<Real>{signs, amplitude, spins.array(), work.output(false)});
       auto prepared = prepare_term(generator, exec, work, t);
       auto const values = reduce_sites<Sum, 2>(
           exec, label, work.layout(),

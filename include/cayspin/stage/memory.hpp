@@ -15,7 +15,7 @@
 namespace cayspin::inline v0_1::detail {
 
 /// The work memory of a Runge-Kutta step: fields for passes, or the buffers of a sweep; and what
-/// one step leaves for the next.
+/// one step leaves for the next, which outlives a change from one to the other.
 template <class Spins, class Tableau, class Update>
 class StageMemory {
  public:
@@ -23,8 +23,14 @@ class StageMemory {
   static constexpr int stages = Tableau::stages;
   static constexpr int fields_of_passes = work_fields<Tableau, Update>();
 
+  StageMemory(std::string const& name, Lattice const& lattice) {
+    if constexpr (carried_fields<Update>() > 0)
+      for (std::size_t i = 0; i < carried_.size(); ++i)
+        carried_[i] = Carried(name + "::" + Update::carried[i], lattice);
+  }
+
   void allocate_fields(std::string const& name, Lattice const& lattice) {
-    *this = {};
+    free_work_memory();
     levels_ = numbered_fields<Spins, std::size_t{level_count}>(name + "::level", lattice);
     if constexpr (keeps_sum<Tableau, Update>) {
       sum_ = Spins(name + "::sum", lattice);
@@ -36,15 +42,13 @@ class StageMemory {
           increments_[static_cast<std::size_t>(i)] =
               Spins(name + "::increment_" + std::to_string(i + 1), lattice);
     }
-    allocate_carried(name, lattice);
     if constexpr (on_host) streaming_ = levels_[0].bytes() + bytes() > last_level_cache_bytes();
   }
 
   void allocate_buffers(std::string const& name, Lattice const& lattice, SweepPlan const& plan) {
-    *this = {};
+    free_work_memory();
     levels_[0] = Spins(name + "::next", lattice);
     buffers_ = Buffers("cayspin::" + name, plan);
-    allocate_carried(name, lattice);
     // A sweep reads its output again only one step later. By then other processes may have taken
     // most of a shared cache.
     streaming_ =
@@ -159,10 +163,13 @@ class StageMemory {
     auto carried(std::size_t i) const { return memory.carried_[i].output(false); }
   };
 
-  void allocate_carried(std::string const& name, Lattice const& lattice) {
-    if constexpr (carried_fields<Update>() > 0)
-      for (std::size_t i = 0; i < carried_.size(); ++i)
-        carried_[i] = Carried(name + "::" + Update::carried[i], lattice);
+  // All but what steps leave.
+  void free_work_memory() {
+    levels_ = {};
+    increments_ = {};
+    sum_ = {};
+    buffers_ = {};
+    streaming_ = false;
   }
 
   std::array<Spins, std::size_t{level_count}> levels_;  // the first one only, in a sweep

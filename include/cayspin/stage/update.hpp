@@ -95,7 +95,7 @@ struct Projected : Classical {
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> finish(Vec3<Value> const& f,
                                                         Vec3<Value> const& m0) {
     Vec3<Value> const m = m0 + f;
-    return Value(Value(1) / detail::square_root<Value>(dot(m, m))) * m;
+    return Value(Value(1) / detail::square_root<Value>(detail::square_to_divide_by(m))) * m;
   }
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Displacement<Value> displacement(Vec3<Value> const& f,
@@ -154,7 +154,7 @@ struct Stereographic {
                                                            Vec3<Value> const& m0) {
     Vec3<Value> const u = cross(step_times_a, m);
     Vec3<Value> const e = m + m0;
-    Value const scale = detail::quotient(Value(1), dot(e, e));
+    Value const scale = detail::quotient(Value(1), detail::square_to_divide_by(e));
     Value const along = Value(-2) * scale * dot(u, m0);
     return Value(Value(2) * scale) * multiply_add(along, e, u);
   }

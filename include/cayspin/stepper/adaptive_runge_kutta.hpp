@@ -75,9 +75,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     double const asked = t + dt;
     go_on_to(
         t, dt,
-        [&](double from) {
-          begin(exec, generator, is_running() ? memory_.end : spins, from, dt);
-        },
+        [&](double from) { begin(exec, generator, is_running() ? memory_.end : spins, from, dt); },
         [&] { take_step(exec, generator, asked); });
     deliver(exec, spins, asked);
   }

@@ -68,8 +68,7 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, now_);
     go_on_to(
-        t, dt,
-        [&](double from) { begin(exec, generator, is_running() ? now_ : spins, from, dt); },
+        t, dt, [&](double from) { begin(exec, generator, is_running() ? now_ : spins, from, dt); },
         [&] { take_step(exec, generator); });
     deliver(exec, spins, t + dt);
   }

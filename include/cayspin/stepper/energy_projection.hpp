@@ -86,6 +86,10 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
         begin_("EnergyProjection::begin", like.lattice()),
         next_("EnergyProjection::next", like.lattice()) {}
 
+  /// Evaluations of the generator so far, and of energies: a nonlocal field is evaluated for these,
+  /// too.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+
   std::size_t work_bytes() const { return stepper_.work_bytes() + 2 * begin_.bytes(); }
   static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads)
     requires requires { Stepper::work_bytes(lattice, by_time_alone, threads); }
@@ -110,6 +114,15 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
     stepper_.visit_memory(visit);
   }
 
+  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit)
+    requires requires(Stepper& inner) { inner.visit_exchanged(visit); }
+  {
+    visit(next_);
+    stepper_.visit_exchanged(visit);
+  }
+
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
   /// take arrays of `spins` again after a step. Waits.
   /// Throws std::invalid_argument when the generator is not conservative, or `spins` is not of the
@@ -129,19 +142,38 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
       throw std::invalid_argument(
           "cayspin::EnergyProjection: the generator does not conserve its energy (damping 0 does)");
     Kokkos::deep_copy(exec, begin_.allocation(), spins.allocation());
+    try {
+      step_and_project(exec, generator, spins, t, dt);
+    } catch (...) {
+      Kokkos::deep_copy(exec, spins.allocation(), begin_.allocation());
+      throw;
+    }
+  }
+
+ private:
+  template <class Exec, class Generator>
+  void step_and_project(Exec const& exec, Generator const& generator, Spins& spins, double t,
+                        double dt) {
+    if constexpr (detail::counts_evaluations<Stepper>)
+      evaluations_done_ -= stepper_.evaluations_done();
     stepper_.step(exec, generator, spins, t, dt);
+    if constexpr (detail::counts_evaluations<Stepper>)
+      evaluations_done_ += stepper_.evaluations_done();
+    else
+      evaluations_done_ += Stepper::evaluations;
 
     auto const prepared = detail::prepare_term(generator, exec, begin_, t);
     using Slope = detail::EnergyAlongCoordinates<std::remove_const_t<decltype(prepared)>, Real>;
     auto const [slope, before] = detail::reduce_sites<detail::Sum, 2>(
         exec, slope_label_, spins.layout(), Slope{prepared, begin_.array(), spins.array()});
+    ++evaluations_done_;
     if (!(slope != 0)) return;
     double epsilon = 0, projected_with = 0;
-    double excess = energy(exec, generator, spins, t).value - before;
+    double excess = energy_of(exec, generator, spins, t) - before;
     for (int i = 0; i < corrections_ && excess != 0; ++i) {
       projected_with = epsilon - 2 * excess / slope;
       project(exec, spins, projected_with);
-      double const left = energy(exec, generator, next_, t).value - before;
+      double const left = energy_of(exec, generator, next_, t) - before;
       if (!(std::abs(left) < std::abs(excess))) break;
       epsilon = projected_with;
       excess = left;
@@ -151,7 +183,12 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
     swap(spins, next_);
   }
 
- private:
+  template <class Exec, class Generator>
+  double energy_of(Exec const& exec, Generator const& generator, Spins const& spins, double t) {
+    ++evaluations_done_;
+    return energy(exec, generator, spins, t).value;
+  }
+
   template <class Exec>
   void project(Exec const& exec, Spins const& end, double epsilon) {
     detail::for_each_site<Real>(
@@ -164,6 +201,7 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   Stepper stepper_;
   int corrections_;
   Spins begin_, next_;
+  std::int64_t evaluations_done_ = 0;
 };
 
 template <class Spins, class Stepper>

@@ -10,6 +10,7 @@
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -49,15 +50,21 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
   static constexpr int ghosts = Start::ghosts;
   static constexpr int work_fields = static_cast<int>(past_fields) + 1 + Start::work_fields;
 
-  explicit FieldExtrapolation(std::string const& name, Spins const& like,
-                              FieldExtrapolationOptions const& options = {})
+  FieldExtrapolation(std::string const& name, Spins const& like)
       : Base(name, like.lattice(), ghosts),
-        options_(options),
         start_(like),
         next_(name + "::next", like.lattice()),
         past_(name + "::neighbor_field", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>((past_fields + 2) * like.bytes())) {
     if constexpr (Estimates) angles_ = Angles(name + "::error", like.lattice());
+  }
+  FieldExtrapolation(std::string const& name, Spins const& like,
+                     FieldExtrapolationOptions const& options)
+      : FieldExtrapolation(name, like) {
+    static_assert(Estimates,
+                  "FieldExtrapolationOptions are those of a method that estimates its errors: "
+                  "FieldExtrapolation3<Spins, true>(spins, options).");
+    options_ = options;
   }
 
   std::size_t work_bytes() const {
@@ -72,7 +79,8 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
 
   /// The result of cayspin::largest_stable_step, if the field of the other spins is exchange
   /// between neighbours. If the whole field is extrapolated, the limit is 0.5 to 0.75 of it.
-  static double largest_stable_step(double field_bound, double damping, bool precession) {
+  static double largest_stable_step(double field_bound, double damping,
+                                    std::same_as<bool> auto precession) {
     detail::check_bound(field_bound, damping);
     return detail::largest_stable_extrapolation<Order>(field_bound, damping, precession);
   }
@@ -97,6 +105,13 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
       visit("largest_of_late", largest_of_late_);
       if (has_error_) visit("error", angles_);
     }
+  }
+
+  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(next_);
+    start_.visit_exchanged(visit);
   }
 
   /// The largest error estimated for the step before the last one, as an angle in radians; NaN
@@ -247,7 +262,9 @@ class FieldExtrapolation : public detail::StepperBase<Spins> {
 template <class Spins, bool Estimates = false>
 class FieldExtrapolation3 : public FieldExtrapolation<Spins, 3, Estimates> {
  public:
-  explicit FieldExtrapolation3(Spins const& like, FieldExtrapolationOptions const& options = {})
+  explicit FieldExtrapolation3(Spins const& like)
+      : FieldExtrapolation3::FieldExtrapolation("FieldExtrapolation3", like) {}
+  FieldExtrapolation3(Spins const& like, FieldExtrapolationOptions const& options)
       : FieldExtrapolation3::FieldExtrapolation("FieldExtrapolation3", like, options) {}
 };
 
@@ -255,7 +272,9 @@ class FieldExtrapolation3 : public FieldExtrapolation<Spins, 3, Estimates> {
 template <class Spins, bool Estimates = false>
 class FieldExtrapolation4 : public FieldExtrapolation<Spins, 4, Estimates> {
  public:
-  explicit FieldExtrapolation4(Spins const& like, FieldExtrapolationOptions const& options = {})
+  explicit FieldExtrapolation4(Spins const& like)
+      : FieldExtrapolation4::FieldExtrapolation("FieldExtrapolation4", like) {}
+  FieldExtrapolation4(Spins const& like, FieldExtrapolationOptions const& options)
       : FieldExtrapolation4::FieldExtrapolation("FieldExtrapolation4", like, options) {}
 };
 

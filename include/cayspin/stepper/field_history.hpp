@@ -59,7 +59,7 @@ class FieldHistory {
   /// For cayspin::exchange_memory.
   template <class Visit>
   void visit_memory(Visit const& visit) {
-    visit("known", known_);
+    visit.count("known", known_, Count);
     for (std::size_t back = 0; back < known_; ++back) {
       visit("step_" + std::to_string(back), steps_[back]);
       visit("field_" + std::to_string(back), (*this)[back]);

@@ -70,7 +70,7 @@ struct GaussLegendre<2> {
     stage[0] = w + turned_by(s, u, w);
     Vec3<Value> const change = Value(2) * (cross(u, stage[0]) + p2);
     // Round-off changes the length by |f| epsilon, which this takes back.
-    Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / dot(m, m);
+    Value const longer = dot(change, multiply_add(Value(0.5), change, m)) / square_to_divide_by(m);
     return m + multiply_add(Value(-longer), m + change, change);
   }
 

@@ -127,6 +127,13 @@ class Implicit : public StepperBase<Spins> {
     swap(spins, next_);
   }
 
+  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(level_);
+    visit(next_);
+  }
+
  private:
   // Leaves the solution in next_.
   template <class Exec, class Map>

@@ -36,7 +36,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
 
   /// Allocates work memory for fields shaped like `like`. `name` labels kernels and memory.
   explicit RungeKutta(std::string const& name, Spins const& like, Isotropy isotropy = {})
-      : Base(name, like, isotropy) {}
+      : Base(name, like, isotropy, {name, like.lattice()}) {}
 
   /// Advances `spins` from t to t + dt under `generator`. A step may exchange the memory of
   /// `spins` with its own, so take arrays of `spins` again after it.
@@ -72,6 +72,12 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     requires(detail::carried_fields<Update>() > 0)
   {
     memory_.visit_carried(visit);
+  }
+
+  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(memory_.end());
   }
 
   /// Can `batch` take these steps? Few spins on a host space, under a generator that is the same at

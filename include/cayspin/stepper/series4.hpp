@@ -14,6 +14,8 @@
 
 #include <array>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 namespace cayspin::inline v0_1 {
@@ -176,16 +178,17 @@ class Series4 : public detail::StepperBase<Spins> {
 
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
   /// take arrays of `spins` again after a step.
-  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
+  /// Throws std::invalid_argument when `spins` is not of the lattice given at construction, and for
+  /// a field that is not affine in the spins.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     static_assert(!detail::depends_on_time<Generator>, "Series4 refuses fields that depend on t.");
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, next_);
-    auto const prepared = detail::prepare_term(generator, exec, spins, t);
-    if constexpr (detail::is_local<std::remove_const_t<decltype(prepared)>>) {
-      using Kernel =
-          detail::LocalSeriesStage<Series, Isotropy, std::remove_const_t<decltype(prepared)>, Real>;
+    using Prepared = decltype(detail::prepare_term(generator, exec, spins, t));
+    if constexpr (detail::is_local<Prepared>) {
+      auto const prepared = detail::prepare_term(generator, exec, spins, t);
+      using Kernel = detail::LocalSeriesStage<Series, Isotropy, Prepared, Real>;
       detail::for_each_site<Real>(
           exec, step_label_, spins.layout(),
           Kernel{prepared, spins.array(), next_.output(false), static_cast<Real>(dt)});
@@ -193,11 +196,20 @@ class Series4 : public detail::StepperBase<Spins> {
       static_assert(std::is_same_v<Isotropy, isotropy::Zero>,
                     "isotropy::Energy knows rigid bodies alone; for other generators there is "
                     "EnergyProjection.");
+      if (!detail::has_affine_field(generator))
+        throw std::invalid_argument(this->label(
+            "::step: the field is not affine in the spins, as with biquadratic couplings"));
       allocate(spins.lattice());
       stage<0>(exec, generator, spins, t, dt);
     }
     swap(spins, next_);
     detail::update_ghosts(exec, this->lattice_, spins);
+  }
+
+  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(next_);
   }
 
  private:

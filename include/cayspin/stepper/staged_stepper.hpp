@@ -27,8 +27,8 @@ class StagedStepper : public StepperBase<Spins> {
   /// Fields of three numbers per site beside the spins, when stages go one by one.
   static constexpr int work_fields = Memory::fields_of_passes;
 
-  /// Takes this path from now on instead of the automatic choice, and allocates its memory.
-  /// A compensated method forgets its residual, as after `reset`.
+  /// Takes this path from now on instead of the automatic choice, and allocates its memory. What
+  /// a step leaves for the next one stays.
   /// Throws std::invalid_argument when the fields cannot be swept.
   void use(Path path) {
     if (path == Path::sweep) Sweeps::require(plan_.layout, this->label("::use"));
@@ -55,7 +55,7 @@ class StagedStepper : public StepperBase<Spins> {
   using Sweeps = SweepChoice<Spins, Tableau, Update, work_fields>;
   static constexpr int stages = Tableau::stages;
 
-  StagedStepper(std::string const& name, Spins const& like, Isotropy isotropy, Memory memory = {})
+  StagedStepper(std::string const& name, Spins const& like, Isotropy isotropy, Memory memory)
       : StepperBase<Spins>(name, like.lattice(), ghosts),
         isotropy_(isotropy),
         memory_(std::move(memory)),

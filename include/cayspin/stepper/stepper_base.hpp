@@ -30,6 +30,17 @@ class StepperBase {
   using spins_type = Spins;
   using Real = typename Spins::value_type;
 
+  // Copies would share what a stepper remembers in fields, and not what it remembers in numbers.
+  StepperBase(StepperBase const&) = delete;
+  StepperBase& operator=(StepperBase const&) = delete;
+  StepperBase(StepperBase&&) = default;
+  StepperBase& operator=(StepperBase&&) = default;
+
+  /// For cayspin::integrate: no step exchanges the memory of the spins, unless a stepper has a
+  /// visit_exchanged of its own.
+  template <class Visit>
+  void visit_exchanged(Visit const&) {}
+
   /// Throws std::invalid_argument when `spins` is not of the lattice given at construction.
   void check_spins(Spins const& spins, char const* call = "") const {
     if (!(spins.lattice() == lattice_))
@@ -73,6 +84,8 @@ class StepperBase {
   void require_steps(std::int64_t count) const {
     if (count < 1) throw std::invalid_argument(label("::batch: the number of steps is below 1"));
   }
+
+  ~StepperBase() = default;
 
   Lattice lattice_;
 

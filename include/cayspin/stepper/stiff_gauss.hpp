@@ -76,8 +76,16 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if (exchange_.known) make_solver();
   }
 
+  /// For cayspin::integrate: the fields whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(start_);
+    visit(end_);
+  }
+
   /// Advances `spins` from t to t + dt under `generator`; exchanges their memory with its own, so
   /// take arrays of `spins` again after a step. Waits.
+  /// What a field throws leaves the spins as before.
   /// Throws NotConverged, with `spins` as before, when halved steps have no solution either, and
   /// std::invalid_argument when `spins` is not of the lattice given at construction.
   template <class Exec, class Generator>
@@ -87,8 +95,15 @@ class StiffGauss : public detail::StepperBase<Spins> {
     if (dt != last_dt_) history_.forget();
     last_dt_ = dt;
     moved_ = false;
-    if (!advance(exec, generator, spins, t, dt, &history_, solving_.halvings)) {
-      if (moved_) swap(spins, start_);
+    bool solved = false;
+    try {
+      solved = advance(exec, generator, spins, t, dt, &history_, solving_.halvings);
+    } catch (...) {
+      give_back(spins);
+      throw;
+    }
+    if (!solved) {
+      give_back(spins);
       throw NotConverged(this->label("::step: the equation of the step from t = ") +
                          detail::to_text(t) + " is not solved: dt = " + detail::to_text(dt) +
                          " is too large");
@@ -122,12 +137,19 @@ class StiffGauss : public detail::StepperBase<Spins> {
     for (auto const* own : {&x_, &stage_})
       for (Spins const& field : *own) this->require_other_memory(spins, field);
     if (exchange_.known) return;
-    evaluations_done_ += exchange_.measure(exec, measure_label_, generator, stage_[0], t);
+    evaluations_done_ += exchange_.measure(exec, measure_label_, generator, spins, stage_[0], t);
     make_solver();
     contraction_ = 1;
   }
 
   void make_solver() { solver_ = Solver(name, this->lattice_, exchange_.couplings); }
+
+  /// After a step that has failed: the spins before it.
+  void give_back(Spins& spins) {
+    if (moved_) swap(spins, start_);
+    moved_ = false;
+    history_.forget();
+  }
 
   /// One step, or two of half the length where it is not solved.
   template <class Exec, class Generator>

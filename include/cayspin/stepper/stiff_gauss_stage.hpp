@@ -41,8 +41,17 @@ struct GuessStage {
   }
 };
 
+/// v across the spin m; zero on a vacant site, where m is zero.
+template <class Value>
+KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> across_spin(Vec3<Value> const& v, Vec3<Value> const& m) {
+  Value const square = dot(m, m);
+  auto const vacant = square == Value(0);
+  Value const divisor = select<Value>(vacant, Value(1), square);
+  return select<Value>(vacant, zero<Value>(), multiply_add(Value(-dot(v, m) / divisor), m, v));
+}
+
 /// The residual A(Y) - x across the spin Y at a stage. What is along it has no effect, since x acts
-/// as x x Y, and is taken from x.
+/// as x x Y, and is taken from x. Zero on a vacant site.
 template <class Generator, class Real>
 struct ResidualStage {
   Generator generator;
@@ -56,10 +65,13 @@ struct ResidualStage {
     Stencil<Site, Real> const stencil(site, stage);
     Vec3<Value> const m = stencil.center(), before = site.load(x);
     Vec3<Value> const a = evaluate(generator, stencil);
-    Value const scale = Value(-1) / dot(m, m);
+    Value const square = dot(m, m);
+    auto const vacant = square == Value(0);
+    Value const scale = Value(-1) / select<Value>(vacant, Value(1), square);
     Vec3<Value> const across = multiply_add(Value(scale * dot(before, m)), m, before);
+    Vec3<Value> const rest = Value(share) * (multiply_add(Value(scale * dot(a, m)), m, a) - across);
     site.store(across, next_x);
-    site.store(Value(share) * (multiply_add(Value(scale * dot(a, m)), m, a) - across), residual);
+    site.store(select<Value>(vacant, zero<Value>(), rest), residual);
   }
 };
 
@@ -80,7 +92,7 @@ struct CorrectStage {
     Value largest(0);
     for (int s = 0; s < Stages; ++s) {
       Vec3<Value> const at = site.load(stage[s]);
-      Vec3<Value> const change = multiply_add(Value(-dot(v[s], at) / dot(at, at)), at, v[s]);
+      Vec3<Value> const change = across_spin(v[s], at);
       Vec3<Value> const next = site.load(x[s]) + change;
       store_narrowed(next, site, x[s]);
       f[s] = as_value<Value>(dt) * next;
@@ -149,8 +161,7 @@ struct SecondDifference {
   KOKKOS_FORCEINLINE_FUNCTION void store(Site const& site, Vec3<Value> sum, int count) const {
     for (int i = 0; i < count; ++i)
       sum = multiply_add(as_value<Value>(weights[i]), Vec3<Value>(site.load(values[i])), sum);
-    Vec3<Value> const m = site.load(stage);
-    site.store(multiply_add(Value(-dot(sum, m) / dot(m, m)), m, sum), difference);
+    site.store(across_spin(sum, Vec3<Value>(site.load(stage))), difference);
   }
 };
 
@@ -165,8 +176,7 @@ struct SecondDifferenceWithEnd {
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;
     Stencil<Site, Real> const stencil(site, end);
-    Vec3<Value> const m = stencil.center(), a = evaluate(generator, stencil);
-    Vec3<Value> const across = multiply_add(Value(-dot(a, m) / dot(m, m)), m, a);
+    Vec3<Value> const across = across_spin(evaluate(generator, stencil), stencil.center());
     of_two.store(site, as_value<Value>(of_two.weights[2]) * across, 2);
   }
 };
@@ -202,8 +212,8 @@ struct LargestSolution {
       return Vec3<Value>{site.load(solution, c), site.load(solution, c + 1),
                          site.load(solution, c + 2)};
     };
-    Vec3<Value> const v = part(0) + cross(Vec3<Value>(site.load(stage)), part(3));
-    values[0] = dot(v, v);
+    Vec3<Value> const m = site.load(stage), v = part(0) + cross(m, part(3));
+    values[0] = select<Value>(dot(m, m) == Value(0), Value(0), dot(v, v));
   }
 };
 

@@ -71,7 +71,7 @@ class StiffHistory {
   }
   template <class Visit>
   void visit_memory(Visit const& visit) {
-    visit("known", known_);
+    visit.count("known", known_, fields);
     visit("usual", usual_);
     for (int i = 0; i < known_; ++i)
       visit("earlier_" + std::to_string(i), earlier_[static_cast<std::size_t>(i)]);

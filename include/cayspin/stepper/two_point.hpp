@@ -168,6 +168,9 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_(name + "::kept_generator", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes())) {}
 
+  /// Evaluations of the generator so far: in the first step of a method that remembers steps two.
+  std::int64_t evaluations_done() const { return evaluations_done_; }
+
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
   /// Advances `spins` from t to t + dt under `generator`. A method that remembers the step before
@@ -210,6 +213,12 @@ class TwoPoint : public detail::StepperBase<Spins> {
     if (last_dt_ != 0) visit("kept_generator", kept_);
   }
 
+  /// For cayspin::integrate: the field whose memory a step may exchange for that of the spins.
+  template <class Visit>
+  void visit_exchanged(Visit const& visit) {
+    visit(next_);
+  }
+
   /// Takes `spins` as the state at t, one step of dt before the next one.
   template <class Exec, class Generator>
   void remember(Exec const& exec, Generator const& generator, Spins const& spins, double t,
@@ -239,6 +248,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_.output(streaming_ && !Rule::reads),
         next.output(streaming_ && next.allocation().data() != start.allocation().data()),
         static_cast<Real>(dt)};
+    ++evaluations_done_;
     auto const& layout = start.layout();
     bool const predicts = !Rule::reads;
     detail::for_each_site<Real>(exec, label, layout, kernel, layout.own_and(predicts ? 1 : 0));
@@ -251,6 +261,7 @@ class TwoPoint : public detail::StepperBase<Spins> {
   Spins next_, kept_;
   bool streaming_;  // stores of what is only written go around the caches
   double last_dt_ = 0;
+  std::int64_t evaluations_done_ = 0;
 };
 
 /// The two-step method of Adams and Bashforth, order 2 with one evaluation:

@@ -6,6 +6,7 @@
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/plan.hpp"
 
+#include <cayspin/io/notes.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>
@@ -76,7 +77,9 @@ Grid make_grid(SweepOptions const& options) {
     auto overrides = options.overrides;
     std::ranges::copy(header.overrides(run), std::back_inserter(overrides));
     try {
-      auto const scene = io::read_scene(options.scene, overrides);
+      auto scene = io::read_scene(options.scene, overrides);
+      if (checked + io::sites(scene) <= most_checked)
+        scene = io::with_shape_of_start(std::move(scene));
       io::check_files(scene);
       if (scene.output.sync)
         throw io::scene_error(scene, "output.sync",

@@ -105,8 +105,9 @@ class Search {
       if (i == all_finer) return;
       coarsest = finer(candidate, coarsest);
     }
-    auto const& variant = find_variant(with(pilot_.scene(), candidate, horizon_.time, 1, coarsest));
-    double const order = candidate.substeps > 0 ? order_around_dear(variant) : variant.order;
+    auto const scene = with(pilot_.scene(), candidate, horizon_.time, 1, coarsest);
+    auto const& variant = find_variant(scene);
+    double const order = candidate.substeps > 0 ? order_around_dear(scene, variant) : variant.order;
     bool const adaptive = candidate.method->adaptive;
     // An adaptive method's error is not far from its tolerance, and its cost depends little on it.
     auto first = coarsest;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
-#include <cayspin/mpi/detail/faces.hpp>
 #include <cayspin/mpi/detail/messages_in_place.hpp>
 #include <cayspin/mpi/detail/wait_for.hpp>
 #include <cayspin/part.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/mpi/detail/faces.hpp>
+#include <cayspin/detail/execution.hpp>
 #include <cayspin/mpi/detail/wait_for.hpp>
 #include <cayspin/part.hpp>
 
@@ -17,6 +17,19 @@
 #include <vector>
 
 namespace cayspin::inline v0_1::mpi::detail {
+
+/// Sites from `begin` to before `end`.
+struct Box {
+  std::array<std::int64_t, 3> begin, end;
+
+  KOKKOS_FUNCTION std::int64_t extent(std::size_t axis) const { return end[axis] - begin[axis]; }
+  std::int64_t rows() const { return extent(1) * extent(2); }
+};
+
+/// What goes to the neighbour before and to the one after, and where what comes from them goes.
+struct Faces {
+  std::array<Box, 2> sent, received;
+};
 
 /// A box of a field in host memory, as it lies there: the same number of bytes again and again.
 struct BytesInPlace {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/for_each_site.hpp>
+
+namespace cayspin::inline v0_1::detail {
+
+/// Exchanges the numbers of two fields.
+template <class Array, class Output>
+struct ExchangeNumbers {
+  Array a, b;
+  Output to_a, to_b;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    auto const of_a = site.load(a), of_b = site.load(b);
+    site.store(of_b, to_a);
+    site.store(of_a, to_b);
+  }
+};
+
+/// Steps exchange the memory of the spins with that of `worker`, a stepper for example. When this
+/// ends, by an exception too, the spins are again in the memory that they had at first, in which
+/// copies of the field and arrays taken from it see them; the worker keeps what it remembers in the
+/// other one. Costs one pass if the memory has changed. Waits.
+///
+/// `worker.visit_exchanged(visit)` calls visit(field) for the fields that may be exchanged.
+template <class Exec, class Worker, class Spins>
+class CallersMemory {
+ public:
+  CallersMemory(Exec const& exec, Worker& worker, Spins& spins)
+      : exec_(exec), worker_(worker), spins_(spins), callers_(spins) {}
+  CallersMemory(CallersMemory const&) = delete;
+  CallersMemory& operator=(CallersMemory const&) = delete;
+
+  ~CallersMemory() {
+    if (is_same(spins_, callers_)) return;
+    worker_.visit_exchanged([this](Spins& field) {
+      if (is_same(field, callers_)) field = spins_;
+    });
+    for_each_site<typename Spins::value_type>(
+        exec_, "cayspin::callers_memory", spins_.layout(),
+        ExchangeNumbers<typename Spins::array_type, decltype(spins_.output(false))>{
+            spins_.array(), callers_.array(), spins_.output(false), callers_.output(false)});
+    exec_.fence("cayspin::callers_memory");
+    spins_ = callers_;
+  }
+
+ private:
+  static bool is_same(Spins const& a, Spins const& b) {
+    return a.allocation().data() == b.allocation().data();
+  }
+
+  Exec const& exec_;
+  Worker& worker_;
+  Spins& spins_;
+  Spins callers_;
+};
+
+}  // namespace cayspin::inline v0_1::detail

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+// Weights by which values of an expensive field give it at a time x within a step, 0 <= x <= 1.
+namespace cayspin::inline v0_1::detail {
+
+inline constexpr std::size_t most_multirate_values = 5;
+using MultirateWeights = std::array<double, most_multirate_values>;
+
+/// Those of the polynomial through the values at `nodes`.
+inline MultirateWeights interpolating_weights(double x, std::span<double const> nodes) {
+  MultirateWeights weights{};
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    weights[i] = 1;
+    for (std::size_t j = 0; j < nodes.size(); ++j)
+      if (j != i) weights[i] *= (x - nodes[j]) / (nodes[i] - nodes[j]);
+  }
+  return weights;
+}
+
+/// A polynomial of degree 2 in x, by its mean over the step: the mean fixes the order of a method,
+/// the shape its stability.
+inline double with_mean(double mean, double slope, double curvature, double x) {
+  return mean + slope * (x - 0.5) + curvature * (x * x - x + 1.0 / 6);
+}
+
+// The polynomials of Multirate of order 4. A mode that turns by half a turn a step is seen as one
+// that alternates, and its image turns the other way: the polynomial of degree 3 through the last
+// values amplifies both. These keep the conditions of order 4, which are interpolation by degree 1
+// or 2 and one mean. The other 10 numbers come from a search over linear modes m' = (i - damping)
+// (w + D) m with D elliptical: none grows up to the longest step, and linewidths change least.
+
+/// Predicts: values at 0, -1, -2, -3.
+inline MultirateWeights damping_predictor(double x, std::span<double const> /*nodes*/) {
+  double const second = with_mean(5.0 / 12, -6.58, -0.91, x);
+  double const third = with_mean(-0.23, 4.19, 1.32, x);
+  return {1 + x + second + third, -x - 2 * second - 3 * third, second + 3 * third, -third, 0};
+}
+
+/// Corrects: values at 1, 0, -1, -2, -3.
+inline MultirateWeights damping_corrector(double x, std::span<double const> /*nodes*/) {
+  double const third = with_mean(-1.0 / 24, 0.77, -4.61, x);
+  double const fourth = with_mean(0.06, -0.41, 1.8, x);
+  return {0.5 * x * (x + 1) + third + fourth, 1 - x * x - 3 * third - 4 * fourth,
+          0.5 * x * (x - 1) + 3 * third + 6 * fourth, -third - 4 * fourth, fourth};
+}
+
+}  // namespace cayspin::inline v0_1::detail

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <cayspin/demagnetization/images.hpp>
+#include <cayspin/io/notes.hpp>
+#include <cayspin/io/ovf.hpp>
+#include <cayspin/shells.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+using Cells = std::array<std::int64_t, 3>;
+
+// Sites are counted up to here: beyond, that takes too long.
+constexpr std::int64_t most_sites_counted = 10'000'000;
+
+class Notes {
+ public:
+  explicit Notes(Scene const& scene) : scene_(scene), cells_(scene.lattice.shape) {
+    cells_[2] /= static_cast<std::int64_t>(scene.lattice.basis.size());
+  }
+
+  std::vector<std::string> operator()() {
+    of_motion();
+    of_neighbours();
+    of_images();
+    of_couplings();
+    if (sites(scene_) <= most_sites_counted) of_sites();
+    of_mesh();
+    return std::move(lines_);
+  }
+
+ private:
+  void add(std::string_view key, std::string_view message) {
+    lines_.emplace_back(scene_error(scene_, key, message).what());
+  }
+
+  bool has_neighbours(std::size_t axis) const { return cells_[axis] > 1; }
+  bool is_periodic(std::size_t axis) const {
+    return scene_.lattice.boundary[axis] == BoundaryKind::periodic;
+  }
+  /// True where some axis with neighbours has what is asked for.
+  bool any_axis(auto const& wanted) const {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (has_neighbours(axis) && wanted(axis)) return true;
+    return false;
+  }
+
+  void of_motion() {
+    auto const& [system, field] = std::tie(scene_.system, scene_.field);
+    if (!system.precession && system.damping == 0 && !system.dampings.there() && !has_torque(field))
+      add("system.precession", "false with damping = 0: no spin moves");
+    if (field.mu0 != 1 && !field.applied && field.applied_in_turn.empty() && !field.slab_demag &&
+        !field.demag)
+      add("field.mu0", "acts nowhere: there is neither applied, slab_demag nor demag");
+  }
+
+  void of_neighbours() {
+    auto const& field = scene_.field;
+    bool const si = scene_.units.si;
+    auto const any = [](std::size_t) { return true; };
+    constexpr std::string_view alone = "acts nowhere: no cell has a neighbour";
+    if (field.exchange && field.exchange->constant != 0 && !any_axis(any))
+      add(!si ? "field.exchange" : scene_.material->atomistic ? "material.J" : "material.A", alone);
+    if (field.bulk_dmi && field.bulk_dmi->constant != 0 && !any_axis(any))
+      add(si ? "material.D_bulk" : "field.dmi", alone);
+    if (field.dmi && field.dmi->interfacial != 0) {
+      auto const across = [&](std::size_t axis) {
+        return std::abs(field.dmi->normal[axis]) < 1 - 1e-12;
+      };
+      if (!any_axis(across))
+        add(si ? "material.D" : "field.dmi",
+            any_axis(any) ? "acts nowhere: cells have neighbours only along the normal" : alone);
+    }
+    if (auto const& current = field.torque.zhang_li) {
+      auto const flows = [&](std::size_t axis) {
+        auto const* const number = std::get_if<double>(&current->velocity[axis]);
+        return number == nullptr || *number != 0;
+      };
+      if (!any_axis(flows))
+        add("torque.zhang_li", "acts nowhere: no cell has a neighbour along the current");
+    }
+  }
+
+  void of_images() {
+    constexpr std::string_view key = "field.demag.periodic_images";
+    if (!scene_.field.demag || !scene_.places.contains(key)) return;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!has_neighbours(axis)) continue;
+      auto const images = scene_.field.demag->periodic_images[axis];
+      if (images > 0 && !is_periodic(axis))
+        add(key,
+            fmt::format("images along {}, where lattice.boundary is open: only demag sees them",
+                        "xyz"[axis]));
+      if (images == 0 && is_periodic(axis))
+        add(key, fmt::format("no images along {}, where lattice.boundary is periodic: demag sees "
+                             "ends there",
+                             "xyz"[axis]));
+    }
+  }
+
+  bool leaves(Coupling const& coupling) const {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (!is_periodic(axis) && std::abs(coupling.offset[axis]) >= cells_[axis]) return true;
+    return false;
+  }
+  bool comes_back(Coupling const& coupling) const {
+    if (coupling.between[0] != coupling.between[1]) return false;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (coupling.offset[axis] % cells_[axis] != 0) return false;
+    return true;
+  }
+
+  double length(Coupling const& coupling) const {
+    auto const made = crystal(scene_.lattice);
+    auto const [i, j, k] = coupling.offset;
+    auto const here = made.position({0, 0, 0}, static_cast<std::size_t>(coupling.between[0])),
+               there = made.position({i, j, k}, static_cast<std::size_t>(coupling.between[1]));
+    double square = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      square += std::pow((there[axis] - here[axis]) * scene_.lattice.spacing[axis], 2);
+    return std::sqrt(square);
+  }
+
+  void of_couplings() {
+    auto const bonds = couplings(scene_);
+    if (bonds.empty()) return;
+    if (!scene_.field.couplings_file.empty()) {
+      if (std::ranges::all_of(bonds, [&](auto const& bond) { return leaves(bond); }))
+        add("field.couplings.file", "acts nowhere: no bond of it fits into the lattice");
+      return;
+    }
+    if (scene_.places.contains("field.couplings.shells")) return of_shells(bonds);
+    for (std::size_t i = 0; i < bonds.size(); ++i)
+      if (comes_back(bonds[i]))
+        add(fmt::format("field.couplings[{}]", i),
+            "couples each site to itself, once around the periodic lattice");
+  }
+
+  void of_shells(std::vector<Coupling> const& bonds) {
+    int shell = 0;
+    for (std::size_t first = 0, next; first < bonds.size(); first = next, ++shell) {
+      double const shortest = length(bonds[first]);
+      bool fits = false;
+      for (next = first;
+           next < bonds.size() && length(bonds[next]) <= shortest * (1 + same_distance); ++next)
+        fits = fits || !(leaves(bonds[next]) || comes_back(bonds[next]));
+      if (!fits)
+        add("field.couplings.shells",
+            fmt::format("entry {}, for pairs {:.6g} apart, acts nowhere: no such pair fits into "
+                        "the lattice",
+                        shell, shortest * scene_.units.length));
+    }
+  }
+
+  void of_sites() {
+    auto const& lattice = scene_.lattice;
+    auto const count = lattice.basis.size();
+    bool const asks = lattice.occupied.there() || lattice.frozen.there();
+    if (!asks) return;
+    std::vector<std::int64_t> spins(count), moving(count);
+    auto const& [nx, ny, nz] = lattice.shape;
+    for (std::int64_t plane = 0; plane < nz; ++plane) {
+      SiteBox const box{{0, 0, plane}, {nx, ny, 1}};
+      auto const there = occupied(scene_, box), held = frozen(scene_, box);
+      auto const kind = static_cast<std::size_t>(plane) % count;
+      for (std::size_t site = 0; site < static_cast<std::size_t>(nx * ny); ++site) {
+        bool const has_spin = there.empty() || there[site];
+        spins[kind] += has_spin;
+        moving[kind] += has_spin && (held.empty() || !held[site]);
+      }
+    }
+    of_counts(spins, moving);
+  }
+
+  void of_counts(std::vector<std::int64_t> const& spins, std::vector<std::int64_t> const& moving) {
+    auto const& lattice = scene_.lattice;
+    auto const total = [](auto const& of) {
+      std::int64_t sum = 0;
+      for (auto const each : of) sum += each;
+      return sum;
+    };
+    auto const all = sites(scene_), there = total(spins), free = total(moving);
+    if (lattice.occupied.there()) {
+      if (is_shape_of_start())
+        add("initial.file",
+            fmt::format("zero vectors are sites without a spin, {} of {}", all - there, all));
+      else if (there == all)
+        add("lattice.occupied", "is 0 nowhere: every site has a spin");
+    }
+    if (lattice.frozen.there() && free == there)
+      add("lattice.frozen", "holds no spin");
+    else if (lattice.frozen.there() && free == 0)
+      add("lattice.frozen", "holds every spin: nothing moves");
+    auto const is_empty = [&](int site) {
+      return site >= 0 && spins[static_cast<std::size_t>(site)] == 0;
+    };
+    constexpr std::string_view nowhere = "acts nowhere: no cell has a spin on site {}";
+    for (auto const* const list : {&scene_.field.anisotropies})
+      for (auto const& term : *list)
+        if (is_empty(term.site))
+          add("field.anisotropy", fmt::format(fmt::runtime(nowhere), term.site));
+    for (auto const& term : scene_.field.cubic_anisotropies)
+      if (is_empty(term.site))
+        add("field.anisotropy", fmt::format(fmt::runtime(nowhere), term.site));
+    if (!scene_.places.contains("field.couplings.shells"))
+      for (std::size_t i = 0; i < scene_.field.couplings.size(); ++i)
+        for (int const site : scene_.field.couplings[i].between)
+          if (is_empty(site)) {
+            add(fmt::format("field.couplings[{}]", i), fmt::format(fmt::runtime(nowhere), site));
+            break;
+          }
+  }
+
+  bool is_shape_of_start() const {
+    auto const* const start = std::get_if<FileStart>(&scene_.initial);
+    return start != nullptr && scene_.lattice.occupied.file == start->path;
+  }
+
+  // Spins are taken by their indices, whatever the sizes of cells in the file.
+  void of_mesh() {
+    auto const* const start = std::get_if<FileStart>(&scene_.initial);
+    if (start == nullptr || !scene_.units.si || !is_ovf(start->path)) return;
+    auto const mesh =
+        detail::for_key(scene_, "initial.file", [&] { return read_ovf_mesh(start->path); });
+    if (mesh.unit != "m") return;
+    std::array<double, 3> edges{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      edges[axis] = scene_.lattice.spacing[axis] * scene_.units.length;
+    auto const differs = [&](std::size_t axis) {
+      return std::abs(mesh.step[axis] - edges[axis]) > 1e-4 * edges[axis];
+    };
+    if (any_axis(differs))
+      add("initial.file", fmt::format("its cells are {:.6g} m, and lattice.spacing is {:.6g} m",
+                                      fmt::join(mesh.step, " x "), fmt::join(edges, " x ")));
+  }
+
+  Scene const& scene_;
+  Cells cells_;
+  std::vector<std::string> lines_;
+};
+
+}  // namespace
+
+std::vector<std::string> notes(Scene const& scene) {
+  if (scene.system.kind != SystemKind::llg) return {};
+  return Notes(scene)();
+}
+
+}  // namespace cayspin::inline v0_1::io

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// integrator.until_torque ends a run at a minimum of the energy: at a maximum or a saddle the
+// torque is small, too.
+#include "program_test.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+namespace cayspin::program::test {
+namespace {
+
+class Rests : public ProgramTest {
+ protected:
+  /// A scene that has to come to rest with all spins along +z or -z.
+  struct Trial {
+    std::string scene;
+    Arguments more = {};
+    double end_z = 1;  // 0: either
+  };
+
+  /// The run has to end before its end, at a minimum.
+  void expect_minimum(Trial const& trial) const {
+    auto const info = run(trial.scene, joined(trial.more, {"--overwrite"}));
+    auto const m = last_spins("out.h5");
+    for (std::size_t i = 2; i < m.size(); i += 3) {
+      double const z = trial.end_z == 0 ? std::abs(m[i]) : trial.end_z * m[i];
+      ASSERT_GT(z, 0.999) << trial.scene << testing::PrintToString(trial.more);
+    }
+    EXPECT_LT(info.frame_steps.back(), 100000) << trial.scene;
+  }
+
+  static std::string scene(std::string const& lattice_and_field, std::string const& start,
+                           double damping = 0.1, std::string const& method = "rkmk4",
+                           double dt = 0.1) {
+    char text[1000];
+    std::snprintf(text, sizeof text,
+                  "[system]\nkind = \"llg\"\ndamping = %g\n%s\n[initial]\n%s\n[integrator]\nmethod "
+                  "= \"%s\"\n%s\nuntil_torque = 1e-6\n[output]\nevery = 1000000\n",
+                  damping, lattice_and_field.c_str(), start.c_str(), method.c_str(),
+                  method == "tsit5" ? "tolerance = 1e-7\ndt = 1\nsteps = 10000"
+                                    : ("dt = " + std::to_string(dt) + "\nsteps = 100000").c_str());
+    return text;
+  }
+
+  /// Spins along z up to an angle in a direction of their own each.
+  static std::string near_pole(double angle, unsigned seed, char const* pole = "-1") {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> phase(0, 6.28);
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "expression = [\"%.3g*cos(%.3f+2.1*i+1.3*j)\", \"%.3g*sin(%.3f+2.1*i+1.3*j)\", "
+                  "\"%s\"]",
+                  angle, phase(engine), angle, phase(engine), pole);
+    return text;
+  }
+
+  static constexpr auto one_spin = "[lattice]\nshape = [1]\n[field]\napplied = [0, 0, 1]";
+  static constexpr auto pair =
+      "[lattice]\nshape = [2]\n[field]\nexchange = 0.3\napplied = [0, 0, 1]";
+  static constexpr auto film =
+      "[lattice]\nshape = [5, 4]\n[field]\nexchange = 0.5\nanisotropy = { constant = 0.5, axis = "
+      "[0, 0, 1] }\napplied = [0, 0, 0.8]";
+  // One spin at the top, one on its way down.
+  static constexpr auto apart = "[lattice]\nshape = [2]\n[field]\napplied = [0, 0, 1]";
+};
+
+TEST_F(Rests, AreNotMaxima) {
+  expect_minimum({scene(one_spin, "uniform = [1e-9, 0, -1]")});
+  for (double const angle : {1e-12, 1e-7, 1e-3}) {
+    unsigned seed = static_cast<unsigned>(-std::log10(angle));
+    expect_minimum({scene(one_spin, near_pole(angle, seed))});
+    expect_minimum({scene(pair, near_pole(angle, seed + 1))});
+    expect_minimum({scene(film, near_pole(angle, seed + 2))});
+    expect_minimum({scene(film, near_pole(angle, seed + 3)), {"--precision", "single"}});
+    // Of two spins that do not see each other, one falls from the top long after the other.
+    char start[200];
+    std::snprintf(start, sizeof start, "expression = [\"i == 0 ? %g : 1\", \"0\", \"-1\"]", angle);
+    expect_minimum({scene(apart, start)});
+  }
+}
+
+TEST_F(Rests, AreNotSaddles) {
+  // A hard axis along x, an easy one along z: y is a saddle.
+  constexpr auto saddle =
+      "[lattice]\nshape = [3]\n[field]\nexchange = 1\nanisotropy = [{ constant = 0.4, axis = [0, "
+      "0, 1] }, { constant = -0.6, axis = [1, 0, 0] }]";
+  for (double const angle : {1e-12, 1e-6}) {
+    char start[200];
+    std::snprintf(start, sizeof start, "expression = [\"0.3\", \"1\", \"%g\"]", angle);
+    expect_minimum({scene(saddle, start), {}, 0});
+  }
+}
+
+TEST_F(Rests, OfAFilmInSi) {
+  // Against the easy axis by .4 T, more than the .25 T of the anisotropy.
+  auto const film = [](double angle) {
+    char text[600];
+    std::snprintf(
+        text, sizeof text,
+        "units = \"SI\"\n[system]\nkind = \"llg\"\n[material]\nalpha = 0.1\ndamping_form = \"gilbert\"\nMs = "
+        "8e5\nA = 1.3e-11\nKu = 1e5\naxis = [0, 0, 1]\n[lattice]\nshape = [6, 6]\nspacing "
+        "= 4e-9\n[field]\napplied = [0, 0, -0.4]\n[initial]\nuniform = [%g, 0, "
+        "1]\n[integrator]\nmethod = \"rkmk4\"\ndt = 2e-13\nend = 2e-8\nuntil_torque = "
+        "1e-6\n[output]\nevery = 1000000\n",
+        angle);
+    return std::string(text);
+  };
+  for (double const angle : {1e-9, 1e-5}) expect_minimum({film(angle), {}, -1});
+}
+
+TEST_F(Rests, ByMethods) {
+  for (std::string const method :
+       {"euler", "heun", "tsit5", "red_black2", "stiff2", "projected_rk4"})
+    expect_minimum({scene(pair, near_pole(1e-9, 7), 0.2, method, 0.05)});
+}
+
+// Nothing moves a spin from the very top: the run says where it ended.
+TEST_F(Rests, AtATopAreNamed) {
+  write("top.toml", scene(apart, "expression = [\"i\", \"0\", \"-1\"]"));
+  auto const outcome = start({"run", "top.toml", "--quiet", "--output", "top.h5"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+  EXPECT_TRUE(contains(outcome.errors, "ended at a saddle or a maximum of the energy"));
+  EXPECT_EQ(info_of("top.h5").frame_steps.back(), 100000);
+  // A minimum from the start on is none.
+  auto const info = run(scene(one_spin, "uniform = [0, 0, 1]"), set("integrator.steps=50"));
+  EXPECT_EQ(info.frame_steps.back(), 50);
+}
+
+TEST_F(Rests, AreTheSameAfterABreak) {
+  auto const text = scene(apart, "expression = [\"i == 0 ? 1e-12 : 1\", \"0\", \"-1\"]");
+  write("s.toml", text);
+  Arguments const run_it{"run", "s.toml", "--quiet", "--output"};
+  output_of(joined(run_it, {"whole.h5"}));
+  auto const whole = info_of("whole.h5").frame_steps.back();
+  for (std::int64_t const steps : {std::int64_t{1}, std::int64_t{1450}, whole - 1}) {
+    Arguments const same{"--overwrite", "--set", "output.checkpoint_every='1000 steps'"};
+    output_of(joined(joined(run_it, {"first.h5"}),
+                     joined(same, set("integrator.steps=" + std::to_string(steps)))));
+    output_of(joined(joined(run_it, {"second.h5"}), joined(same, {"--restart", "first.h5"})));
+    EXPECT_EQ(info_of("second.h5").frame_steps.back(), whole) << steps;
+    EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
+  }
+}
+
+// ctest -C long -L long
+TEST_F(Rests, DISABLED_FromManyStartsByAllMethods) {
+  std::mt19937 engine(20);
+  for (std::string const method : {"euler",
+                                   "implicit_euler",
+                                   "heun",
+                                   "rkmk4",
+                                   "rkmk64",
+                                   "rkmk5",
+                                   "rkmk86",
+                                   "rkmk8",
+                                   "series4",
+                                   "ab2",
+                                   "implicit_midpoint",
+                                   "stiff2",
+                                   "stiff4",
+                                   "cf4",
+                                   "fx3",
+                                   "fx4",
+                                   "red_black2",
+                                   "red_black4",
+                                   "tsit5",
+                                   "projected_euler",
+                                   "projected_heun",
+                                   "projected_rk4",
+                                   "projected_rk64",
+                                   "projected_rk5"})
+    for (int trial = 0; trial < 12; ++trial) {
+      double const angle = std::pow(10.0, std::uniform_real_distribution<double>(-12, -3)(engine));
+      auto const field = std::array{one_spin, pair, film}[trial % 3];
+      if (method.starts_with("red_black") && field == one_spin) continue;
+      bool const slow = method.ends_with("euler");
+      expect_minimum({scene(field, near_pole(angle, engine()), 0.2, method, slow ? 0.02 : 0.05)});
+    }
+}
+
+}  // namespace
+}  // namespace cayspin::program::test

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// What a scene says in vain, or in contradiction to another key.
+#include "scene_file.hpp"
+
+#include <cayspin/demagnetization/images.hpp>
+#include <cayspin/io/notes.hpp>
+#include <cayspin/io/ovf.hpp>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+namespace cayspin::inline v0_1::io::test {
+namespace {
+
+constexpr int all = infinitely_many_images;
+
+std::string const film = R"toml([system]
+kind = "llg"
+damping = 0.1
+[lattice]
+shape = [6, 5]
+[field]
+[initial]
+uniform = [0, 0, 1]
+[integrator]
+method = "heun"
+dt = 0.1
+steps = 1
+)toml";
+
+std::vector<std::string> notes_with(std::vector<std::string> const& overrides) {
+  return notes(scene_of(film, overrides));
+}
+
+std::string refusal_with(std::vector<std::string> const& overrides) {
+  return refusal([&] { scene_of(film, overrides); });
+}
+
+struct Case {
+  std::vector<std::string> overrides;
+  std::string note;  // a part of the only one; none where it is empty
+};
+
+TEST(Notes, SayWhatActsNowhere) {
+  std::string const chain = "lattice.shape=[8]", single = "lattice.shape=[1]";
+  std::string const site = "lattice={shape=[4,4,2],crystal='bcc',occupied='s==0'}";
+  for (auto const& [overrides, expected] : std::vector<Case>{
+           {{"field.exchange=1"}, ""},
+           {{single, "field.exchange=1"}, "field.exchange: acts nowhere: no cell has a neighbour"},
+           {{single, "lattice.boundary='periodic'", "field.exchange=1"}, "field.exchange: acts"},
+           {{single, "field.exchange=0"}, ""},
+           {{chain, "field.dmi={interfacial=1,normal=[0,0,1]}"}, ""},
+           {{chain, "field.dmi={interfacial=1,normal=[-2,0,0]}"}, "only along the normal"},
+           {{"field.dmi={interfacial=1,normal=[1,0,0]}"}, ""},
+           {{single, "field.dmi={bulk=1}"}, "field.dmi: acts nowhere"},
+           {{"field.mu0=2"}, "field.mu0: acts nowhere"},
+           {{"field.mu0=2", "field.applied=[0,0,1]"}, ""},
+           {{chain, "torque.zhang_li={velocity=[0,1,2]}"}, "torque.zhang_li: acts nowhere"},
+           {{chain, "torque.zhang_li={velocity=['sin(t)',1,2]}"}, ""},
+           {{"system.damping=0", "system.precession=false"}, "no spin moves"},
+           {{"lattice.occupied='1+i'"}, "lattice.occupied: is 0 nowhere"},
+           {{"lattice.occupied='i'"}, ""},
+           {{"lattice.frozen='0*i'"}, "lattice.frozen: holds no spin"},
+           {{"lattice.frozen='1'"}, "lattice.frozen: holds every spin"},
+           {{"lattice.frozen='i==0'", "lattice.occupied='i>0'"}, "lattice.frozen: holds no spin"},
+           {{site, "field.anisotropy={constant=1,axis=[0,0,1],site=1}"},
+            "no cell has a spin on site 1"},
+           {{site, "field.anisotropy={constant=1,axis=[0,0,1],site=0}"}, ""},
+           {{site, "field.couplings=[{between=[0,1],J=1}]"}, "field.couplings[0]: acts nowhere"},
+           {{chain, "field.couplings={shells=[1,1,1,1,1,1,1]}"}, ""},
+           {{chain, "field.couplings={shells=[1,1,1,1,1,1,1,1]}"}, "entry 7, for pairs 8 apart"},
+           {{chain, "lattice.boundary='periodic'", "field.couplings=[{offset=[8,0,0],J=1}]"},
+            "couples each site to itself"},
+       }) {
+    auto const found = notes_with(overrides);
+    SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
+    ASSERT_EQ(found.size(), expected.empty() ? 0U : 1U);
+    if (!expected.empty()) EXPECT_NE(found[0].find(expected), found[0].npos);
+  }
+}
+
+TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
+  std::string const periodic = "lattice.boundary='periodic'",
+                    images = "field.demag.periodic_images=";
+  for (auto const& [overrides, expected] : std::vector<Case>{
+           {{"field.demag=true"}, ""},
+           {{periodic, "field.demag=true"}, ""},
+           {{periodic, images + "[2,1,0]"}, ""},
+           {{periodic, images + "[0,1,0]"},
+            "no images along x, where lattice.boundary is periodic"},
+           {{images + "[0,0,0]"}, ""},
+           {{images + "[0,2,0]"}, "images along y, where lattice.boundary is open"},
+           {{images + "[0,0,2]"}, ""},  // one cell along z: no other term sees an end
+       }) {
+    auto const found = notes_with(overrides);
+    SCOPED_TRACE(testing::PrintToString(overrides) + testing::PrintToString(found));
+    ASSERT_EQ(found.size(), expected.empty() ? 0U : 1U);
+    if (!expected.empty()) EXPECT_NE(found[0].find(expected), found[0].npos);
+  }
+}
+
+TEST(Demagnetization, GoesOnForEverAlongPeriodicAxes) {
+  auto const images = [](std::vector<std::string> overrides) {
+    overrides.emplace_back("field.demag=true");
+    return scene_of(film, overrides).field.demag->periodic_images;
+  };
+  EXPECT_EQ(images({}), (std::array{0, 0, 0}));
+  EXPECT_EQ(images({"lattice.boundary='periodic'"}), (std::array{all, all, 0}));
+  EXPECT_EQ(images({"lattice.boundary=['open','periodic']"}), (std::array{0, all, 0}));
+  EXPECT_EQ(images({"lattice={shape=[1,1,4],boundary='periodic'}"}), (std::array{0, 0, all}));
+  EXPECT_EQ(scene_of(film, {"lattice.boundary='periodic'", "field.demag={strength=2}"})
+                .field.demag->periodic_images,
+            (std::array{all, all, 0}));
+  for (auto const* const demag : {"field.demag=true", "field.demag={strength=1}"}) {
+    auto const said = refusal_with({"lattice={shape=[4,4,4],boundary='periodic'}", demag});
+    EXPECT_NE(said.find("field.demag: "), said.npos) << said;
+    EXPECT_NE(said.find("periodic_images = [nx, ny, nz]"), said.npos) << said;
+  }
+  EXPECT_EQ(refusal_with({"lattice={shape=[4,4,4],boundary='periodic'}",
+                          "field.demag.periodic_images=[1,1,1]"}),
+            "accepted");
+  EXPECT_NE(refusal_with({"lattice={shape=[2,30000],boundary='periodic'}", "field.demag=true"})
+                .find("up to 1e4 : 1"),
+            std::string::npos);
+}
+
+TEST(Demagnetization, OfCellsOfAnyShapeUpToALimit) {
+  EXPECT_EQ(refusal_with({"lattice={shape=[4,4,1],spacing=[1,1,1e-9]}", "field.demag=true"}),
+            "accepted");
+  for (auto const* const demag : {"field.demag=true", "field.demag={dear=false}"})
+    EXPECT_NE(
+        refusal_with({"lattice={shape=[4,4,1],spacing=[1,1,1e-10]}", demag}).find("1e+10 : 1"),
+        std::string::npos);
+}
+
+// A coupling is refused where no two cells of the lattice have its offset.
+TEST(Couplings, ThatLeaveTheLatticeEverywhereAreRefused) {
+  std::mt19937_64 random(3);
+  auto const draw = [&](int least, int most) {
+    return std::uniform_int_distribution(least, most)(random);
+  };
+  int refused = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::array<int, 3> shape{}, offset{};
+    std::array<bool, 3> periodic{};
+    std::string boundary;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      shape[axis] = draw(1, 4);
+      offset[axis] = draw(-4, 4);
+      periodic[axis] = draw(0, 1) == 1;
+      boundary += periodic[axis] ? "'periodic'," : "'open',";
+    }
+    if (offset == std::array<int, 3>{}) continue;
+    int pairs = 0;
+    for (int k = 0; k < shape[2]; ++k)
+      for (int j = 0; j < shape[1]; ++j)
+        for (int i = 0; i < shape[0]; ++i) {
+          std::array const there{i + offset[0], j + offset[1], k + offset[2]};
+          bool inside = true;
+          for (std::size_t axis = 0; axis < 3; ++axis)
+            inside = inside && (periodic[axis] || (there[axis] >= 0 && there[axis] < shape[axis]));
+          pairs += inside;
+        }
+    auto const said = refusal_with(
+        {"lattice={shape=[" + std::to_string(shape[0]) + "," + std::to_string(shape[1]) + "," +
+             std::to_string(shape[2]) + "],boundary=[" + boundary + "]" +
+             (draw(0, 1) == 1 ? "" : ",crystal='bcc'") + "}",
+         "field.couplings=[{offset=[" + std::to_string(offset[0]) + "," +
+             std::to_string(offset[1]) + "," + std::to_string(offset[2]) + "],J=1}]"});
+    EXPECT_EQ(said == "accepted", pairs > 0) << said;
+    if (said != "accepted") {
+      EXPECT_NE(said.find("field.couplings[0]: leaves the lattice"), said.npos) << said;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50);
+}
+
+}  // namespace
+}  // namespace cayspin::inline v0_1::io::test

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Every wrapper around every term, in single precision.
+#include "compositions.hpp"
+
+namespace cayspin::test {
+namespace {
+
+TEST(WrappersInSingle, SayWhatTheFieldAndTheEnergySay) {
+  for (unsigned const seed : {1U, 2U, 3U}) expect_all_members(random_setting<float>(seed));
+}
+TEST(WrappersInSingle, DISABLED_OfManySettings) {
+  for (unsigned seed = 4; seed < 300; ++seed) expect_all_members(random_setting<float>(seed));
+}
+
+}  // namespace
+}  // namespace cayspin::test
