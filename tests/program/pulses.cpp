@@ -48,8 +48,9 @@ TEST_F(Pulses, AreSeenByAdvise) {
 
 TEST_F(Pulses, AreSeenByTrade) {
   write("scene.toml", scene("method='rkmk4', dt=0.5, end=502"));
-  auto const all = nlohmann::json::parse(output_of(
-      {"trade", "scene.toml", "--json", "--seconds", "0.5", "--threads", "1", "--quiet"}));
+  auto const all =
+      nlohmann::json::parse(output_of({"trade", "scene.toml", "--json", "--seconds", "0.1",
+                                       "--threads", "1", "--precision", "double", "--quiet"}));
   EXPECT_EQ(all["horizon"], 502.0);
   double largest = 0;
   for (auto const& method : all["methods"])
@@ -119,11 +120,12 @@ TEST_F(Pulses, CheckNamesTheShortestFeature) {
 }
 
 TEST_F(Pulses, RunWarnsOfStepsThatMayMissThem) {
-  auto const outcome = run_into("out.h5", scene("method='rkmk4', dt=2, end=502"));
+  auto const outcome = run_into("out.h5", scene("method='rkmk4', dt=1.6, steps=314"));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.errors.find("which steps may miss"), std::string::npos) << outcome.errors;
-  EXPECT_EQ(run_into("out.h5", scene("method='rkmk4', dt=2, end=502, refuse_unstable=true")).status,
-            2);
+  EXPECT_EQ(
+      run_into("out.h5", scene("method='rkmk4', dt=1.6, steps=314, refuse_unstable=true")).status,
+      2);
 }
 
 }  // namespace

@@ -99,11 +99,11 @@ TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {
 
 TEST(Pulses, ThatAreShorterThanEqualStepsAreRefusedWhereTheSceneSaysSo) {
   auto const scene = [](std::string const& more) {
-    return scene_of(pulse_scene("method = 'rkmk8', dt = 2, end = 502" + more));
+    return scene_of(pulse_scene("method = 'rkmk4', dt = 1.6, steps = 314" + more));
   };
   auto const warning = dt_warning(scene(""), make_plan(scene(""), Precision::double_precision));
   ASSERT_TRUE(warning);
-  EXPECT_NE(warning->find("2 is longer than 1.5, a feature of field.applied at t = 500"),
+  EXPECT_NE(warning->find("1.6 is longer than 1.5, a feature of field.applied at t = 500"),
             std::string::npos)
       << *warning;
   auto const refusing = scene(", refuse_unstable = true");
