@@ -110,6 +110,12 @@ void print_json(io::Scene const& scene, Plan const& plan, Precision precision,
   if (is_thermal(scene))
     fmt::print(", \"temperature\": {}, \"noise_turn\": {}", typed_temperature(scene),
                plan.noise_turn);
+  if (scene.system.kind == io::SystemKind::llg && io::depends_on_time(scene.field))
+    fmt::print(", \"shortest_feature\": {}, \"jumps\": {}",
+               plan.features->shortest
+                   ? fmt::format("{}", plan.features->shortest->length * units.time)
+                   : "null",
+               plan.features->jumps);
   if (repeated) fmt::print(", \"repeated\": {}", *repeated);
   fmt::print("{}}}\n", notes_json(scene));
 }
@@ -147,10 +153,13 @@ std::string stability_text(io::Units const& units, Plan const& plan) {
 }
 
 std::string noise_text(io::Scene const& scene, Plan const& plan) {
-  auto const per_step = scene.system.damping * scene.thermal->temperature * plan.times.dt;
-  return fmt::format("damping x temperature x dt = {:.3g}, turns a spin by {:.3g} radians a step{}",
-                     per_step, plan.noise_turn,
-                     plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
+  double const of_moments = io::largest_noise(scene);
+  auto const per_step =
+      of_moments * scene.system.damping * scene.thermal->temperature * plan.times.dt;
+  return fmt::format(
+      "{}damping x temperature x dt = {:.3g}, turns a spin by {:.3g} radians a step{}",
+      of_moments == 1 ? "" : "gyromagnetic / moment x ", per_step, plan.noise_turn,
+      plan.noise_turn > Plan::most_noise ? ", which is too large" : "");
 }
 
 std::string output_text(io::Scene const& scene, Plan const& plan) {
@@ -163,6 +172,16 @@ std::string output_text(io::Scene const& scene, Plan const& plan) {
   if (output.table) text += ", samples also in a text table";
   if (output.sync) text += ", each frame safe from power cuts";
   return text;
+}
+
+// Of what depends on t.
+std::string features_text(io::Scene const& scene, TimeFeatures const& features) {
+  std::string text;
+  if (auto const& shortest = features.shortest)
+    text = fmt::format("the shortest is {} long, of {} at t = {}; ",
+                       time_text(scene.units, shortest->length, 3), shortest->key,
+                       time_text(scene.units, shortest->time, 6));
+  return text + counted(features.jumps, "jump");
 }
 
 // Every number of the start and of the inertia, where that is a matter of seconds.
@@ -208,6 +227,8 @@ void print_text(io::Scene const& scene, Plan const& plan, Precision precision,
                             both(scene.units, plan.times.dt, 9),
                             both(scene.units, plan.times.at(plan.times.steps), 9)));
   print("stable dt", stability_text(scene.units, plan));
+  if (scene.system.kind == io::SystemKind::llg && io::depends_on_time(scene.field))
+    print("features", features_text(scene, *plan.features));
   if (is_thermal(scene)) print("noise", noise_text(scene, plan));
   auto const updates =
       static_cast<double>(plan.times.steps) * static_cast<double>(plan.lattice.sites());

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "simulation/failure.hpp"
 #include "simulation/precision.hpp"
 #include "simulation/ranks.hpp"
 
 #include <cayspin/io/scene.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <array>
 #include <filesystem>
@@ -70,11 +72,35 @@ void add_scene_options(CLI::App& command, Options& options,
       ->type_name("NAME");
 }
 
+/// Is it a host's execution space?
+bool is_on_host(std::string const& space);
+
+/// An option that may be given more than once, always with the same value. Throws UsageError for
+/// two values.
+template <class Value>
+CLI::Option* add_one_value(CLI::App& command, std::string const& name, std::optional<Value>& value,
+                           char const* description) {
+  return command
+      .add_option_function<std::vector<Value>>(
+          name,
+          [name, &value](std::vector<Value> const& given) {
+            for (auto const& other : given)
+              if (other != given.front())
+                throw UsageError(fmt::format("{}: given as {} and as {}; accepted: one of them",
+                                             name, given.front(), other));
+            value = given.front();
+          },
+          description)
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 /// --space and --threads.
 template <class Options>
 void add_space_options(CLI::App& command, Options& options) {
-  command.add_option("--space", options.space, "Kokkos execution space");
-  command.add_option("--threads", options.threads, "Threads of a host space")
+  add_one_value(command, "--space", options.space, "Kokkos execution space");
+  add_one_value(command, "--threads", options.threads, "Threads of a host space")
       ->check(CLI::Range(1, 65536));
 }
 

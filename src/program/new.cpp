@@ -3,6 +3,7 @@
 #include "files/file_beside.hpp"
 #include "new_scenes.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/text.hpp"
 
 #include <fmt/format.h>
 
@@ -38,7 +39,8 @@ int write_new(NewOptions const& options) {
   io::FileBeside file(path, options.overwrite);
   file.stream() << replaced(std::string(scene->text), scene->path, path.string());
   file.commit();
-  fmt::print("{0}: try `cayspin check {0}`, then `cayspin run {0}`\n", path.string());
+  fmt::print("{0}: try `cayspin check {1}`, then `cayspin run {1}`\n", path.string(),
+             simulation::shell_word(path.string()));
   return Status::done;
 }
 

@@ -41,6 +41,7 @@ struct AdviseOptions : TryOptions {
 };
 
 constexpr double errors_compared[] = {1e-2, 1e-4, 1e-6, 1e-8};
+constexpr double least_error_of_trade = 1e-9;
 
 // Of a rung, or of an advice.
 template <class Run>
@@ -49,6 +50,12 @@ std::string steps_text(Pilot const& pilot, Candidate const& candidate, Run const
   return candidate.method->adaptive
              ? fmt::format("tol {:.1e}", run.steps.tolerance)
              : fmt::format("dt {:.3e}{}", run.dt * units.time, units.si ? " s" : "");
+}
+
+// 1 on devices.
+int threads_in(std::string const& space) {
+  return in_space(space, Precision::double_precision,
+                  []<class, class Space>() { return threads_of(Space()); });
 }
 
 std::string amount_text(double amount, char const* form) {
@@ -150,25 +157,22 @@ void print_verdicts(Pilot const& pilot, std::vector<Verdict> const& verdicts) {
   }
 }
 
-// As one word of a shell.
-std::string shell_word(std::string const& text) {
-  std::string word = "'";
-  for (char const letter : text) {
-    if (letter == '\'') word += "'\\'";
-    word += letter;
-  }
-  return word + "'";
-}
-
-std::string command_of(AdviseOptions const& options, Resolved const& resolved,
-                       Precision precision) {
-  auto const scene = options.scene.string();
-  bool const is_plain = scene.find_first_of(" \t\n'\"\\$`&|;<>()[]{}*?!#~") == scene.npos;
-  std::string command = fmt::format("cayspin run {}", is_plain ? scene : shell_word(scene));
+// With the space and the threads that the time was measured with, and a file to write where the
+// scene names none.
+std::string command_of(AdviseOptions const& options, io::Scene const& scene,
+                       Resolved const& resolved, Precision precision) {
+  std::string command = "cayspin run " + shell_word(options.scene.string());
   for (auto const& overrides : {options.overrides, resolved.overrides})
     for (auto const& override : overrides)
       command += fmt::format(" --set {}", shell_word(override));
+  if (!scene.output.file)
+    command +=
+        " --set " + shell_word(fmt::format("output.file=\"{}.h5\"", options.scene.stem().string()));
   if (precision == Precision::single_precision) command += " --precision single";
+  auto const space = chosen_space(options.space);
+  command += " --space " + space;
+  if (auto const threads = is_on_host(space) ? std::optional(threads_in(space)) : options.threads)
+    command += fmt::format(" --threads {}", *threads);
   return command;
 }
 
@@ -179,7 +183,8 @@ std::optional<std::string> warning_of(io::Scene const& scene, Resolved const& re
   return dt_warning(plan, scene.units);
 }
 
-nlohmann::json as_json(io::Scene const& scene, Advised const& advised, Resolved const& resolved) {
+nlohmann::json as_json(io::Scene const& scene, Advised const& advised, Resolved const& resolved,
+                       std::string const& space) {
   auto const& units = scene.units;
   auto const& choice = *advised.choice;
   nlohmann::json all{{"method", choice.candidate.name()},
@@ -191,6 +196,8 @@ nlohmann::json as_json(io::Scene const& scene, Advised const& advised, Resolved 
                      {"seconds", choice.seconds},
                      {"memory", choice.memory},
                      {"horizon", advised.horizon * units.time},
+                     {"space", space},
+                     {"threads", threads_in(space)},
                      {"units", units.si ? "SI" : "reduced"},
                      {"overrides", resolved.overrides},
                      {"warning", nullptr},
@@ -221,7 +228,7 @@ void print_text(AdviseOptions const& options, io::Scene const& scene, Advised co
   fmt::print("memory      {}\n", bytes_text(choice.memory));
   if (auto const reason = warning_of(scene, resolved, candidate.precision))
     fmt::print("run warns   dt {}; the error takes that into account\n", *reason);
-  fmt::print("run it      {}\n", command_of(options, resolved, candidate.precision));
+  fmt::print("run it      {}\n", command_of(options, scene, resolved, candidate.precision));
   fmt::print("\nfound in {}; next to it:\n", duration_text(advised.seconds));
   for (std::size_t i = 1; i < std::min<std::size_t>(advised.others.size(), 4); ++i)
     fmt::print("  {:<33} {}\n", advised.others[i].candidate.name(),
@@ -233,7 +240,8 @@ io::Scene scene_to_try(std::filesystem::path const& path,
   auto const scene = io::with_shape_of_start(io::read_scene(path, overrides));
   io::check_files(scene);
   // With one, the scene's own method is of no account.
-  if (!has_dear_field(scene)) require_dear_field_fits(scene, find_variant(scene));
+  if (!scene.integrator.method->automatic && !has_dear_field(scene))
+    require_dear_field_fits(scene, find_variant(scene));
   return scene;
 }
 
@@ -243,7 +251,7 @@ int trade_off(TradeOptions const& options) {
   auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
-  Pilot const pilot(scene, space);
+  Pilot const pilot(scene, space, least_error_of_trade);
   TrialProgress progress(options.quiet, !options.json);
   auto const reference = converged_reference(pilot, options.seconds);
   LadderLimits limits;
@@ -251,7 +259,8 @@ int trade_off(TradeOptions const& options) {
   limits.seconds = options.seconds;
   limits.least_error = std::max(limits.least_error, 10 * reference.uncertainty);
   std::vector<Ladder> ladders;
-  auto const all = candidates(scene, options.precision);
+  auto all = candidates(scene, options.precision);
+  std::erase_if(all, [&](Candidate const& one) { return !pilot.fits(one); });
   for (auto const& candidate : all) {
     limits.share = static_cast<double>(ladders.size()) / static_cast<double>(all.size());
     ladders.push_back(climb(pilot, candidate, reference, ladders, limits));
@@ -265,7 +274,7 @@ int trade_off(TradeOptions const& options) {
   if (!options.advice) return Status::done;
   auto as_far = scene;
   as_far.integrator.dt *= reference.horizon.time / pilot.end();
-  Pilot const pilot_as_far(as_far, space);
+  Pilot const pilot_as_far(as_far, space, least_error_of_trade);
   std::vector<Verdict> verdicts;
   for (double const error : errors_compared)
     verdicts.push_back(judge(pilot_as_far, reference, ladders, error, options.precision));
@@ -279,7 +288,7 @@ int advise_on(AdviseOptions const& options) {
   auto const scene = scene_to_try(options.scene, options.overrides);
   auto const space = chosen_space(options.space);
   KokkosSession const kokkos(space, options.threads, {});
-  Pilot const pilot(scene, space);
+  Pilot const pilot(scene, space, options.error);
   TrialProgress progress(options.quiet, !options.json);
   auto const advised = advise(pilot, {options.error, options.budget, options.precision, &progress});
   progress.clear();
@@ -298,7 +307,7 @@ int advise_on(AdviseOptions const& options) {
   }
   auto const resolved = resolve(scene, *advised.choice);
   if (options.json)
-    fmt::print("{}\n", as_json(scene, advised, resolved).dump(1));
+    fmt::print("{}\n", as_json(scene, advised, resolved, space).dump(1));
   else
     print_text(options, scene, advised, resolved);
   return Status::done;

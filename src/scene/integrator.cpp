@@ -102,8 +102,9 @@ void read_coordinates(Table const& table, Integrator& integrator) {
 // What chooses the steps of an adaptive method; the others have none of it.
 void read_tolerance(Table const& table, Integrator& integrator) {
   if (!integrator.method->adaptive) {
-    for (auto const* key : {"tolerance", "min_dt", "max_dt"})
-      if (auto const item = table.find(key))
+    bool const takes_max_dt = integrator.method->automatic;  // for what it chooses
+    for (std::string_view const key : {"tolerance", "min_dt", "max_dt"})
+      if (auto const item = table.find(key); item && !(key == "max_dt" && takes_max_dt))
         item->fail(fmt::format("method \"{}\" takes steps of dt", integrator.method->word),
                    "no such key");
     return;

@@ -18,7 +18,12 @@ Kokkos::InitializationSettings settings(std::string const& space, std::optional<
                                         std::optional<int> device) {
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
-  if (space == "serial") threads = 1;
+  if (space == "serial") {
+    if (threads && *threads != 1)
+      throw UsageError(
+          fmt::format("--threads {}: --space serial has one thread; accepted: 1", *threads));
+    threads = 1;
+  }
   if (threads) settings.set_num_threads(*threads);
   if (!device) return settings;
   int const devices = Kokkos::num_devices();

@@ -47,9 +47,10 @@ Lattice make_lattice(io::Scene const& scene) {
   return lattice;
 }
 
-// The largest length of a vector at 1001 equal times of the run.
+// The largest length of a vector at 1001 equal times of the run. A pulse that they miss is among
+// the features.
 double largest(AppliedField const& vector, std::string_view key, io::Scene const& scene,
-               Times const& times) {
+               Times const& times, TimeFeatures const& features) {
   if (!vector.present()) return 0;
   int const samples = vector.depends_on_time() ? 1000 : 0;
   double const end = times.at(times.steps);
@@ -64,6 +65,8 @@ double largest(AppliedField const& vector, std::string_view key, io::Scene const
       throw io::scene_error(scene, key, "is not finite at t = " + time_text(scene.units, t));
     }
   }
+  for (auto const& [of, length] : features.largest)
+    if (of == key && length > 1.001 * largest) largest = length;
   return largest;
 }
 
@@ -154,24 +157,27 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
   return largest;
 }
 
-double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+double torque_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
+                    TimeFeatures const& features) {
   auto const& torque = scene.field.torque;
   double bound = 0;
   if (auto const& of = torque.zhang_li) {
     constexpr auto key = "torque.zhang_li.velocity";
-    double const velocity = largest(AppliedField(of->velocity, key), key, scene, times);
+    double const velocity = largest(AppliedField(of->velocity, key), key, scene, times, features);
     for (int axis = 0; axis < 3; ++axis)
       if (lattice.has_neighbors(axis)) bound += velocity / lattice.spacing[axis];
     bound *= std::hypot(1, of->nonadiabaticity);
   }
   if (auto const& of = torque.slonczewski) {
     constexpr auto key = "torque.slonczewski";
-    bound += largest(AppliedField({of->damping_like, of->field_like, 0.0}, key), key, scene, times);
+    bound += largest(AppliedField({of->damping_like, of->field_like, 0.0}, key), key, scene, times,
+                     features);
   }
   return bound;
 }
 
-double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& times,
+                   TimeFeatures const& features) {
   auto const field = io::without_numbers_of_sites(scene.field);
   double bound = 0;
   io::for_each_lattice_term(field, [&](auto const& term) {
@@ -179,7 +185,7 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
   });
   if (field.slab_demag) bound += std::abs(field.mu0 * field.slab_demag->strength);
   if (field.demag) bound += std::abs(field.mu0 * field.demag->strength);
-  double const applied = largest(AppliedField(field), "field.applied", scene, times);
+  double const applied = largest(AppliedField(field), "field.applied", scene, times, features);
   if (!io::needs_pass(scene)) {
     for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
     return bound + applied;
@@ -188,14 +194,15 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
     return numbers.empty() ? 1 : std::ranges::max(numbers);
   };
   return bound_of_sites(scene, lattice, bound) + fastest(scene.lattice.gyromagnetic) * applied +
-         torque_bound(scene, lattice, times);
+         torque_bound(scene, lattice, times, features);
 }
 
 // At most |A|: of rigid bodies the largest row sum of I^-1, where it is in the scene.
-double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times) {
+double largest_rate(io::Scene const& scene, Lattice const& lattice, Times const& times,
+                    TimeFeatures const& features) {
   auto const& system = scene.system;
   if (system.kind == io::SystemKind::llg)
-    return field_bound(scene, lattice, times) *
+    return field_bound(scene, lattice, times, features) *
            std::hypot(largest_damping(scene), system.precession);
   double largest = 0;
   if (std::holds_alternative<io::InertiaFile>(system.inertia)) return largest;
@@ -269,9 +276,27 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
   return memory;
 }
 
+// What steps of a tolerance have to know of the field beforehand.
+void put_features(io::Scene const& scene, TimeFeatures const& features, StepOptions& steps) {
+  auto const& integrator = scene.integrator;
+  if (features.unresolved && !std::isfinite(integrator.max_dt))
+    throw io::scene_error(scene, *features.unresolved,
+                          "changes too often to be looked at before the run; accepted: "
+                          "integrator.max_dt, or an earlier integrator.end");
+  if (auto const& shortest = features.shortest; shortest && shortest->length < integrator.min_dt)
+    throw io::scene_error(
+        scene, "integrator.min_dt",
+        fmt::format("{} is longer than a feature of {} at t = {}; accepted: at most {}",
+                    time_text(scene.units, integrator.min_dt, 6), shortest->key,
+                    time_text(scene.units, shortest->time, 6),
+                    time_text(scene.units, shortest->length, 3)));
+  steps.bounds = features.bounds;
+}
+
 }  // namespace
 
-Plan make_plan(io::Scene const& scene, Precision precision) {
+Plan make_plan(io::Scene const& scene, Precision precision,
+               std::shared_ptr<TimeFeatures const> features) {
   require_demagnetization(scene);
   auto const lattice = make_lattice(scene);
   auto const& integrator = scene.integrator;
@@ -283,7 +308,8 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
             0,
             {},
             0,
-            0};
+            0,
+            features ? std::move(features) : features_of(scene, integrator.tolerance)};
   if (is_thermal(scene)) {
     if (plan.variant.remembers)
       throw io::scene_error(scene, "integrator.method",
@@ -305,11 +331,12 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
       throw io::scene_error(scene, "integrator.tolerance",
                             fmt::format("{:.3g} is beyond {} precision; accepted: at least {:.3g}",
                                         *integrator.tolerance, to_string(precision), least));
+    put_features(scene, *plan.features, plan.options.steps);
   }
   require_dear_field_fits(scene, plan.variant);
   auto const substeps = static_cast<double>(integrator.substeps);
   if (scene.system.kind == io::SystemKind::llg) {
-    double const bound = field_bound(scene, lattice, plan.times);
+    double const bound = field_bound(scene, lattice, plan.times, *plan.features);
     if (!std::isfinite(bound))
       throw io::scene_error(scene, "field",
                             "its largest value is not finite; accepted: smaller constants, or a "
@@ -339,7 +366,9 @@ Plan make_plan(io::Scene const& scene, Precision precision) {
     followed.field.couplings.clear();
     followed.field.couplings_file.clear();
   }
-  plan.turn = integrator.dt / substeps * largest_rate(followed, lattice, plan.times);
+  plan.turn =
+      integrator.dt / substeps * largest_rate(followed, lattice, plan.times, *plan.features);
+  plan.substep = integrator.dt / substeps;
   return plan;
 }
 
@@ -356,6 +385,10 @@ std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units) 
   if (!(plan.turn <= most))
     return fmt::format("{} turns spins by up to {:.3g} radians a step, too many to follow", text,
                        plan.turn);
+  if (auto const& shortest = plan.features->shortest; shortest && plan.substep > shortest->length)
+    return fmt::format("{} is longer than {}, a feature of {} at t = {}, which steps may miss",
+                       text, time_text(units, shortest->length, 3), shortest->key,
+                       time_text(units, shortest->time, 6));
   if (plan.noise_turn > Plan::most_noise)
     return fmt::format("{} lets noise turn spins by {:.3g} radians a step, too many to follow",
                        text, plan.noise_turn);

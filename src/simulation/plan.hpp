@@ -2,12 +2,14 @@
 #pragma once
 
 #include "precision.hpp"
+#include "time_features.hpp"
 #include "variant.hpp"
 
 #include <cayspin/io/scene.hpp>
 #include <cayspin/lattice.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -34,17 +36,21 @@ struct Plan {
   double turn;       // the most that a spin can turn in a step, in radians; some without exchange
   Memory memory;
   std::int64_t frames;
-  double file_bytes;      // may be more than an integer holds
+  double file_bytes;                             // may be more than an integer holds
+  std::shared_ptr<TimeFeatures const> features;  // of what depends on t
+  double substep = 0;     // the time between evaluations of what is not dear: dt or shorter
   double noise_turn = 0;  // root mean square of the angle by which noise turns a spin in a step
 
   static constexpr double most_noise = 0.5;  // radians a step
 };
 
-/// Throws io::SceneError, among others for a lattice that cannot be.
-Plan make_plan(io::Scene const& scene, Precision precision);
+/// Throws io::SceneError, among others for a lattice that cannot be. `features`: where those of the
+/// scene are known already.
+Plan make_plan(io::Scene const& scene, Precision precision,
+               std::shared_ptr<TimeFeatures const> features = nullptr);
 
 /// Why dt is too large, if it is: above the stable one; or so that a step turns spins by more than
-/// 2 radians, or 3 where a stable dt is known.
+/// 2 radians, or 3 where a stable dt is known; or longer than a feature of a field.
 std::optional<std::string> dt_warning(Plan const& plan, io::Units const& units);
 /// The same as a line about the scene, which is thrown as io::SceneError where the scene refuses to
 /// be unstable.

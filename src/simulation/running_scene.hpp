@@ -41,7 +41,8 @@ class RunningScene : public Simulation<Real, Space> {
                std::vector<double> const& start)
       : Base(scene, plan.lattice, times, start),
         method_(open_method(scene, plan, static_cast<Base*>(this))),
-        guard_(scene, epsilon) {
+        guard_(scene, epsilon),
+        last_change_(plan.features->last_change) {
     if (auto const& bound = scene.integrator.until_torque) {
       torque_.emplace(this->generator.precession_alone());
       rest_.emplace(scene, *bound);
@@ -80,7 +81,7 @@ class RunningScene : public Simulation<Real, Space> {
       auto const rest = rest_->look(
           exec, step, spins, this->generator.landau_lifshitz().field().made_for(FieldFor::energy),
           now.largest_rate, now.energy.value < guard_.first_energy(), at_end);
-      found.at_rest = rest.at_minimum;
+      found.at_rest = rest.at_minimum && step.time >= last_change_;
       found.at_saddle = rest.at_saddle;
     }
     return found;
@@ -134,6 +135,7 @@ class RunningScene : public Simulation<Real, Space> {
 
   std::unique_ptr<OpenMethod> method_;
   Guard guard_;
+  double last_change_;  // of what depends on t
   std::optional<SceneGenerator<Spins>> torque_;
   std::optional<RestSearch<Real, Space>> rest_;
   std::optional<EnergyControl<Spins, SceneGenerator<Spins>>> control_;

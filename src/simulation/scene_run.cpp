@@ -63,8 +63,13 @@ Plan plan_of(io::Scene const& scene, Precision precision) {
                           "\"auto\" is chosen by the program; accepted: the method and dt or "
                           "tolerance that `cayspin advise` names");
   auto plan = make_plan(scene, precision);
-  // A scene of no steps has no end.
-  if (scene.integrator.steps == 0) plan.options.steps.end = std::numeric_limits<double>::infinity();
+  // A scene of no steps has no end. What its field does is seen from step to step alone.
+  if (scene.integrator.steps == 0) {
+    auto& steps = plan.options.steps;
+    steps.end = std::numeric_limits<double>::infinity();
+    if (io::depends_on_time(scene.field))
+      steps.max_dt = std::max(steps.min_dt, std::min(steps.max_dt, scene.integrator.dt));
+  }
   require_memory(scene, plan);
   return plan;
 }

@@ -63,6 +63,17 @@ std::string energy_text(io::Units const& units, double energy, int digits) {
   return fmt::format("{:.{}g}{}", energy * units.energy, digits, units.si ? " J" : "");
 }
 
+std::string shell_word(std::string const& text) {
+  if (!text.empty() && text.find_first_of(" \t\n'\"\\$`&|;<>()[]{}*?!#~=") == text.npos)
+    return text;
+  std::string word = "'";
+  for (char const letter : text) {
+    if (letter == '\'') word += "'\\'";
+    word += letter;
+  }
+  return word + "'";
+}
+
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::ranges::replace_if(

@@ -26,6 +26,8 @@ std::string rate_text(double per_second);
 /// A time or an energy as the scene has them: a number, in SI with its unit.
 std::string time_text(io::Units const& units, double time, int digits = 9);
 std::string energy_text(io::Units const& units, double energy, int digits = 9);
+/// As one word of a command line: quoted where a shell would read it otherwise.
+std::string shell_word(std::string const& text);
 /// Without line breaks and control characters.
 std::string one_line(std::string text);
 

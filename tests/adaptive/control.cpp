@@ -94,6 +94,17 @@ TEST(AdaptiveTolerance, HoldsWhereAFieldIsSwitchedOnAtRest) {
   expect_below("error after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
+/// A field for a short time, seen by no step at rest that is long.
+struct Pulse {
+  static constexpr bool depends_on_time = true;
+  double begin, end;
+
+  template <class Exec, class Field>
+  Zeeman prepare(Exec const&, Field const&, double t) const {
+    return Zeeman{{t > begin && t < end ? 1.0 : 0.0, 0, 1}};
+  }
+};
+
 // What all methods with steps of their own do alike.
 template <class Stepper>
 struct EveryAdaptive : ::testing::Test {};
@@ -141,6 +152,52 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
 }
 
+StepOptions with_jumps_of(Pulse const& pulse, double tolerance) {
+  auto const around = [](double t) { return StepBound{t * (1 - 1e-15), t * (1 + 1e-15), 0}; };
+  return {.tolerance = tolerance, .bounds = {around(pulse.begin), around(pulse.end)}};
+}
+
+TYPED_TEST(EveryAdaptive, EndsStepsWhereTheFieldJumps) {
+  Pulse const pulse{500, 501.5};
+  auto const start = [] {
+    return make_spins(Lattice::chain(1), [](auto...) { return Vector{0, 0, 1}; });
+  };
+  auto exact = run<Rkmk4<Spins>>(LandauLifshitz(EffectiveField(Zeeman{{1, 0, 1}}), 0.5), start(),
+                                 1.5 / 2000, 2000);
+  exact =
+      run<Rkmk4<Spins>>(LandauLifshitz(EffectiveField(Zeeman{{0, 0, 1}}), 0.5), exact, 5e-4, 1000);
+  for (double const tolerance : {1e-3, 1e-6}) {
+    auto spins = start();
+    TypeParam stepper(spins, with_jumps_of(pulse, tolerance));
+    LandauLifshitz const generator(EffectiveField(Pulse{pulse}), 0.5);
+    stepper.step(Space(), generator, spins, 0, 502);
+    expect_below("error after the pulse", largest_distance(spins, exact), 30 * tolerance);
+    EXPECT_LT(stepper.rejected_steps(), 10) << "each part is smooth";
+  }
+}
+
+TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeStepsThatEndAtJumps) {
+  Pulse const pulse{0.5, 0.75};
+  LandauLifshitz const generator(EffectiveField(Exchange(chain_start().lattice(), 1), Pulse{pulse}),
+                                 0.1);
+  auto seldom = chain_start(), often = chain_start();
+  TypeParam one(seldom, with_jumps_of(pulse, 1e-4)), many(often, with_jumps_of(pulse, 1e-4));
+  one.step(Space(), generator, seldom, 0, 2);
+  advance(many, generator, often, 2. / 256, 256);
+  EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
+  EXPECT_LT(largest_distance(seldom, often), 1e-6);
+}
+
+TYPED_TEST(EveryAdaptive, KeepsStepsThatAreShorterThanTheirBounds) {
+  Slab const slab = coupled_chain(0.05);
+  auto free = chain_start(), bounded = chain_start();
+  TypeParam one(free, {.tolerance = 1e-4, .end = 2});
+  TypeParam other(bounded, {.tolerance = 1e-4, .end = 2, .bounds = {{0.3, 0.9, 10}, {0.9, 2, 5}}});
+  one.step(Space(), slab.natural(), free, 0, 2);
+  other.step(Space(), slab.natural(), bounded, 0, 2);
+  EXPECT_EQ(copy_to_host(free), copy_to_host(bounded));
+}
+
 TYPED_TEST(EveryAdaptive, AStepOfNoTimeAtRestSaysNothingOfTheNext) {
   auto spins = make_spins(Lattice::chain(8), [](auto...) { return Vector{0, 0, 1}; });
   auto const start = copy_to_host(spins);
@@ -158,7 +215,9 @@ TYPED_TEST(EveryAdaptive, WhatCannotBeIsRefused) {
   for (StepOptions const& options :
        {StepOptions{.tolerance = 0}, StepOptions{.tolerance = 1e-15}, StepOptions{.tolerance = 2},
         StepOptions{.min_dt = -1}, StepOptions{.max_dt = 0}, StepOptions{.min_dt = 2, .max_dt = 1},
-        StepOptions{.first_dt = -1}, StepOptions{.tolerance = std::nan("")}})
+        StepOptions{.first_dt = -1}, StepOptions{.tolerance = std::nan("")},
+        StepOptions{.bounds = {{1, 2, 0.1}, {1.5, 3, 0.1}}}, StepOptions{.bounds = {{1, 2, -0.1}}},
+        StepOptions{.bounds = {{2, 1, 0.1}}}})
     EXPECT_THROW(TypeParam(spins, options), std::invalid_argument);
   TypeParam stepper(spins, {.tolerance = 1e-4, .end = 1});
   EXPECT_THROW(stepper.step(Space(), coupled_chain(0.1).natural(), spins, 0, -0.1),

@@ -135,4 +135,17 @@ TEST(StepControl, ErrorsAreOfTheEmbeddedOrderAndOne) {
   expect_error_order<AdaptiveProjected<Spins, tableau::DormandPrince5>>("projected", 5, 12);
 }
 
+TEST(StepBounds, EndLongStepsWhereTheyBegin) {
+  detail::StepBounds const bounds({{1, 1.5, 0.125}, {2, 2.0 + 0x1p-50, 0}}, "");
+  EXPECT_EQ(bounds.step(0, 0.25, 4).dt, 0.25);
+  EXPECT_EQ(bounds.step(0, 100, 4).end, 1);
+  EXPECT_EQ(bounds.step(0, 0.75, 4).end, 0.5);  // no very short step before the bound
+  EXPECT_EQ(bounds.step(0.9375, 0.25, 4).dt, 0.125);
+  EXPECT_EQ(bounds.step(1.25, 100, 4).dt, 0.125);
+  EXPECT_EQ(bounds.step(1.5, 100, 4).end, 2);
+  EXPECT_EQ(bounds.after_jump(2), 2.0 + 0x1p-50);
+  EXPECT_EQ(bounds.after_jump(1.25), 1.25);
+  EXPECT_EQ(bounds.step(bounds.after_jump(2), 100, 4).end, 4);
+}
+
 }  // namespace

@@ -115,5 +115,12 @@ TEST_F(Running, TurnsBelowTheStableDtAreWarnedOfUnlessTheyAreThoseOfExchange) {
   EXPECT_TRUE(contains(warning("1.5", chain), "is above the stable 1.2"));
 }
 
+#if !defined(CAYSPIN_HOST_DEVICE)
+TEST_F(Running, ASerialSpaceWithMoreThreadsIsRefused) {
+  expect_refused({"run", "chain.toml", "--space", "serial", "--threads", "2"},
+                 "--threads 2: --space serial has one thread; accepted: 1");
+}
+#endif
+
 }  // namespace
 }  // namespace cayspin::program::test

@@ -211,6 +211,13 @@ TEST_F(Sweeping, WrongUsesAreOneLine) {
             "with system.damping=-0.2 integrator.dt=0.02: "},
            {{"--over", "system.damping=0.1", "--over", "system.damping=0.2"}, "twice"},
            {{"--over", "system.damping=0.1", "--set", "system.damping=0.2"}, "--set"},
+           {{"--over", "system.damping=0.1", "--set", "system.damping = 0.2"}, "--set"},
+           {{"--over", "system.damping=0.1", "--set", "system={kind='llg',damping=0.2}"}, "--set"},
+           {{"--over", "integrator={method='heun',dt=0.02,steps=1}", "--set", "integrator.dt=0.1"},
+            "--set"},
+           {{"--over", "integrator.dt=0.02", "--over",
+             "integrator={method='heun',dt=0.01,steps=1}"},
+            "--over integrator.dt has it too"},
            {{"--over", "output.file='a.h5','b.h5'"}, "output.file"},
            {{"--over", "system.damping=0.1", "--jobs", "0"}, "--jobs"}})
     expect_refused(sweep_into("wrong.h5", more), part);

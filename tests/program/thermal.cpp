@@ -116,6 +116,9 @@ TEST_F(Thermal, IsCheckedAndDescribed) {
                            {"temperature 0.7, seed 12\n",
                             "noise       damping x temperature x dt = 0.0042, turns a spin by 0.13 "
                             "radians a step\n"}));
+  EXPECT_TRUE(contains(output_of(joined({"check", scene}, set("lattice.moments=[4.0]"))),
+                       "noise       gyromagnetic / moment x damping x temperature x dt = 0.00105, "
+                       "turns a spin by 0.0648 radians a step\n"));
   auto const json = nlohmann::json::parse(output_of({"check", scene, "--json"}));
   EXPECT_EQ(json["temperature"], 0.7);
   EXPECT_NEAR(json["noise_turn"], 2 * std::sqrt(0.0042), 1e-15);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <sstream>
 
@@ -314,6 +315,41 @@ TEST_F(Trading, AdvisesInTheOnePrecisionThatIsAskedFor) {
     std::getline(lines, line);
     while (std::getline(lines, line))
       EXPECT_EQ(line.find(", single") != std::string::npos, precision == "single") << line;
+  }
+}
+
+TEST_F(Trading, AnAdviceNamesTheSpaceAndThreadsOfItsTime) {
+  auto const command = advise("1e-3", {"--space", another_space, "--precision", "double"});
+  EXPECT_TRUE(contains(command, " --space " + another_space)) << command;
+  auto const threads = advise("1e-3", {"--precision", "double"});
+  EXPECT_TRUE(contains(threads, " --space " + default_space + " --threads 1\n")) << threads;
+  // The scene names no file.
+  EXPECT_TRUE(contains(threads, "--set 'output.file=\"scene.h5\"'")) << threads;
+}
+
+TEST_F(Trading, TheCommandOfAnAdviceRunsAsItStands) {
+  auto const advice = advise("1e-3");
+  auto const begin = advice.find("cayspin run ");
+  auto const command = advice.substr(begin + 8, advice.find('\n', begin) - begin - 8);
+  auto const script = write("pasted.sh", std::string("'") + CAYSPIN_PROGRAM + "' " + command);
+  EXPECT_EQ(std::system(("cd " + in_folder("").string() + " && sh " + script.string() +
+                         " > pasted.txt 2>&1")
+                            .c_str()),
+            0)
+      << advice << text_of("pasted.txt");
+  EXPECT_TRUE(exists("scene.h5"));
+}
+
+TEST_F(Trading, ALatticeThatDoesNotFitIsRefusedWithItsNeed) {
+  for (Arguments const& command :
+       {Arguments{"advise", "scene.toml", "--error", "1e-3"}, Arguments{"trade", "scene.toml"},
+        joined({"run", "scene.toml", "--output", "out.h5"},
+               set("integrator={method='auto',error=1e-3,end=4.0}")),
+        joined({"check", "scene.toml"}, set("integrator={method='auto',error=1e-3,end=4.0}"))}) {
+    auto const outcome =
+        expect_status(2, joined(command, set("lattice={shape=[300000000,3000000]}")));
+    EXPECT_TRUE(contains(outcome.errors, "lattice.shape: to try methods needs ")) << outcome.errors;
+    EXPECT_TRUE(contains(outcome.errors, " are available")) << outcome.errors;
   }
 }
 

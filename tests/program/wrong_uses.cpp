@@ -69,6 +69,8 @@ std::vector<WrongUse> wrong_scenes() {
       {"UnknownPrecision", {"--precision", "half"}, "single"},
       {"ZeroThreads", {"--threads", "0"}, "--threads"},
       {"ThreadsNotANumber", {"--threads", "two"}, "--threads"},
+      {"TwoThreads", {"--threads", "1", "--threads", "2"}, "--threads: given as 1 and as 2"},
+      {"TwoSpaces", {"--space", default_space.c_str(), "--space", "abacus"}, "--space: given as "},
       {"UnknownOption", {"--fast"}, "--fast"},
       {"TwoScenes", {"other.toml"}, "other.toml"},
       {"RestartFromNoTrajectory", {"--restart", "small.h5"}, "small.h5"},

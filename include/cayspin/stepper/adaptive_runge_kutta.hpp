@@ -74,7 +74,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     auto const region = this->begin_step(exec, spins);
     double const asked = t + dt;
     go_on_to(
-        t, dt, [&] { begin(exec, generator, spins, t, dt); },
+        t, dt,
+        [&](double from) { begin(exec, generator, is_running() ? memory_.end : spins, from, dt); },
         [&] { take_step(exec, generator, asked); });
     deliver(exec, spins, asked);
   }

@@ -68,7 +68,8 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, now_);
     go_on_to(
-        t, dt, [&] { begin(exec, generator, spins, t, dt); }, [&] { take_step(exec, generator); });
+        t, dt, [&](double from) { begin(exec, generator, is_running() ? now_ : spins, from, dt); },
+        [&] { take_step(exec, generator); });
     deliver(exec, spins, t + dt);
   }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/text.hpp>
+#include <cayspin/stepper/step_bounds.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace cayspin::inline v0_1 {
 
@@ -27,6 +29,9 @@ struct StepOptions {
   double min_dt = 0;        ///< a step that would be shorter throws StepTooSmall
   double max_dt = std::numeric_limits<double>::infinity();
   double end = std::numeric_limits<double>::infinity();  ///< no stage looks beyond this time
+  /// Where the field jumps, or changes within less than a step might be long: stages alone may miss
+  /// what it does between them. Ascending, apart.
+  std::vector<StepBound> bounds = {};
 
   /// The smallest tolerance: below it, round-off hides the error of a step.
   template <class Real>
@@ -36,13 +41,6 @@ struct StepOptions {
 };
 
 namespace detail {
-
-/// A step of dt, where `left` is left to the end: one that reaches the end exactly, without a very
-/// short last step.
-inline double step_within(double left, double dt) {
-  if (dt >= left * (1 - 1e-9)) return left;
-  return 2 * dt > left ? 0.5 * left : dt;
-}
 
 /// A proportional-integral controller (Hairer and Wanner, Solving ODEs II, IV.2): the next dt from
 /// the errors of this step and the one before. Plain host arithmetic on a maximum over sites, so
@@ -140,9 +138,11 @@ class OwnSteps {
            std::string const& region)
       : options_(options),
         controller_(options, error_order, least_tolerance, region),
+        bounds_(options.bounds, region),
         region_(region) {}
 
-  /// Calls begin() unless a run is under way, and take_step() until one ends at t + dt or later.
+  /// Calls begin(t) unless a run is under way, and take_step() until one ends at t + dt or later.
+  /// Where the field jumps, begin(t) is called again, for the spins at the end of the last step.
   /// What they throw ends the run: the next step begins at its own t and spins.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
@@ -151,13 +151,18 @@ class OwnSteps {
       throw std::invalid_argument(
           region_ + "::step: dt must not be negative, nor t + dt beyond the end of the options");
     try {
-      if (!running_) begin();
-      while (end_time_ < asked - slack) take_step();
+      if (!running_) begin(bounds_.after_jump(t));
+      while (end_time_ < asked - slack) {
+        if (double const after = bounds_.after_jump(end_time_); after > end_time_) begin(after);
+        take_step();
+      }
     } catch (...) {
       reset();
       throw;
     }
   }
+
+  bool is_running() const { return running_; }
 
   /// From t, for spins that turn by at most `rate` per unit of time.
   void begin_run(double t, double rate, double asked) {
@@ -172,13 +177,13 @@ class OwnSteps {
   void take_own_step(TryStep const& try_step) {
     double const t = end_time_;
     while (true) {
-      double const dt = step_within(options_.end - t, next_dt_);
+      auto const [dt, end] = bounds_.step(t, next_dt_, options_.end);
       if (!(t + dt > t)) give_up(t, dt);  // t + dt rounds to t
       Try const now = try_step(t, dt);
       next_dt_ = now.is_solved ? controller_.next_dt(dt, now.error) : 0.5 * dt;
       if (now.is_solved && controller_.accepts(now.error)) {
         next_dt_ = std::max(options_.min_dt, std::min(next_dt_, now.most_growth * dt));
-        end_time_ = t + dt;
+        end_time_ = end;
         dt_ = dt;
         ++accepted_;
         return;
@@ -208,6 +213,7 @@ class OwnSteps {
   double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last own step ends there
 
  private:
+  StepBounds bounds_;
   [[noreturn]] void give_up(double t, double dt) const {
     throw StepTooSmall(region_ + "::step: from t = " + to_text(t) +
                        " the tolerance needs a step below " + to_text(dt) +

@@ -21,6 +21,17 @@ constexpr double most_runs = 1e5;
 // Sites of all starts whose numbers are looked at before the first run.
 constexpr std::int64_t most_checked = 20'000'000;
 
+// Is one of them the other, or a table around it? Paths as `--set` takes them.
+bool overlap(std::string const& a, std::string const& b) {
+  auto const path = [](std::string const& assignment) {
+    auto key = assignment.substr(0, assignment.find('='));
+    std::erase(key, ' ');
+    return key + '.';
+  };
+  auto const first = path(a), second = path(b);
+  return first.starts_with(second) || second.starts_with(first);
+}
+
 std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
   std::vector<io::SweptKey> keys;
   double runs = 1;
@@ -29,11 +40,13 @@ std::vector<io::SweptKey> read_keys(SweepOptions const& options) {
     auto const refuse = [&](std::string const& why) {
       throw UsageError(fmt::format("--over {}: {}", key.key, why));
     };
-    if (std::ranges::find(keys, key.key, &io::SweptKey::key) != keys.end())
-      refuse("it is named twice; accepted: one --over with all values");
-    if (std::ranges::any_of(options.overrides, [&](std::string const& override) {
-          return override.starts_with(key.key + "=");
-        }))
+    for (auto const& other : keys) {
+      if (other.key == key.key) refuse("it is named twice; accepted: one --over with all values");
+      if (overlap(other.key, key.key))
+        refuse(fmt::format("--over {} has it too; accepted: one of them", other.key));
+    }
+    if (std::ranges::any_of(options.overrides,
+                            [&](auto const& override) { return overlap(override, key.key); }))
       refuse("--set has it too; accepted: one of them");
     if (key.key == "output.file")
       refuse("all runs go into the file that --output names; accepted: other keys");
@@ -72,7 +85,10 @@ Grid make_grid(SweepOptions const& options) {
         throw io::scene_error(scene, "output.sync",
                               "true: a sweep is not kept from power cuts; accepted: false");
       if (!scene.integrator.method->automatic) {
-        auto const plan = make_plan(scene, options.precision);
+        // What the field does in time each run looks at itself.
+        auto const no_features = std::make_shared<TimeFeatures const>();
+        auto const plan = make_plan(scene, options.precision,
+                                    scene.integrator.refuse_unstable ? nullptr : no_features);
         require_memory(scene, plan);
         dt_warning(scene, plan);  // an error where the scene refuses to be unstable
         grid.largest = std::max(grid.largest, plan.memory.total());

@@ -32,10 +32,6 @@ struct Job {
   std::unique_ptr<Child> child;
 };
 
-bool is_on_host(std::string const& space) {
-  return space == "serial" || space == "openmp" || space == "threads";
-}
-
 // How many run at a time, and the threads of each.
 struct Sharing {
   int jobs;

@@ -2,6 +2,7 @@
 #include "advice.hpp"
 
 #include "prospect.hpp"
+#include "resolved.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
@@ -29,6 +30,7 @@ constexpr double contender = 1.7;  // time over that of the best, of those timed
 constexpr int rounds = 3;          // of that
 constexpr int tries = 12;          // of one candidate
 constexpr int all_finer = 30;      // beyond the coarsest steps, where those are refused
+constexpr int refinements = 4;     // of resolved steps that miss the error
 constexpr int horizons = 20;       // tried, each half of the one before
 
 constexpr Repeats quick{1, 2e-3};
@@ -49,6 +51,7 @@ class Search {
         request_(request),
         clock_(clock),
         limit_(limit),
+        is_representative_(pilot.is_representative(horizon.time)),
         error_(accepted * request.error - fine.error),
         goal_(aim * error_) {
     for (auto const& candidate : candidates(pilot.scene(), request.precision))
@@ -94,6 +97,9 @@ class Search {
   }
 
   void add(Candidate const& candidate) {
+    if (!pilot_.fits(candidate)) return;
+    // Steps of their own see what a part of the run does not tell of.
+    if (!candidate.method->adaptive && !is_representative_) return;
     auto coarsest = coarsest_steps(pilot_, candidate, horizon_.time, horizon_.own_steps);
     for (int i = 0; is_refused(candidate, coarsest); ++i) {
       if (i == all_finer) return;
@@ -226,7 +232,8 @@ class Search {
   Known const& fine_;
   AdviceRequest const& request_;
   Kokkos::Timer const& clock_;
-  double limit_;         // seconds
+  double limit_;  // seconds
+  bool is_representative_;
   double error_, goal_;  // accepted; to be reached
   std::vector<Prospect> prospects_;
 };
@@ -267,6 +274,24 @@ Known fine_solution(Pilot const& pilot, Horizon& horizon, double error, double s
   throw NumbersFailed("there is no solution to compare with: " + horizon.why_shorter);
 }
 
+// Where a field depends on t the error depends on where the steps lie, and a scene's frames may
+// shorten them: the steps that a run takes are tried, and shortened while they miss the error.
+bool holds(Pilot const& pilot, Horizon const& horizon, Known const& fine, double error,
+           Advice& advice) {
+  if (advice.candidate.method->adaptive || !io::depends_on_time(pilot.scene().field)) return true;
+  constexpr double shorter = 1.5;
+  for (int i = 0; i < refinements; ++i) {
+    auto const steps = static_cast<double>(resolve(pilot.scene(), advice).steps);
+    auto const tried = fine.solution.measure(
+        advice.candidate, {std::llround(steps * horizon.time / pilot.end()), 0}, true, {});
+    advice.error = tried.error;
+    if (tried.error + fine.error <= error) return true;
+    advice.dt /= shorter;
+    advice.seconds *= shorter;
+  }
+  return false;
+}
+
 }  // namespace
 
 Advised advise(Pilot const& pilot, AdviceRequest const& request) {
@@ -279,6 +304,11 @@ Advised advise(Pilot const& pilot, AdviceRequest const& request) {
   search.run();
   Advised advised;
   advised.others = search.all_advice();
+  while (!advised.others.empty() &&
+         !holds(pilot, horizon, fine, request.error, advised.others.front()))
+    advised.others.erase(advised.others.begin());
+  if (!pilot.is_representative(horizon.time))
+    horizon.why_shorter += "; the field changes later, so only adaptive methods are tried";
   advised.horizon = horizon.time;
   advised.why_shorter = horizon.why_shorter;
   if (!advised.others.empty() &&

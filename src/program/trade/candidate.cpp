@@ -114,7 +114,6 @@ io::Scene with(io::Scene scene, Candidate const& candidate, double horizon, std:
   integrator.error.reset();
   integrator.energy_control = false;
   integrator.min_dt = io::Integrator{}.min_dt;
-  integrator.max_dt = io::Integrator{}.max_dt;
   if (candidate.method->adaptive) {
     integrator.tolerance = steps.tolerance;
     integrator.steps = intervals;

@@ -57,7 +57,7 @@ Steps coarsest_steps(Pilot const& pilot, Candidate const& candidate, double hori
   auto const plan = pilot.plan(plain, horizon, {4, 0});
   double const stable =
       plan.stable_dt > 0 && std::isfinite(plan.stable_dt) ? horizon / plan.stable_dt : 0;
-  return {whole(std::max(few, stable)), 0};
+  return {whole(std::max({few, stable, horizon / pilot.longest_step()})), 0};
 }
 
 Steps finer(Candidate const& candidate, Steps const& steps) {

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "pilot.hpp"
 
+#include "files/available_memory.hpp"
+#include "reference.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/guard.hpp"
+#include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
 #include <Kokkos_Timer.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace cayspin::program::trade {
@@ -86,8 +91,12 @@ double distance(Outcome const& a, Outcome const& b) {
   return largest;
 }
 
-Pilot::Pilot(io::Scene scene, std::string space)
-    : scene_(std::move(scene)), space_(std::move(space)), start_(io::initial_spins(scene_)) {
+Pilot::Pilot(io::Scene scene, std::string space, double error)
+    : scene_(std::move(scene)),
+      space_(std::move(space)),
+      error_(error),
+      features_(features_of(scene_, error)),
+      available_(io::available_memory()) {
   if (!(end() > 0))
     throw io::scene_error(scene_, "integrator.steps",
                           "a scene without steps has no errors; accepted: at least one step");
@@ -95,14 +104,50 @@ Pilot::Pilot(io::Scene scene, std::string space)
     throw io::scene_error(scene_, "thermal.temperature",
                           "trajectories at a temperature are random: there is nothing to compare; "
                           "accepted: temperature = 0");
+  if (auto const needed = bytes(fine_tsit5()); needed > available_)
+    throw io::scene_error(scene_, "lattice.shape",
+                          fmt::format("to try methods needs {} of memory, {} are available",
+                                      bytes_text(needed), bytes_text(available_)));
+  start_ = io::initial_spins(scene_);
 }
 
 double Pilot::end() const {
   return static_cast<double>(scene_.integrator.steps) * scene_.integrator.dt;
 }
 
+double Pilot::longest_step() const {
+  double const most = scene_.integrator.max_dt;
+  return features_->shortest ? std::min(most, features_->shortest->length) : most;
+}
+
+bool Pilot::is_representative(double horizon) const {
+  if (horizon >= end() || !io::depends_on_time(scene_.field)) return true;
+  auto part_of_scene = scene_;
+  part_of_scene.integrator.dt *= horizon / end();
+  auto const part = features_of(part_of_scene, error_);
+  auto const shortest_bound = [](TimeFeatures const& features) {
+    double least = infinite;
+    for (auto const& bound : features.bounds)
+      if (bound.max_dt > 0) least = std::min(least, bound.max_dt);
+    return least;
+  };
+  constexpr double alike = 0.9;
+  for (std::size_t i = 0; i < part->largest.size(); ++i)
+    if (part->largest[i].second < alike * features_->largest[i].second) return false;
+  return part->jumps == features_->jumps && shortest_bound(*part) <= 2 * shortest_bound(*features_);
+}
+
+std::int64_t Pilot::bytes(Candidate const& candidate) const {
+  auto const steps = candidate.method->adaptive ? Steps{0, 0.1} : Steps{4, 0};
+  // Two fine solutions, a try and the start are in memory at once.
+  auto const states = 3 * std::ssize(times_of_looks(*features_, end())) + 4;
+  return plan(candidate, end(), steps).memory.simulation() + states * 24 * io::sites(scene_);
+}
+
+bool Pilot::fits(Candidate const& candidate) const { return bytes(candidate) <= available_; }
+
 Plan Pilot::plan(Candidate const& candidate, double horizon, Steps const& steps) const {
-  return make_plan(with(scene_, candidate, horizon, 1, steps), candidate.precision);
+  return make_plan(with(scene_, candidate, horizon, 1, steps), candidate.precision, features_);
 }
 
 Outcome Pilot::run(Candidate const& candidate, double horizon, Steps const& steps,
@@ -119,7 +164,7 @@ Outcome Pilot::run(Candidate const& candidate, Stretch const& stretch, Steps con
   if (candidate.isotropy == io::Isotropy::constant)
     planned.integrator.isotropy = io::Isotropy::zero;
   planned.integrator.sigma = 0;
-  auto plan = make_plan(planned, candidate.precision);
+  auto plan = make_plan(planned, candidate.precision, features_);
   plan.options.sigma = candidate.sigma;
   plan.times.begin = stretch.begin;
   if (candidate.method->adaptive) plan.options.steps.end = plan.times.at(plan.times.steps);

@@ -4,6 +4,7 @@
 #include "candidate.hpp"
 #include "simulation/simulate.hpp"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,11 +46,20 @@ double distance(Outcome const& a, Outcome const& b);
 /// Runs one scene by one method and another, in one execution space, inside a KokkosSession.
 class Pilot {
  public:
-  Pilot(io::Scene scene, std::string space);
+  /// `error`: the smallest that is asked for. Throws io::SceneError for a scene without steps or
+  /// with a temperature, and where memory does not suffice.
+  Pilot(io::Scene scene, std::string space, double error);
 
   io::Scene const& scene() const { return scene_; }
   std::vector<double> const& start() const { return start_; }
   double end() const;
+  TimeFeatures const& features() const { return *features_; }
+  /// Of equal steps: the scene's max_dt, or the shortest feature of its field.
+  double longest_step() const;
+  /// Does what depends on t do up to `horizon` all that it does up to the end?
+  bool is_representative(double horizon) const;
+  /// Is there memory for a candidate's runs?
+  bool fits(Candidate const& candidate) const;
 
   /// Seen at its end.
   Outcome run(Candidate const& candidate, double horizon, Steps const& steps,
@@ -60,8 +70,14 @@ class Pilot {
   Plan plan(Candidate const& candidate, double horizon, Steps const& steps) const;
 
  private:
+  /// Of a run, and of the states that are kept of two.
+  std::int64_t bytes(Candidate const& candidate) const;
+
   io::Scene scene_;
   std::string space_;
+  double error_;
+  std::shared_ptr<TimeFeatures const> features_;
+  std::int64_t available_;
   std::vector<double> start_;
 };
 

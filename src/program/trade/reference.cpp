@@ -21,11 +21,12 @@ constexpr int most_short = 10;  // steps of a run that is never too long
 // The reference is made by these.
 Candidate by(char const* method) { return {{.method = io::find_method(method)}}; }
 
-Looks looks_of(Candidate const& candidate, Steps const& steps) {
+Looks looks_of(Candidate const& candidate, Steps const& steps,
+               std::vector<std::int64_t> const& times) {
   bool const adaptive = candidate.method->adaptive;
   std::int64_t const count = adaptive ? FineSolution::parts : steps.count;
   Looks looks{adaptive ? count : 1, {1}};
-  for (auto const time : FineSolution::times) {
+  for (auto const time : times) {
     auto const whole = time * (count / FineSolution::parts);
     auto const rest = time * (count % FineSolution::parts);
     auto const step = whole + (rest + FineSolution::parts - 1) / FineSolution::parts;
@@ -36,11 +37,33 @@ Looks looks_of(Candidate const& candidate, Steps const& steps) {
 
 }  // namespace
 
+std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon) {
+  constexpr std::size_t most_events = 16;
+  constexpr auto parts = FineSolution::parts;
+  std::vector<double> events;
+  for (auto const& bound : features.bounds)
+    if (bound.max_dt == 0) events.push_back(bound.end);
+  if (auto const& shortest = features.shortest) events.push_back(shortest->time + shortest->length);
+  std::erase_if(events, [&](double t) { return t >= horizon; });
+  std::vector<std::int64_t> times{1, 4, 16, 64, 128, 256, 384, 512, 640, 768, 896, parts};
+  auto const stride = (events.size() + most_events - 1) / most_events;
+  for (std::size_t i = 0; i < events.size(); i += stride)
+    times.push_back(static_cast<std::int64_t>(std::ceil(events[i] / horizon * parts)));
+  std::erase_if(times, [](std::int64_t time) { return time < 1 || time > parts; });
+  std::ranges::sort(times);
+  times.erase(std::ranges::unique(times).begin(), times.end());
+  return times;
+}
+
 FineSolution::FineSolution(Pilot const& pilot, double horizon, Candidate const& by,
                            double tolerance)
-    : pilot_(&pilot), by_(by), horizon_(horizon), tolerance_(tolerance) {
+    : pilot_(&pilot),
+      by_(by),
+      horizon_(horizon),
+      tolerance_(tolerance),
+      times_(times_of_looks(pilot.features(), horizon)) {
   Steps const steps{0, tolerance};
-  solution_ = pilot.run(by, {0, horizon, pilot.start(), looks_of(by, steps)}, steps);
+  solution_ = pilot.run(by, {0, horizon, pilot.start(), looks_of(by, steps, times_)}, steps);
 }
 
 void FineSolution::continue_by(Candidate const& method, double error) {
@@ -48,9 +71,9 @@ void FineSolution::continue_by(Candidate const& method, double error) {
   for (auto count = fewest; count <= most; count *= 2) {
     Looks looks{1, {}};
     std::vector<std::size_t> compared;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      if (times[i] * count % parts != 0) continue;
-      looks.steps.push_back(times[i] * count / parts);
+    for (std::size_t i = 0; i < times_.size(); ++i) {
+      if (times_[i] * count % parts != 0) continue;
+      looks.steps.push_back(times_[i] * count / parts);
       compared.push_back(i);
     }
     auto const outcome =
@@ -68,7 +91,7 @@ void FineSolution::continue_by(Candidate const& method, double error) {
 Try FineSolution::measure(Candidate const& candidate, Steps const& steps, bool guarded,
                           Repeats const& repeats) const {
   bool const adaptive = candidate.method->adaptive;
-  auto const looks = looks_of(candidate, steps);
+  auto const looks = looks_of(candidate, steps, times_);
   Stretch const stretch{0, horizon_, pilot_->start(), looks, guarded};
   auto const outcome = pilot_->run(candidate, stretch, steps, adaptive ? Repeats{} : repeats);
   Try measured{steps, infinite, outcome.seconds(), outcome.summary.evaluations};
@@ -89,11 +112,11 @@ std::vector<double> FineSolution::at(std::int64_t step, std::int64_t steps) cons
     return static_cast<double>(time) / static_cast<double>(parts);
   };
   double const share = static_cast<double>(step) / static_cast<double>(steps);
-  auto const after = std::ranges::upper_bound(times, share, {}, of);
-  bool const first = after == times.begin();
-  auto const last = static_cast<std::size_t>(after - times.begin()) - 1;
+  auto const after = std::ranges::upper_bound(times_, share, {}, of);
+  bool const first = after == times_.begin();
+  auto const last = static_cast<std::size_t>(after - times_.begin()) - 1;
   auto const& state = first ? pilot_->start() : solution_.states[last];
-  double const begin = first ? 0 : of(times[last]);
+  double const begin = first ? 0 : of(times_[last]);
   if (share == begin) return state;
   Steps const continued{
       static_cast<std::int64_t>(std::ceil((share - begin) * static_cast<double>(equal_steps_))),

@@ -3,25 +3,27 @@
 
 #include "pilot.hpp"
 
-#include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace cayspin::program::trade {
 
+/// The parts of a horizon that runs are looked at after, of 1024: a dozen, and those in which an
+/// applied field jumps or has its shortest feature.
+std::vector<std::int64_t> times_of_looks(TimeFeatures const& features, double horizon);
+
 /// A solution by an adaptive method up to a horizon, by which errors are measured.
 ///
-/// Runs are looked at after their first step, and after the first steps that end at one of these
-/// times or later. An error is that of frames during the whole motion. What comes to rest does so
-/// early, hence half of the times are in the first quarter: at four equal times any stable step
-/// would do. Steps need not end at the times, which would rule out coarse ones. The solution is
-/// continued to where they end.
+/// Runs are looked at after their first step, and after the first steps that end at one of
+/// times_of_looks or later. An error is that of frames during the whole motion. What comes to rest
+/// does so early, hence half of the times are in the first quarter: at four equal times any stable
+/// step would do. Steps need not end at the times, which would rule out coarse ones. The solution
+/// is continued to where they end.
 class FineSolution {
  public:
   static constexpr std::int64_t parts = 1024;  // of the horizon
-  static constexpr std::array<std::int64_t, 12> times{1,   4,   16,  64,  128, 256,
-                                                      384, 512, 640, 768, 896, parts};
 
   FineSolution(Pilot const& pilot, double horizon, Candidate const& by, double tolerance);
 
@@ -49,6 +51,7 @@ class FineSolution {
   Pilot const* pilot_;
   Candidate by_;
   double horizon_, tolerance_;
+  std::vector<std::int64_t> times_;
   Outcome solution_;
   std::int64_t equal_steps_ = 0;  // to the horizon, of continuations; 0: they have the tolerance
 };

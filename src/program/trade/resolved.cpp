@@ -36,6 +36,8 @@ std::string integrator_table(io::Scene const& scene, Advice const& advice, doubl
   candidate.sigma /= scene.units.time;
   auto keys = candidate.keys();
   if (candidate.method->adaptive) keys += fmt::format(",tolerance={:.3g}", advice.steps.tolerance);
+  if (candidate.method->adaptive && std::isfinite(of_scene.max_dt))
+    keys += fmt::format(",max_dt={}", of_scene.max_dt * scene.units.time);
   keys += fmt::format(",dt={},steps={}", dt, steps);
   for (auto const& key : io::Integrator::keys()) {
     bool const belongs_to_method =
@@ -89,7 +91,8 @@ io::Scene with_method(io::Scene const& scene, std::string const& space, Precisio
   if (integrator.steps == 0)
     advised.choice = {{{.method = io::find_method("rkmk4")}}, {}, integrator.dt};  // no steps
   else
-    advised = advise(Pilot(scene, space), {*integrator.error, {}, precision, progress});
+    advised = advise(Pilot(scene, space, *integrator.error),
+                     {*integrator.error, {}, precision, progress});
   if (!advised.choice)
     throw NumbersFailed(fmt::format("{}: no method gets to an error of {:g} in {} precision",
                                     scene.path.string(), *integrator.error, to_string(precision)));
