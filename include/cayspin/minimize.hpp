@@ -80,7 +80,7 @@ class Minimizer {
 
  private:
   static constexpr double largest_turn = 1;   // of any spin in a step
-  static constexpr double largest_newton_turn = 0.3;
+  static constexpr double turn_from_saddle = 0.3, largest_newton_turn = 0.15;
   static constexpr double least_turn = 1e-5;  // of the spin that turns most, out of a saddle
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
 
@@ -260,7 +260,7 @@ class Minimizer {
     copy(exec, search_.gradient, gradient_before);
     copy(exec, search_.direction, direction);
     double factor = 1;
-    for (int attempt = 0; attempt < 3 && factor * longest > least_turn; ++attempt) {
+    for (int attempt = 0; attempt < 3; ++attempt) {
       double rise = 0;
       for (int corrections = 0;; ++corrections) {
         auto const there = look(exec, field, spins, corrections == 0 ? factor : 1, options);
@@ -277,13 +277,14 @@ class Minimizer {
           return true;
         }
         auto const step = find_step(exec, field, spins, options,
-                                    {.error = 0.03, .longest = 0.1, .follows_negative = false});
+                                    {.error = 0.02, .longest = 0.1, .follows_negative = false});
         // Soft modes are all that is left, or what the step is about to gain is too little.
         if (!(step.slope < 0) || step.is_cut || rise + step.slope > 0) break;
       }
       copy(exec, spins_before, spins);
       copy(exec, gradient_before, search_.gradient);
       copy(exec, direction, search_.direction);
+      if (factor * longest < least_turn) break;
       // To the lowest point of the parabola.
       factor *= std::clamp(0.5 * factor * slope / (factor * slope - rise), 0.1, 0.5);
     }
@@ -307,7 +308,7 @@ class Minimizer {
     double const longest = detail::largest_difference(exec, vector, none);
     if (-found.value < 1e-2 * first_shift() && leave_softly(exec, field, spins, longest, options))
       return std::nullopt;
-    for (double turn = 0.3; turn > least_turn; turn *= 0.3)
+    for (double turn = turn_from_saddle; turn > least_turn; turn *= 0.3)
       for (double const step : {turn / longest, -turn / longest}) {
         auto const there = look(exec, field, spins, step, options);
         double const change = there.energy.value - so_far_.energy.value;
@@ -350,9 +351,9 @@ class Minimizer {
                     MinimizeOptions const& options) {
     auto const& vector = search_.direction;
     double const slope = detail::inner_product(exec, search_.gradient, vector);
-    double const step = (slope > 0 ? -largest_newton_turn : largest_newton_turn) / longest;
+    double const step = (slope > 0 ? -turn_from_saddle : turn_from_saddle) / longest;
     detail::combine(exec, step, vector, 0, vector, vector);
-    takes_newton_ = move_and_correct(exec, field, spins, slope * step, largest_newton_turn, options);
+    takes_newton_ = move_and_correct(exec, field, spins, slope * step, turn_from_saddle, options);
     if (!takes_newton_) detail::combine(exec, 1 / step, vector, 0, vector, vector);
     return takes_newton_;
   }

@@ -17,9 +17,9 @@ struct NewtonArrays {
 };
 
 struct NewtonOptions {
-  double error;                // of the step, relative
-  double residual;             // the largest of a site that is small enough
-  double longest;              // turn of a spin
+  double error = 0;              // of the step, relative
+  double longest = 0;            // turn of a spin
+  double residual = 0;           // the largest of a site that is small enough
   bool follows_negative = true;  // leaves along a direction of negative curvature
 };
 
