@@ -133,12 +133,11 @@ class Minimizer {
                                      MinimizeOptions const& options) {
     double least_torque = so_far_.torque, energy_then = so_far_.energy.value;
     std::int64_t least_at = so_far_.iterations;
-    double tenfold_torque = so_far_.torque;
-    std::int64_t tenfold_at = so_far_.iterations;
     bool newton_failed = false;
     while (so_far_.torque >= options.torque) {
       if (so_far_.evaluations >= options.evaluations) return MinimizeEnd::evaluation_limit;
-      if (takes_newton_ && !take_newton_step(exec, field, spins, options)) {
+      if (takes_newton_ && (so_far_.evaluations > newton_until_ ||
+                            !take_newton_step(exec, field, spins, options))) {
         takes_newton_ = false;
         newton_failed = true;
       }
@@ -148,19 +147,13 @@ class Minimizer {
         return MinimizeEnd::interrupted;
       bool const is_round_off = may_be_round_off(so_far_.torque);
       bool const falls = energy_then - so_far_.energy.value > round_off(so_far_.energy);
-      if (so_far_.torque < 0.1 * tenfold_torque || so_far_.torque > 0.1 * first_shift()) {
-        tenfold_torque = so_far_.torque;
-        tenfold_at = so_far_.iterations;
-      } else if (options.preconditioned && so_far_.iterations - tenfold_at >= 30) {
-        takes_newton_ = !is_round_off && !newton_failed;
-      }
       if (so_far_.torque < 0.9 * least_torque || falls) {
         least_torque = std::min(least_torque, so_far_.torque);
         energy_then = so_far_.energy.value;
         least_at = so_far_.iterations;
       } else if (so_far_.iterations - least_at >= (is_round_off ? 20 : 50)) {
         if (is_round_off || newton_failed || takes_newton_) return MinimizeEnd::stagnated;
-        takes_newton_ = true;
+        begin_newton();
       }
     }
     return std::nullopt;
@@ -216,6 +209,11 @@ class Minimizer {
     return false;
   }
 
+  /// Where many modes are soft, L-BFGS takes over again.
+  void begin_newton() {
+    takes_newton_ = true;
+    newton_until_ = so_far_.evaluations + 250;
+  }
   /// Where L-BFGS is slow, soft modes are left: a step of Newton's method to lower energy.
   template <class Exec, class Field>
   bool take_newton_step(Exec const& exec, Field const& field, Spins& spins,
@@ -337,7 +335,7 @@ class Minimizer {
         hessian, exec, arrays,
         {.scale = first_shift(),
          .tolerance = std::max(options.torque, hessian.round_off(strongest_field_)),
-         .error = options.lowest_curvature ? 5e-7 * strongest_field_
+         .error = options.lowest_curvature ? std::max(5e-7, 16 * epsilon) * strongest_field_
                                            : std::numeric_limits<double>::infinity(),
          .stream = so_far_.saddles},
         precondition(exec));
@@ -353,9 +351,12 @@ class Minimizer {
     double const slope = detail::inner_product(exec, search_.gradient, vector);
     double const step = (slope > 0 ? -turn_from_saddle : turn_from_saddle) / longest;
     detail::combine(exec, step, vector, 0, vector, vector);
-    takes_newton_ = move_and_correct(exec, field, spins, slope * step, turn_from_saddle, options);
-    if (!takes_newton_) detail::combine(exec, 1 / step, vector, 0, vector, vector);
-    return takes_newton_;
+    bool const leaves = move_and_correct(exec, field, spins, slope * step, turn_from_saddle, options);
+    if (leaves)
+      begin_newton();
+    else
+      detail::combine(exec, 1 / step, vector, 0, vector, vector);
+    return leaves;
   }
   template <class Exec>
   static void copy(Exec const& exec, Spins const& from, Spins const& to) {
@@ -376,6 +377,7 @@ class Minimizer {
   double strongest_field_ = 0, first_step_ = 1;
   double newton_error_ = 1e-2;  // of the next Newton step, relative
   bool takes_newton_ = false;
+  std::int64_t newton_until_ = 0;  // so many evaluations
   Minimum so_far_;
 };
 
