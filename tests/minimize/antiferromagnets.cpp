@@ -45,6 +45,20 @@ TYPED_TEST(Antiferromagnets, TakeAsFewEvaluations) {
     }
 }
 
+// Energies that differ by less than their round-off are no reason to stop.
+TYPED_TEST(Antiferromagnets, ConvergeWhereRoundOffHidesTheEnergy) {
+  if (!TestFixture::is_double) return;
+  auto const lattice = with({16, 16, 16}, Boundary::periodic);
+  EffectiveField const field(Exchange(lattice, -50), UniaxialAnisotropy(0.1, {1, 0, 0}));
+  for (unsigned const seed : {1U, 2U, 3U, 4U}) {
+    auto spins = this->random_spins(lattice, seed);
+    auto const found =
+        minimize(this->exec, field, spins, {.torque = 1e-6, .preconditioned = false});
+    EXPECT_EQ(found.end, MinimizeEnd::converged) << seed;
+    EXPECT_NEAR(found.energy.value, -1229004.8, 1e-4) << seed;
+  }
+}
+
 /// Exchange of its own constant along z.
 struct Layers {
   double in_plane, between;

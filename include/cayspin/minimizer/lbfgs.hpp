@@ -16,7 +16,7 @@ namespace cayspin::inline v0_1::detail {
 template <class Spins>
 class Lbfgs {
   using Real = typename Spins::value_type;
-  using Moves = ScalarField<Real, typename Spins::memory_space>;
+  using Mobile = ScalarField<Real, typename Spins::memory_space>;
 
  public:
   Lbfgs(std::string const& name, Lattice const& lattice)
@@ -31,8 +31,9 @@ class Lbfgs {
 
   Pairs<Spins>& pairs() { return pairs_; }
   Preconditioner<Spins>& preconditioner() { return preconditioner_; }
+  double first_shift() const { return preconditioner_.first_shift(); }
   /// Memory that `find` overwrites.
-  Spins const& room() const { return preconditioned_; }
+  Spins const& scratch() const { return preconditioned_; }
 
   /// Keeps the pair of a step, unless the energy's curvature along it is not clearly positive.
   void remember(PointOnPath const& there) {
@@ -44,7 +45,7 @@ class Lbfgs {
   /// Writes search.direction, from the gradient in `search`, the largest of which is `torque`, and
   /// what is remembered.
   template <class Exec>
-  Direction find(Exec const& exec, Spins const& spins, Moves const& moves,
+  Direction find(Exec const& exec, Spins const& spins, Mobile const& is_mobile,
                  SearchArrays<Spins> const& search, double torque) {
     using Products = ProductsOfPairs<Real>;
     std::size_t const count = pairs_.count();
@@ -84,7 +85,7 @@ class Lbfgs {
     }
     auto const [slope, square] = reduce_sites<SumsThenMaxima<1>, 2>(
         exec, "cayspin::minimize::direction", spins.layout(),
-        DirectionWithSteps<Real>{m, gradient, preconditioned_.array(), moves.array(), steps,
+        DirectionWithSteps<Real>{m, gradient, preconditioned_.array(), is_mobile.array(), steps,
                                  weights, scale, count_of_kernel, search.direction.array()});
     return {slope, std::sqrt(square)};
   }

@@ -41,7 +41,8 @@ struct Minimum {
   Energy energy = {};
   std::int64_t iterations = 0, evaluations = 0;  ///< evaluations of the field over all sites
   std::int64_t saddles = 0;                      ///< that were left on the way
-  /// An upper bound of the least eigenvalue of the energy's Hessian, of a converged state.
+  /// An upper bound of the least eigenvalue of the energy's Hessian on the tangent planes of the
+  /// spins that move, of a converged state; the eigenvalue itself with lowest_curvature.
   double curvature = std::numeric_limits<double>::infinity();
 };
 
@@ -53,6 +54,8 @@ struct MinimizeOptions {
   double time = 0;             ///< at which H is taken
   bool preconditioned = true;  ///< by the exchange that the field is found to have
   bool keep_saddles = false;   ///< a state without torque is enough, a saddle too
+  /// Minimum::curvature to 1e-6 of the strongest field; otherwise its sign is enough.
+  bool lowest_curvature = false;
   std::function<Next(Minimum const&)> observer = {};  ///< after each iteration
 };
 

@@ -106,7 +106,7 @@ struct ProductsWithChanges {
 template <class Real>
 struct DirectionWithSteps {
   SiteArray<Real, 3> spins, gradient, vectors;
-  SiteArray<Real, 1> moves;
+  SiteArray<Real, 1> is_mobile;
   PairArrays<Real> steps;
   OfPairs<double> weights;
   double scale;
@@ -119,7 +119,7 @@ struct DirectionWithSteps {
     for (int i = 0; i < count; ++i)
       sum = multiply_add(Value(weights[i]), Vec3<Value>(site.load(steps[i])), sum);
     Vec3<Value> const d =
-        Value(-Value(site.load(moves))) * tangent(Vec3<Value>(site.load(spins)), sum);
+        Value(-Value(site.load(is_mobile))) * tangent(Vec3<Value>(site.load(spins)), sum);
     values[0] = dot(Vec3<Value>(site.load(gradient)), d);
     values[1] = dot(d, d);
     store_narrowed(d, site, direction);

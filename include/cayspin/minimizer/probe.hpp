@@ -70,24 +70,59 @@ struct RandomSigns {
   }
 };
 
-/// m.H and |H|^2; keeps 1 where H is not zero, and finds where it never was.
+/// The pattern on sites that hold a spin, and the zero vector on vacant ones.
+template <class Real>
+struct WithoutVacancies {
+  SiteArray<Real, 3> spins, pattern;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    Vec3<Value> const m = site.load(spins), p = site.load(pattern);
+    site.store(select<Value>(dot(m, m) == Value(0), m, p), output);
+  }
+};
+
+/// Sums over the occupied sites of a pattern, whose vacant ones hold the zero vector; keeps 1 where
+/// H is not zero, and finds whether a spin never saw a field.
 template <class Field, class Real>
 struct FieldAlongSpins {
+  enum { along, along_square, square, sites, opposed_bonds, rests, values };
+  using Combine = SumsThenMaxima<rests>;
+
   Field field;
   SiteArray<Real, 3> spins;
-  SiteArray<Real, 1> moves;
+  SiteArray<Real, 1> is_mobile;
 
   template <class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* found) const {
     Stencil<Site, Real> const stencil(site, spins);
     check_field<Field, Stencil<Site, Real>>();
     Vec3<Value> const h = field.field(stencil);
-    values[0] = dot(stencil.center(), h);
-    values[1] = dot(h, h);
-    Value const before = site.load(moves);
-    Value const now = select<Value>(values[1] == Value(0.0), before, Value(1.0));
-    values[2] = Value(1.0) - now;
-    store_narrowed(now, moves.data + site.offset());
+    auto const& m = stencil.center();
+    Value const none(0.0), one(1.0);
+    Value const occupied = select<Value>(dot(m, m) == none, none, one);
+    found[along] = dot(m, h);
+    found[along_square] = found[along] * found[along];
+    found[square] = occupied * dot(h, h);
+    found[sites] = occupied;
+    found[opposed_bonds] = opposed<0>(stencil) + opposed<1>(stencil) + opposed<2>(stencil);
+    Value const before = site.load(is_mobile);
+    Value const now = select<Value>(found[square] == none, before, one);
+    found[rests] = occupied - now;
+    store_narrowed(now, is_mobile.data + site.offset());
+  }
+
+ private:
+  template <int Axis, class AnyStencil>
+  KOKKOS_FORCEINLINE_FUNCTION static auto opposed(AnyStencil const& stencil) {
+    using Value = typename AnyStencil::value_type;
+    Value const none(0.0), half(0.5);
+    auto const& m = stencil.center();
+    return Value(
+        select<Value>(dot(m, stencil.template previous<Axis>()) < none, half, none) +
+        select<Value>(dot(m, stencil.template next<Axis>()) < none, half, none));
   }
 };
 
@@ -107,48 +142,69 @@ struct FieldStrengths {
   }
 };
 
-/// Evaluates the field for parallel spins and for spins that alternate along each axis. `spins` is
-/// overwritten. `moves` becomes 1 where there was a field, and stays where there was none.
+/// The mean |H|^2 of parallel spins, from sums over `sites`. Couplings H = J m' give them a field
+/// that does not hold them, J (m' - m) gives none: the `isotropic` part of the first is left out.
+inline double rest_of_parallel(double square, double along_square, double along, double isotropic,
+                               double sites) {
+  bool const is_along = square - along_square < 0.1 * square;
+  if (!is_along || !(std::abs(along - isotropic) < 0.5 * std::abs(isotropic)))
+    return square / sites;
+  double const j = isotropic / sites;
+  return std::max(0.0, square - 2 * j * along + j * j * sites) / sites;
+}
+
+/// Evaluates the field for parallel spins and for spins that alternate along each axis, on the
+/// sites that hold a spin: where `spins` is not the zero vector. `pattern` is overwritten.
+/// `is_mobile` becomes 1 where a spin sees a field, and stays where there is none.
 template <class Exec, class Field, class Spins>
 FieldStrengths probe(
-    Exec const& exec, Field const& field, double time, Spins const& spins,
-    ScalarField<typename Spins::value_type, typename Spins::memory_space> const& moves) {
+    Exec const& exec, Field const& field, double time, Spins const& spins, Spins const& pattern,
+    ScalarField<typename Spins::value_type, typename Spins::memory_space> const& is_mobile) {
   using Real = typename Spins::value_type;
   auto const& lattice = spins.lattice();
   FieldStrengths found;
-  auto const look = [&](auto const& pattern) {
-    for_each_site<Real>(exec, "cayspin::minimize::pattern", spins.layout(), pattern);
-    auto prepared = prepare_term(field, exec, spins, time);
+  auto const sample = [&](auto const& make_pattern) {
+    for_each_site<Real>(exec, "cayspin::minimize::pattern", spins.layout(), make_pattern);
+    for_each_site<Real>(
+        exec, "cayspin::minimize::without_vacancies", spins.layout(),
+        WithoutVacancies<Real>{spins.array(), pattern.array(), pattern.output(false)});
+    auto prepared = prepare_term(field, exec, pattern, time);
     ++found.evaluations;
-    return reduce_sites<SumsThenMaxima<2>, 3>(
+    using Sample = FieldAlongSpins<decltype(prepared), Real>;
+    return reduce_sites<typename Sample::Combine, Sample::values>(
         exec, "cayspin::minimize::probe", spins.layout(),
-        FieldAlongSpins<decltype(prepared), Real>{std::move(prepared), spins.array(),
-                                                  moves.array()});
+        Sample{std::move(prepared), pattern.array(), is_mobile.array()});
   };
-  auto const look_at = [&](AlternatingSigns const& signs) {
-    return look(AlternateSpins<Real>{signs, spins.output(false)});
+  using Sample = FieldAlongSpins<decltype(prepare_term(field, exec, pattern, time)), Real>;
+  auto const sample_at = [&](AlternatingSigns const& signs) {
+    return sample(AlternateSpins<Real>{signs, pattern.output(false)});
   };
-  auto const parallel = look_at({});
-  double rests = parallel[2];
+  auto const parallel = sample_at({});
+  double rests = parallel[Sample::rests];
   bool is_frustrated = false;
-  found.rest = std::sqrt(parallel[1] / static_cast<double>(lattice.sites()));
+  double isotropic = 0;
   for (int axis = 0; axis < 3; ++axis) {
     if (!lattice.has_neighbors(axis)) continue;
     auto const i = static_cast<std::size_t>(axis);
+    auto const opposed = sample_at(AlternatingSigns::along_axis(axis));
+    rests = opposed[Sample::rests];
     // Each bond between opposite spins takes 4 J from the sum of m.H.
-    double const bonds = opposed_bonds(lattice, axis);
-    auto const opposed = look_at(AlternatingSigns::along_axis(axis));
-    rests = opposed[2];
-    double const coupling = (parallel[0] - opposed[0]) / (4 * bonds);
-    bool const is_noise = !(4 * bonds * std::abs(coupling) > 1e-5 * std::abs(parallel[0]));
+    double const bonds = opposed[Sample::opposed_bonds];
+    double const difference = parallel[Sample::along] - opposed[Sample::along];
+    double const coupling = difference / (4 * bonds);
+    bool const is_noise = !(std::abs(difference) > 1e-5 * std::abs(parallel[Sample::along]));
     found.couplings[i] = is_noise || !std::isfinite(coupling) ? 0 : coupling;
+    isotropic += 2 * bonds * found.couplings[i];
     bool const is_odd_ring = lattice.boundary[i] == Boundary::periodic && lattice.shape[i] % 2 == 1;
     is_frustrated = is_frustrated || (is_odd_ring && found.couplings[i] < 0);
   }
+  found.rest = std::sqrt(rest_of_parallel(parallel[Sample::square], parallel[Sample::along_square],
+                                          parallel[Sample::along], isotropic,
+                                          std::max(1.0, parallel[Sample::sites])));
   if (is_frustrated)
     for (double& coupling : found.couplings) coupling = std::max(0.0, coupling);
   if (rests > 0)
-    look(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], 0, 0, spins.output(false)});
+    sample(RandomSigns<Real>{lattice.shape[0], lattice.shape[1], 0, 0, pattern.output(false)});
   return found;
 }
 

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/evaluate.hpp>
+#include <cayspin/field/effective_field.hpp>
+#include <cayspin/field/field_with_vacancies.hpp>
+#include <cayspin/minimizer/trial.hpp>
+#include <cayspin/stepper/field_algebra.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+// The Hessian of the energy on the tangent planes of mobile spins, P (-dH/dm) P + (H.m), from the
+// field at the spins with a tangent vector added. Immobile spins, zero vectors of vacant sites
+// among them, stay as they are in every spin field at which the field is evaluated.
+namespace cayspin::inline v0_1::detail {
+
+/// Is H affine in the spins, of a prepared field?
+template <class Field, class Stencil>
+inline constexpr bool is_affine = [] {
+  if constexpr (requires { Field::degree; })
+    return Field::degree <= 2;
+  else
+    return has_linear_field<Field, Stencil>;
+}();
+template <class... Terms, class Stencil>
+inline constexpr bool is_affine<EffectiveField<Terms...>, Stencil> =
+    (is_affine<Terms, Stencil> && ...);
+template <class Field, class Real, class Stencil>
+inline constexpr bool is_affine<FieldAmongVacancies<Field, Real>, Stencil> =
+    is_affine<Field, Stencil>;
+
+/// v <- the part of it along which spins move
+template <class Real>
+struct KeepTangent {
+  SiteArray<Real, 3> spins, vectors;
+  SiteArray<Real, 1> is_mobile;
+  OutputArray<Real, 3> output;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    using Value = typename Site::value_type;
+    site.store(Value(site.load(is_mobile)) *
+                   tangent(Vec3<Value>(site.load(spins)), Vec3<Value>(site.load(vectors))),
+               output);
+  }
+};
+
+/// The Hessian times v from the change of the field between two sets of spins, m + shift v and
+/// those that `before` is the field of. Sums v.product and v.v.
+template <class Field, class Real>
+struct HessianProduct {
+  Field field;
+  SiteArray<Real, 3> spins, vectors, shifted, before, at_rest;
+  SiteArray<Real, 1> is_mobile;
+  double inverse_shift;
+  SiteArray<Real, 3> product;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Stencil<Site, Real> const stencil(site, shifted);
+    Vec3<Value> const m = site.load(spins), v = site.load(vectors);
+    Vec3<Value> const change = field.field(stencil) - Vec3<Value>(site.load(before));
+    Value const along = dot(m, Vec3<Value>(site.load(at_rest)));
+    Vec3<Value> const p =
+        Value(site.load(is_mobile)) *
+        tangent(m, multiply_add(along, v, Vec3<Value>(Value(-inverse_shift) * change)));
+    values[0] = dot(v, p);
+    values[1] = dot(v, v);
+    store_narrowed(p, site, product);
+  }
+};
+
+/// max |v|^2 of a site.
+template <class Real>
+struct LargestSquare {
+  SiteArray<Real, 3> vectors;
+
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
+    Vec3<Value> const v = site.load(vectors);
+    values[0] = dot(v, v);
+  }
+};
+
+/// max |v| of a site; waits.
+template <class Exec, class Spins>
+double largest_length(Exec const& exec, Spins const& vectors) {
+  return std::sqrt(reduce_sites<Maximum, 1>(
+      exec, "cayspin::minimize::largest_length", vectors.layout(),
+      LargestSquare<typename Spins::value_type>{vectors.array()})[0]);
+}
+
+/// Memory that products with the Hessian work in.
+template <class Spins>
+struct HessianArrays {
+  Spins shifted, at_rest, before;
+};
+
+template <class Exec, class Field, class Spins>
+class Hessian {
+  using Real = typename Spins::value_type;
+  using Mobile = ScalarField<Real, typename Spins::memory_space>;
+
+ public:
+  struct Product {
+    double along, square;  // v.Hv and v.v
+  };
+
+  /// At `spins`, which have to stay as they are; a field that is not affine in them is
+  /// differentiated by central differences. Evaluates the field.
+  Hessian(Exec const& exec, Field const& field, double time, Spins const& spins,
+          Mobile const& is_mobile, HessianArrays<Spins> const& arrays)
+      : exec_(exec),
+        field_(field),
+        time_(time),
+        spins_(spins),
+        is_mobile_(is_mobile),
+        arrays_(arrays) {
+    is_affine_ = is_affine<decltype(prepare_term(field, exec, spins, time)),
+                           Stencil<Site<Pack<double>>, Real>>;
+    is_affine_ = is_affine_ && has_affine_field(field);
+    evaluate_field(exec, field, spins, time, arrays.at_rest);
+    ++evaluations_;
+  }
+
+  std::int64_t evaluations() const { return evaluations_; }
+
+  /// Bound on the round-off of a quotient v.Hv / v.v, of fields up to `strongest`.
+  double round_off(double strongest) const {
+    constexpr double epsilon = std::numeric_limits<Real>::epsilon();
+    return (is_affine_ ? 64 : std::max(64.0, 2 / longest_shift())) * epsilon * strongest;
+  }
+
+  /// hv <- H v of a tangent v.
+  Product multiply(Spins const& v, Spins const& hv) {
+    auto const& [shifted, at_rest, before] = arrays_;
+    combine(exec_, 0, v, 0, v, shifted);
+    double const shift =
+        (is_affine_ ? 0.5 : longest_shift()) / largest_difference(exec_, v, shifted);
+    if (!is_affine_) {
+      combine(exec_, -shift, v, 1, spins_, shifted);
+      evaluate_field(exec_, field_, shifted, time_, before);
+      ++evaluations_;
+    }
+    combine(exec_, shift, v, 1, spins_, shifted);
+    auto prepared = prepare_term(field_, exec_, shifted, time_);
+    ++evaluations_;
+    auto const& from = is_affine_ ? at_rest : before;
+    auto const [along, square] = reduce_sites<Sum, 2>(
+        exec_, "cayspin::minimize::hessian_product", spins_.layout(),
+        HessianProduct<decltype(prepared), Real>{
+            std::move(prepared), spins_.array(), v.array(), shifted.array(), from.array(),
+            at_rest.array(), is_mobile_.array(), 1 / (is_affine_ ? shift : 2 * shift), hv.array()});
+    return {along, square};
+  }
+
+  /// v <- its tangent part on mobile sites
+  void keep_tangent(Spins const& v) const {
+    for_each_site<Real>(
+        exec_, "cayspin::minimize::keep_tangent", spins_.layout(),
+        KeepTangent<Real>{spins_.array(), v.array(), is_mobile_.array(), v.output(false)});
+  }
+
+ private:
+  /// Balances the errors of a central difference: round-off over the shift, and its square.
+  static double longest_shift() { return 4 * std::cbrt(std::numeric_limits<Real>::epsilon()); }
+
+  Exec const& exec_;
+  Field const& field_;
+  double time_;
+  Spins const& spins_;
+  Mobile const& is_mobile_;
+  HessianArrays<Spins> arrays_;
+  bool is_affine_;
+  std::int64_t evaluations_ = 0;
+};
+
+}  // namespace cayspin::inline v0_1::detail

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/minimizer/hessian.hpp>
+#include <cayspin/stepper/field_algebra.hpp>
+
+#include <cmath>
+
+// Steps of Newton's method by preconditioned conjugate gradients, ended early where the curvature
+// is negative or a spin turns too far (Nocedal and Wright 2006, Alg. 7.1 and 7.2).
+namespace cayspin::inline v0_1::detail {
+
+/// Memory that `find_newton_step` works in.
+template <class Spins>
+struct NewtonArrays {
+  Spins residual, preconditioned, direction, product;
+};
+
+struct NewtonOptions {
+  double error = 0;              // of the step, relative
+  double longest = 0;            // turn of a spin
+  double residual = 0;           // the largest of a site that is small enough
+  bool follows_negative = true;  // leaves along a direction of negative curvature
+};
+
+struct NewtonStep {
+  double slope = 0, longest = 0;  // g.p, and the largest |p| of a spin
+  bool is_cut = false;            // by a negative curvature or the longest turn
+};
+
+/// Writes p, about -H^-1 g, into `step`. `precondition(from, to)`.
+template <class AnyHessian, class Exec, class Spins, class Precondition>
+NewtonStep find_newton_step(AnyHessian& hessian, Exec const& exec, Spins const& gradient,
+                            Spins const& step, NewtonArrays<Spins> const& arrays,
+                            NewtonOptions const& options, Precondition const& precondition) {
+  constexpr int most_products = 60;
+  auto const& [r, z, d, hd] = arrays;
+  NewtonStep found;
+  combine(exec, 0, gradient, 0, gradient, step);
+  combine(exec, -1, gradient, 0, gradient, r);
+  auto const apply = [&] {
+    precondition(r, z);
+    hessian.keep_tangent(z);
+    return inner_product(exec, r, z);
+  };
+  double rz = apply();
+  double const first = rz;
+  if (!(first > 0)) return found;
+  combine(exec, 1, z, 0, z, d);
+  for (int k = 0; k < most_products; ++k) {
+    auto const [along, square] = hessian.multiply(d, hd);
+    if (!(along > 0)) {
+      found.is_cut = true;
+      if (k > 0 && !options.follows_negative) break;
+      double const factor = (options.longest + found.longest) / largest_length(exec, d);
+      combine(exec, factor, d, 1, step, step);
+      found.longest = largest_length(exec, step);
+      break;
+    }
+    double const alpha = rz / along;
+    combine(exec, alpha, d, 1, step, step);
+    combine(exec, -alpha, hd, 1, r, r);
+    found.longest = largest_length(exec, step);
+    if (found.longest > options.longest) {
+      found.is_cut = true;
+      break;
+    }
+    if (largest_length(exec, r) < options.residual) break;
+    double const before = rz;
+    rz = apply();
+    if (!(rz > options.error * options.error * first)) break;
+    combine(exec, rz / before, d, 1, z, d);
+  }
+  if (found.longest > options.longest) {
+    combine(exec, options.longest / found.longest, step, 0, step, step);
+    found.longest = options.longest;
+  }
+  found.slope = inner_product(exec, gradient, step);
+  return found;
+}
+
+}  // namespace cayspin::inline v0_1::detail
