@@ -72,6 +72,11 @@ TEST_F(DearFields, AreChecked) {
   auto const numbers = nlohmann::json::parse(output_of({"check", "scene.toml", "--json"}));
   EXPECT_EQ(numbers.at("order"), 3);
   EXPECT_EQ(numbers.at("evaluations_per_step"), 24);
+  // Order 3 would widen lines, at the same cost.
+  auto const at_small_damping = nlohmann::json::parse(
+      output_of(joined({"check", "scene.toml", "--json"}, set("system.damping=0.008"))));
+  EXPECT_EQ(at_small_damping.at("order"), 4);
+  EXPECT_EQ(at_small_damping.at("evaluations_per_step"), 24);
 }
 
 // Evaluated once a step or in each stage: all come to the same spins.
