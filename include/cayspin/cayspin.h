@@ -2,7 +2,10 @@
 /* Scenes from C, and from all that calls C. Every function returns a cayspin_status. It changes
    what its pointers point to only when that is CAYSPIN_OK. No C++ exception leaves a function.
    Calls from several threads take turns, but for cayspin_time and cayspin_steps: they do not wait,
-   and say how far a run is. No other call may be under way when cayspin_close is called. */
+   and say how far a run is. Calls on several simulations take turns step by step, and those that
+   read and write files take turns in HDF5. No other call on a simulation may be under way when
+   cayspin_close is called. No function starts a process. A damaged HDF5 file may crash HDF5, and
+   with it the program: `cayspin check` reads the files of a scene in a process of its own. */
 #ifndef CAYSPIN_CAYSPIN_H
 #define CAYSPIN_CAYSPIN_H
 

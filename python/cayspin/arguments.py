@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""What functions of the package are called with, or one line about what is wrong with it."""
+"""What functions of the package are called with, or one line about what is wrong with it.
+
+NumPy's scalars and arrays without axes are what they hold."""
 
 from __future__ import annotations
 
@@ -12,12 +14,26 @@ import numpy as np
 from cayspin._cayspin import CayspinError
 
 
+def _one(thing: Any) -> Any:
+    """The Python object that a scalar of NumPy stands for, or an array without axes."""
+    is_numpy = isinstance(thing, (np.generic, np.ndarray))
+    return thing.item() if is_numpy and thing.ndim == 0 else thing
+
+
+def _shown(thing: Any) -> str:
+    """A thing in a message of one line."""
+    text = " ".join(repr(thing).split())
+    return text if len(text) <= 80 else text[:77] + "..."
+
+
 def whole(number: Any, name: str, bits: int = 64) -> int:
     """A whole number of so many bits."""
     try:
-        value = operator.index(number)
+        if isinstance(number, np.ndarray) and number.ndim:
+            raise TypeError
+        value = operator.index(_one(number))
     except TypeError:
-        raise CayspinError(f"{name}: {number!r}; accepted: a whole number") from None
+        raise CayspinError(f"{name}: {_shown(number)}; accepted: a whole number") from None
     if not -2**(bits - 1) <= value < 2**(bits - 1):
         raise CayspinError(f"{name}: {value}; accepted: a whole number of {bits} bits")
     return value
@@ -25,12 +41,35 @@ def whole(number: Any, name: str, bits: int = 64) -> int:
 
 def real(number: Any, name: str) -> float:
     """A number, no text."""
+    value = _one(number)
     try:
-        if not isinstance(number, (str, bytes)):
-            return float(number)
+        is_number = hasattr(type(value), "__float__") or hasattr(type(value), "__index__")
+        if is_number and not isinstance(value, (np.ndarray, complex, np.complexfloating)):
+            return float(value)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise CayspinError(f"{name}: {number!r}; accepted: a number")
+    raise CayspinError(f"{name}: {_shown(number)}; accepted: a number")
+
+
+def flag(truth: Any, name: str) -> bool:
+    """True or False, also as 1 or 0."""
+    value = _one(truth)
+    if isinstance(value, (bool, int)) and value in (0, 1):
+        return bool(value)
+    raise CayspinError(f"{name}: {_shown(truth)}; accepted: True or False")
+
+
+def is_false(thing: Any) -> bool:
+    """Whether a thing is False, of Python or NumPy: no number 0, nothing empty."""
+    return _one(thing) is False
+
+
+def wants_stop(answer: Any) -> bool:
+    """Whether what an observer returned is True, of Python or NumPy."""
+    if isinstance(answer, np.ndarray) and answer.dtype == bool and answer.ndim:
+        raise CayspinError(f"observe: the function returned {answer.size} truths; accepted: one, "
+                           "as from all() or any()")
+    return _one(answer) is True
 
 
 def is_unicode(text: str) -> bool:
@@ -40,19 +79,30 @@ def is_unicode(text: str) -> bool:
 
 def word(text: Any, name: str) -> str:
     """A string."""
-    if not isinstance(text, str) or not is_unicode(text):
-        raise CayspinError(f"{name}: {text!r}; accepted: a string")
-    return text
+    value = _one(text)
+    if not isinstance(value, str) or not is_unicode(value):
+        raise CayspinError(f"{name}: {_shown(text)}; accepted: a string")
+    return str(value)
+
+
+def entries(things: Any, name: str, accepted: str) -> list:
+    """The entries of a list, a tuple or another sequence in order; text is none."""
+    if not isinstance(things, (str, bytes, bytearray, dict, set, frozenset)):
+        try:
+            return list(things)
+        except TypeError:
+            pass
+    raise CayspinError(f"{name}: {_shown(things)}; accepted: {accepted}")
 
 
 def file_name(path: Any, name: str) -> str:
     """The name of a file."""
     try:
-        text = os.fsdecode(os.fsencode(path))
+        text = os.fsdecode(os.fsencode(_one(path)))
     except (TypeError, UnicodeEncodeError):
-        raise CayspinError(f"{name}: {path!r}; accepted: the name of a file") from None
+        raise CayspinError(f"{name}: {_shown(path)}; accepted: the name of a file") from None
     if "\0" in text:
-        raise CayspinError(f"{name}: {text!r}; accepted: a name without a null character")
+        raise CayspinError(f"{name}: {_shown(text)}; accepted: a name without a null character")
     return text
 
 

@@ -27,10 +27,11 @@ def topological_charge(spins: Any, boundary: Sequence[str] = ("open", "open")) -
     if spins.ndim < 3 or spins.shape[-1] != 3:
         raise CayspinError(f"topological_charge: an array of shape {spins.shape}; accepted: "
                            "(..., ny, nx, 3)")
-    boundary = tuple(boundary)
+    accepted = 'two words, each "open" or "periodic"'
+    boundary = tuple(arguments.word(one, "topological_charge: boundary") for one in
+                     arguments.entries(boundary, "topological_charge: boundary", accepted))
     if len(boundary) != 2 or not set(boundary) <= {"open", "periodic"}:
-        raise CayspinError(f"topological_charge: boundary {boundary!r}; accepted: two words, each "
-                           '"open" or "periodic"')
+        raise CayspinError(f"topological_charge: boundary {boundary!r}; accepted: {accepted}")
     return half_solid_angles(spins, boundary).sum((-2, -1)) / (2 * np.pi)
 
 
@@ -114,6 +115,7 @@ def _along(path, shape, reciprocal):
 
 def _combination(component, about, mean):
     """The coefficients of m_x, m_y, m_z."""
+    component = arguments.word(component, "dispersion: component")
     if component in ("x", "y", "z"):
         return np.eye(3)["xyz".index(component)].astype(complex)
     if component != "transverse":
@@ -187,13 +189,17 @@ def dispersion(spins: Any, dt: float, path: Any, *, labels: Sequence[str] | None
     if positions.shape != (sites, 3):
         raise CayspinError(f"dispersion: positions of shape {positions.shape}; accepted: "
                            f"{(sites, 3)}")
-    periodic = tuple(periodic)
+    accepted = "True or False for each of x, y, z"
+    periodic = tuple(arguments.flag(one, "dispersion: periodic") for one in
+                     arguments.entries(periodic, "dispersion: periodic", accepted))
     if len(periodic) != 3:
-        raise CayspinError(f"dispersion: periodic {periodic!r}; accepted: true or false for each "
-                           "of x, y, z")
+        raise CayspinError(f"dispersion: periodic {periodic!r}; accepted: {accepted}")
     reciprocal = 2 * np.pi * np.linalg.inv(cell).T
     numbers, distance, corners = _along(path, shape, reciprocal)
-    if labels is None:
+    if labels is not None:
+        if not isinstance(labels, str):  # "GXM": a letter for each
+            labels = arguments.entries(labels, "dispersion: labels", "a list of words")
+    else:
         labels = [f"({', '.join(f'{part:.4g}' for part in corner)})" for corner in path]
     if len(labels) != len(corners):
         raise CayspinError(f"dispersion: {len(labels)} labels; accepted: {len(corners)}, one for "

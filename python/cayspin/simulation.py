@@ -88,6 +88,7 @@ class Simulation:
         Frames go into the HDF5 file `output`, or into the scene's output.file; output=False writes
         none. The run ends early where the scene's until_torque or an observer says so.
         """
+        overwrite = arguments.flag(overwrite, "run: overwrite")
         if not self._scene._scene.has_integrator:
             raise _cayspin.CayspinError("run: the scene has no integrator; accepted: relax()")
         if until is None and self._scene.steps == 0:
@@ -102,11 +103,11 @@ class Simulation:
         self._check_dt()
         if output is None:
             output = self._scene._scene.output
-        if output is None or output is False:
+        if output is None or arguments.is_false(output):
             self._advance(end, self._scene._scene.guard_period, True, None)
             return
         file = arguments.file_name(output, "run: output")
-        recorder = _cayspin.Recorder(self._run, end, file, bool(overwrite))
+        recorder = _cayspin.Recorder(self._run, end, file, overwrite)
         try:
             recorder.look(False)
             self._advance(end, self._scene._scene.guard_period, True, recorder)
@@ -142,7 +143,7 @@ class Simulation:
             applied = tuple(float(component) for component in applied)
         found = self._run.relax(arguments.real(torque, "relax: torque"),
                                 arguments.whole(evaluations, "relax: evaluations"), applied,
-                                bool(keep_saddles))
+                                arguments.flag(keep_saddles, "relax: keep_saddles"))
         return Minimum(*(getattr(found, field.name) for field in dataclasses.fields(Minimum)))
 
     def save(self, checkpoint: str | os.PathLike) -> None:
@@ -166,7 +167,8 @@ class Simulation:
             at_rest = run.advance(due - run.steps, guard_period, until_torque)
             if recorder:
                 recorder.look(at_rest)
-            stop = [f(self) is True for every, f in self._observers if run.steps % every == 0]
+            stop = [arguments.wants_stop(f(self)) for every, f in self._observers
+                    if run.steps % every == 0]
             if at_rest or any(stop):
                 return
 

@@ -21,6 +21,8 @@ def value(thing, key):
     """One TOML value on one line. `key` names it in the message of a SceneError."""
     if isinstance(thing, (np.generic, np.ndarray)):
         thing = thing.tolist()
+    if isinstance(thing, np.floating):  # of more digits than Python's
+        thing = float(thing)
     if isinstance(thing, bool):
         return "true" if thing else "false"
     if isinstance(thing, (int, float)):

@@ -22,6 +22,9 @@ def program() -> str:
     return named or str(pathlib.Path(__file__).resolve().parent / "bin" / "cayspin")
 
 
+LONGEST = 7 * 24 * 3600  # seconds: trials of large scenes take hours
+
+
 def _ask(command: str, scene: Scene, *options: str) -> dict:
     if not isinstance(scene, Scene):
         raise CayspinError(f"{command}: a {type(scene).__name__}; accepted: a Scene")
@@ -38,7 +41,9 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
             changed = [part for one in scene._overrides for part in ("--set", one)]
         try:
             done = subprocess.run([program(), command, str(file), *changed, *options, "--json"],
-                                  capture_output=True, text=True)
+                                  capture_output=True, text=True, timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            raise CayspinError(f"{command}: the program has not ended after {LONGEST} s") from None
         except OSError as error:
             raise CayspinError(f"{command}: the program {program()} does not run: {error.strerror}"
                                ) from None
@@ -49,8 +54,13 @@ def _ask(command: str, scene: Scene, *options: str) -> dict:
 
 
 def _options(precision, space, threads):
-    given = {"--precision": precision, "--space": space, "--threads": threads}
-    return [str(part) for key, value in given.items() if value is not None for part in (key, value)]
+    options = []
+    for name, value, read in (("precision", precision, arguments.word),
+                              ("space", space, arguments.word),
+                              ("threads", threads, arguments.whole)):
+        if value is not None:
+            options += [f"--{name}", str(read(value, name))]
+    return options
 
 
 class Trade(list):
@@ -106,7 +116,7 @@ class Advice:
 def trade(scene: Scene, seconds: float = 10, precision: str | None = None,
           space: str | None = None, threads: int | None = None) -> Trade:
     """Runs every method that can run the scene, each for at most `seconds`. Takes minutes."""
-    return Trade(_ask("trade", scene, "--seconds", str(seconds),
+    return Trade(_ask("trade", scene, "--seconds", repr(arguments.real(seconds, "seconds")),
                       *_options(precision, space, threads)))
 
 

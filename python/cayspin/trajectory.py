@@ -119,7 +119,11 @@ class Trajectory:
         Raises CayspinError also for frames that are not at equal steps of time."""
         if not isinstance(frames, slice):
             raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice")
-        spins, chosen = self.file["spins"], range(len(self))[frames]
+        try:
+            spins, chosen = self.file["spins"], range(len(self))[frames]
+        except (TypeError, ValueError):
+            raise CayspinError(f"dispersion: frames {frames!r}; accepted: a slice of whole numbers"
+                               ) from None
         if chosen.step < 0:
             raise CayspinError(f"dispersion: frames {frames!r} go back in time; accepted: a slice "
                                "with a step above 0")

@@ -4,9 +4,12 @@
 #include "simulation/failure.hpp"
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace cayspin::python {
@@ -21,6 +24,16 @@ std::shared_ptr<nb::object> kept(nb::object object) {
             nb::gil_scoped_acquire const gil;
             delete held;
           }};
+}
+
+// NumPy would take the real part of a complex number, and the entry of an array of one.
+bool is_real_number(nb::object const& number) {
+  if (PyFloat_CheckExact(number.ptr())) return true;
+  if (PyComplex_Check(number.ptr())) return false;
+  if (!nb::hasattr(number, "dtype")) return true;
+  auto const kind = nb::cast<std::string>(number.attr("dtype").attr("kind"));
+  return nb::cast<int>(number.attr("ndim")) == 0 &&
+         std::string_view("biuf").find(kind) != std::string_view::npos;
 }
 
 template <class To, class From>
@@ -93,13 +106,20 @@ io::OwnField own_field(nb::object uniform, nb::object nonlocal) {
     own.uniform = [function = kept(std::move(uniform))](double t) {
       nb::gil_scoped_acquire const gil;
       auto const result = (*function)(t);
-      std::array<double, 3> field{};
+      bool const is_bytes = PyBytes_Check(result.ptr()) || PyByteArray_Check(result.ptr());
+      if (is_bytes || !PySequence_Check(result.ptr()) || PyObject_Length(result.ptr()) < 0) {
+        PyErr_Clear();  // an array without axes has no length
+        throw UsageError(
+            "field.applied: the function returned no sequence; accepted: three numbers");
+      }
       if (nb::len(result) != 3)
         throw UsageError(
             "field.applied: the function returned another number of components; "
             "accepted: three numbers");
+      std::array<double, 3> field{};
       for (std::size_t c = 0; c < 3; ++c)
-        if (nb::object const component = result[c]; !nb::try_cast(component, field[c]))
+        if (nb::object const component = result[c];
+            !is_real_number(component) || !nb::try_cast(component, field[c]))
           throw UsageError("field.applied: the function returned no numbers; accepted: three");
       return field;
     };

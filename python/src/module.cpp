@@ -109,16 +109,18 @@ void define_scene(nb::module_& module) {
           "read",
           [](std::filesystem::path const& path, Overrides const& overrides,
              std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
-            return with_one_field(
-                io::read_scene_to_run_or_relax(path, overrides, given(spins, numbers)));
+            auto const arrays = given(spins, numbers);
+            nb::gil_scoped_release const released;
+            return with_one_field(io::read_scene_to_run_or_relax(path, overrides, arrays));
           },
           "path"_a, "overrides"_a, "spins"_a.none(), "numbers"_a)
       .def_static(
           "parse",
           [](std::string const& text, std::filesystem::path const& name, Overrides const& overrides,
              std::optional<NumbersIn> const& spins, ArraysIn const& numbers) {
-            return with_one_field(
-                io::parse_scene_to_run_or_relax(text, name, overrides, given(spins, numbers)));
+            auto const arrays = given(spins, numbers);
+            nb::gil_scoped_release const released;
+            return with_one_field(io::parse_scene_to_run_or_relax(text, name, overrides, arrays));
           },
           "text"_a, "name"_a, "overrides"_a, "spins"_a.none(), "numbers"_a)
       .def("with_overrides",
@@ -173,10 +175,11 @@ void define_scene(nb::module_& module) {
                    [](io::Scene const& scene) { return Guard::period_of(io::sites(scene)); });
 }
 
-// HDF5 has its lock in h5py, which holds the GIL: so does what reads or writes files.
+// No call waits for another run, or for HDF5, with the GIL: who has these may need it.
 template <class Work>
 auto as_error(Work const& work) {
   try {
+    nb::gil_scoped_release const released;
     return work();
   } catch (UsageError const&) {
     throw;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "handle.hpp"
+
 #include <hdf5.h>
 
 #include <filesystem>
@@ -8,7 +10,8 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// Keeps HDF5 from printing its error stack while in scope.
+/// While in scope, no other thread of the library uses HDF5, which need not be built for several,
+/// and HDF5 does not print its error stack.
 class QuietErrors {
  public:
   QuietErrors();
@@ -17,6 +20,7 @@ class QuietErrors {
   QuietErrors& operator=(QuietErrors const&) = delete;
 
  private:
+  TurnOfHdf5 turn_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

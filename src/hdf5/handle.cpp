@@ -4,7 +4,27 @@
 #include "error.hpp"
 #include "files/journal.hpp"
 
+#include <mutex>
+
 namespace cayspin::inline v0_1::io {
+namespace {
+
+thread_local int depth_of_turns = 0;  // of the scopes that this thread is in
+
+std::mutex& one_at_a_time() {
+  static auto& mutex = *new std::mutex;  // also while the program ends
+  return mutex;
+}
+
+}  // namespace
+
+TurnOfHdf5::TurnOfHdf5() {
+  if (depth_of_turns++ == 0) one_at_a_time().lock();
+}
+
+TurnOfHdf5::~TurnOfHdf5() {
+  if (--depth_of_turns == 0) one_at_a_time().unlock();
+}
 
 FileHandle open_file(std::filesystem::path const& path, Locking locking) {
   std::string const action = "cannot open the file";

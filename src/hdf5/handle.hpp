@@ -8,6 +8,16 @@
 
 namespace cayspin::inline v0_1::io {
 
+/// While in scope, no other thread of the library uses HDF5. Scopes may be nested. A child that is
+/// forked in scope has the turn, too, which a std::recursive_mutex would not give it.
+class TurnOfHdf5 {
+ public:
+  TurnOfHdf5();
+  ~TurnOfHdf5();
+  TurnOfHdf5(TurnOfHdf5 const&) = delete;
+  TurnOfHdf5& operator=(TurnOfHdf5 const&) = delete;
+};
+
 /// Owns one HDF5 identifier and closes it with `Close`.
 template <herr_t (*Close)(hid_t)>
 class Handle {
@@ -19,16 +29,16 @@ class Handle {
     std::swap(id_, other.id_);
     return *this;
   }
-  ~Handle() {
-    if (id_ >= 0) Close(id_);
-  }
+  ~Handle() { close(); }
 
   hid_t get() const { return id_; }
 
   /// Closes now; the result tells what a destructor has to swallow.
   herr_t close() {
     auto const id = std::exchange(id_, H5I_INVALID_HID);
-    return id >= 0 ? Close(id) : 0;
+    if (id < 0) return 0;
+    TurnOfHdf5 const turn;
+    return Close(id);
   }
 
  private:

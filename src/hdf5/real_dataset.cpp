@@ -26,6 +26,7 @@ RealDataset::RealDataset(std::filesystem::path path, std::string name)
 }
 
 Extents RealDataset::chunk() const {
+  QuietErrors const quiet;
   auto const action = "cannot read dataset " + name_;
   Extents chunk(extents_.size(), 1);
   PropertyHandle const properties(check(H5Dget_create_plist(dataset_.get()), path_, action));

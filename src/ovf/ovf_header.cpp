@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 namespace cayspin::inline v0_1::io {
@@ -28,9 +28,16 @@ class Records {
  public:
   explicit Records(std::filesystem::path const& path) : path_(path) {}
 
-  void add(OvfLine line) { values_[std::move(line.label)] = std::move(line.value); }
+  void add(OvfLine line) {
+    auto const [place, is_new] = values_.try_emplace(line.label, line.value);
+    if (is_new || place->second == line.value) return;
+    repeated_.insert(line.label);
+    place->second = std::move(line.value);
+  }
 
   std::optional<std::string> find(std::string const& label) const {
+    if (label != "title" && repeated_.contains(label))
+      refuse_ovf(path_, fmt::format("its header has several values of {}; accepted: one", label));
     auto const found = values_.find(label);
     return found == values_.end() ? std::nullopt : std::optional(found->second);
   }
@@ -73,6 +80,7 @@ class Records {
 
   std::filesystem::path const& path_;
   std::map<std::string, std::string> values_;
+  std::set<std::string> repeated_;  // with other values
 };
 
 /// The next line, or nothing at the end of the file.
@@ -91,7 +99,11 @@ void require_first_line(std::string const& line, std::filesystem::path const& pa
   auto const first = squeezed(line);
   if (first == "#oommfovf2.0") return;
   constexpr std::string_view accepted = "OVF 2.0 (# OOMMF OVF 2.0)";
-  if (first.starts_with("#oommf:"))
+  // Such as "# OOMMF: irregular mesh v1.0"; of 0.99, too.
+  bool const is_mesh =
+      first.starts_with("#oommf:rectangularmeshv") || first.starts_with("#oommf:irregularmeshv");
+  auto const version = std::string_view(first).substr(first.find_last_of('v') + 1);
+  if (is_mesh && (version.starts_with("0.") || version.starts_with("1.")))
     refuse_ovf(path, fmt::format("it is OVF 1.0; accepted: {}", accepted));
   if (first.starts_with("#oommf"))
     refuse_ovf(path, fmt::format("its first line is \"{}\"; accepted: {}",
@@ -150,7 +162,7 @@ std::string squeezed(std::string_view text) {
   std::string result;
   for (char const c : text)
     if (blanks.find(c) == blanks.npos)
-      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      result += 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return result;
 }
 

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <clocale>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -59,6 +59,7 @@ class OvfValues {
       default:
         read_binary(check_value_8);
     }
+    require_one_segment();
     return std::move(values_);
   }
 
@@ -114,27 +115,61 @@ class OvfValues {
         if (values_.size() < count_) truncated();
         return;
       }
-      read_numbers(std::string_view(line).substr(0, line.find('#')));
+      read_numbers(without_comment(line));
     }
     truncated();
+  }
+
+  static bool is_blank(char c) {
+    return std::string_view(" \t\r\v\f").find(c) != std::string::npos;
+  }
+
+  /// A comment begins with ##, or with # after a blank: 1.#QNAN is none.
+  static std::string_view without_comment(std::string_view line) {
+    for (auto at = line.find('#'); at != line.npos; at = line.find('#', at + 1))
+      if (at == 0 || is_blank(line[at - 1]) || line.substr(at).starts_with("##"))
+        return line.substr(0, at);
+    return line;
+  }
+
+  /// Of a number that a double cannot hold: 0 or an infinity. With a decimal point, whatever the
+  /// locale of the program has.
+  static double limit(char const* number) {
+    static auto const classic = ::newlocale(LC_ALL_MASK, "C", nullptr);
+    return ::strtod_l(number, nullptr, classic);
   }
 
   void read_numbers(std::string_view line) {
     auto const* begin = line.data();
     auto const* const end = begin + line.size();
     while (true) {
-      while (begin != end && std::isspace(static_cast<unsigned char>(*begin))) ++begin;
+      while (begin != end && is_blank(*begin)) ++begin;
       if (begin == end) return;
       if (values_.size() == count_)
         refuse_ovf(path_, fmt::format("it has more values than its {} nodes", count_ / 3));
       double value = 0;
       auto const [stop, error] = std::from_chars(begin + (*begin == '+' ? 1 : 0), end, value);
-      bool const whole = stop == end || std::isspace(static_cast<unsigned char>(*stop));
+      bool const whole = stop == end || is_blank(*stop);
       if (error == std::errc::invalid_argument || !whole)
         refuse_ovf(path_, fmt::format("value {} is \"{}\"; accepted: a number", values_.size(),
                                       std::string_view(begin, end).substr(0, 40)));
-      values_.push_back(error == std::errc() ? value : std::strtod(begin, nullptr));
+      values_.push_back(error == std::errc() ? value : limit(begin));
       begin = stop;
+    }
+  }
+
+  /// Nothing but the end of the segment and comments follow the values.
+  void require_one_segment() {
+    for (std::string text; std::getline(stream_, text);) {
+      auto const line = split_line(text);
+      if (line.label == "begin")
+        refuse_ovf(path_,
+                   fmt::format("it goes on with \"{}\" after its values; accepted: one segment",
+                               text.substr(0, 40)));
+      if (!squeezed(without_comment(text)).empty())
+        refuse_ovf(path_, fmt::format("it goes on with \"{}\" after its values; accepted: "
+                                      "# End: Segment",
+                                      text.substr(0, 40)));
     }
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "hdf5/reading_trial.hpp"
 #include "launch/launched_ranks.hpp"
+#include "read_in_child.hpp"
 #include "simulation/command_line.hpp"
 
 #include <cayspin/version.hpp>
@@ -84,6 +86,7 @@ void require_command(CLI::App const& app, std::string_view first) {
 }
 
 int perform(int argc, char** argv) {
+  io::set_trial(try_in_child);
   CLI::App app("Lie-group time integration of spin fields", "cayspin");
   app.set_version_flag("--version", CAYSPIN_VERSION_STRING);
   app.require_subcommand(1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "simulation/failure.hpp"
+#include "simulation/variant.hpp"
 
 #include <fmt/format.h>
 

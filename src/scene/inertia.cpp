@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "hdf5/real_dataset.hpp"
 #include "sections.hpp"
 #include "start_file.hpp"
@@ -74,7 +74,7 @@ void check_files(Scene const& scene) {
   auto const* const file = std::get_if<InertiaFile>(&scene.system.inertia);
   if (scene.system.kind == SystemKind::rigid_body && file != nullptr)
     detail::for_key(scene, "system.inertia.file", [&] {
-      try_in_child(file->path, [&] { open_inertia(file->path, sites(scene)); });
+      try_reading(file->path, [&] { open_inertia(file->path, sites(scene)); });
     });
 }
 

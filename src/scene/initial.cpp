@@ -47,7 +47,8 @@ GivenStart read_given(Item const& item, Scene const& scene) {
 Initial read_initial(Table const& root) {
   constexpr std::string_view accepted = "exactly one of uniform, expression, random, file";
   auto const table = root.table("initial", "a table [initial]");
-  table.accept_only({"uniform", "expression", "random", "file", "given"});
+  // A program writes `given` for its own spins; nobody types it.
+  if (!table.contains("given")) table.accept_only({"uniform", "expression", "random", "file"});
   if (auto const count = table.item().node->as_table()->size(); count != 1) {
     table.item().fail(fmt::format("has {} keys", count), accepted);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "dataset_of_sites.hpp"
 #include "free_boundary.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
 #include "start_file.hpp"
@@ -86,7 +86,8 @@ bool read_site_numbers(Item const& item, Scene& scene, SiteNumbers& numbers) {
   if (item.node->is_table()) {
     Table const table(item, scene);
     auto const given = table.find("given");
-    table.accept_only({given ? "given" : "file"});
+    // As in [initial].
+    if (!given || item.node->as_table()->size() > 1) table.accept_only({"file"});
     if (given) {
       if (!boolean(*given)) given->fail("false has no meaning", "file");
       auto const found = scene.given.numbers.find(item.key);
@@ -119,7 +120,7 @@ void check_site_numbers(Scene const& scene) {
     if (numbers.file.empty()) return;
     for_key(scene, numbers.key_or(key), [&] {
       if (is_file_of_spins(numbers, key)) return check_start_file(numbers.file, scene.lattice);
-      try_in_child(numbers.file, [&] { open_values(numbers.file, scene.lattice); });
+      try_reading(numbers.file, [&] { open_values(numbers.file, scene.lattice); });
     });
   };
   auto const& field = scene.field;

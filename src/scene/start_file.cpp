@@ -3,7 +3,7 @@
 
 #include "dataset_of_sites.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "trajectory/stored_spins.hpp"
 
 #include <cayspin/io/ovf.hpp>
@@ -56,7 +56,7 @@ void check_start_file(std::filesystem::path const& path, Lattice const& lattice)
     refuse_crystals(lattice, path);
     require_nodes(read_ovf_mesh(path), path, lattice.shape);
   } else {
-    try_in_child(path, [&] {
+    try_reading(path, [&] {
       if (is_state_of_crystal(path, lattice))
         open_state(path, lattice);
       else

@@ -5,7 +5,7 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "require.hpp"
@@ -315,7 +315,7 @@ class CheckpointReader::Implementation {
 
 CheckpointReader::CheckpointReader(std::filesystem::path path) {
   QuietErrors const quiet;
-  try_in_child(path, [&] { Implementation(path).read_all(); });
+  try_reading(path, [&] { Implementation(path).read_all(); });
   implementation_ = std::make_unique<Implementation>(std::move(path));
 }
 

@@ -2,7 +2,7 @@
 #include "format.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "scalar_series.hpp"
 #include "trajectory_reader.hpp"
 
@@ -72,10 +72,10 @@ void FollowedTrajectory::read_file() {
   complete_ = info.complete;
 }
 
-// The child's look is its own: what the file says is believed here alone.
+// A trial must not change what this object knows: it is that of another process, or none.
 void FollowedTrajectory::look() {
   QuietErrors const quiet;
-  try_in_child(path_, [&] { read_file(); });
+  try_before(path_, [&] { read_file(); });
   read_file();
 }
 

@@ -5,7 +5,7 @@
 #include "fletcher32.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "column.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "stored_spins.hpp"
@@ -113,7 +113,7 @@ void require_whole(fs::path const& file) {
     copy_run(file, copy.get(), "run");
   };
   try {
-    try_in_child(file, read_and_copy);
+    try_reading(file, read_and_copy);
   } catch (...) {
     fs::remove(trial);
     throw;

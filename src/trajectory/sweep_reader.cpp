@@ -2,7 +2,7 @@
 #include "column.hpp"
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "sweep_format.hpp"
 
 #include <cayspin/io/sweep.hpp>

@@ -7,8 +7,8 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
-#include "hdf5/read_in_child.hpp"
 #include "scalar_series.hpp"
 
 #include <cayspin/io/trajectory.hpp>

@@ -3,6 +3,7 @@
 // CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
+#include "support/reads_in_child.hpp"
 #include "trajectory/trajectory_test.hpp"
 
 #include <cayspin/io/follow.hpp>

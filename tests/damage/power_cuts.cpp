@@ -3,10 +3,10 @@
 // synchronisation is there in part, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: how many,
 // and which.
 #include "damaged_bytes.hpp"
-#include "hdf5/read_in_child.hpp"
 #include "known_run.hpp"
 #include "memory_folder.hpp"
 #include "recorded_disk.hpp"
+#include "support/reads_in_child.hpp"
 
 #include <iostream>
 
@@ -70,7 +70,7 @@ class PowerCuts : public testing::Test {
     }
     auto const needed = fs::exists(path().string() + ".journal");
     try {
-      try_in_child(path(), [&] { require_known(path(), recording.run, told); });
+      try_reading(path(), [&] { require_known(path(), recording.run, told); });
       completed_ += needed && !fs::exists(path().string() + ".journal");
       frames_ += told.frames;
     } catch (std::runtime_error const& error) {

@@ -2,9 +2,9 @@
 // Writers of files in memory, killed at random times. CAYSPIN_RANDOM_KILLS and CAYSPIN_SEED: how
 // many, and which.
 #include "damaged_bytes.hpp"
-#include "hdf5/read_in_child.hpp"
 #include "known_run.hpp"
 #include "memory_folder.hpp"
+#include "support/reads_in_child.hpp"
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -117,7 +117,7 @@ class RandomKills : public testing::Test {
     frames_ += reported_->frames;
     ++counts_[reported_->finished ? "ended" : "cut short"];
     try {
-      try_in_child(path, [&] { require_known(path, course, reported_->told()); });
+      try_reading(path, [&] { require_known(path, course, reported_->told()); });
       last_ = path;
     } catch (std::runtime_error const& error) {
       std::string const message = error.what();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The file of a sweep, with the child that every reading is tried in.
+#include "../support/reads_in_child.hpp"
 #include "fuzz.hpp"
 
 #include <cayspin/io/sweep.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A trajectory file, with the child that every reading is tried in: HDF5's own faults stay there.
+#include "../support/reads_in_child.hpp"
 #include "fuzz.hpp"
 
 #include <cayspin/io/trajectory.hpp>

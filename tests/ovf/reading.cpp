@@ -61,6 +61,22 @@ TEST_F(OvfTest, NumbersBeyondADoubleAreKeptAsFarAsTheyGo) {
   EXPECT_EQ(values[2], 5e-324);
 }
 
+TEST_F(OvfTest, CommentsMayFollowANumberAndTheSegment) {
+  auto text = replaced(small_text(), "1 0 0\n", "1 0 0## the first\n");
+  text = replaced(text, "0.6 -8e-1", "0.6 -8e-1 # 1.#QNAN");
+  text =
+      replaced(text, "# End: Segment\n", "# End: Segment\n\n# a remark\n##\n \t\r\n# end: segment");
+  EXPECT_EQ(read_ovf(write(text)).values, small_values());
+  EXPECT_EQ(read_ovf(write(replaced(text, "# End: Segment", "#"))).values, small_values());
+}
+
+// Of which only one is read, and nothing depends on the others.
+TEST_F(OvfTest, OtherLabelsMayBeRepeated) {
+  auto const text = replaced(small_text(), "# Desc: made by hand\n",
+                             "# Desc: made\n# Desc: by hand\n# Note: 1\n# Note: 2\n# xnodes: 2\n");
+  EXPECT_EQ(read_ovf(write(text)).values, small_values());
+}
+
 TEST_F(OvfTest, FilesAreKnownByNameOrBegin) {
   EXPECT_TRUE(is_ovf("nowhere.OVF"));
   EXPECT_TRUE(is_ovf("nowhere.omf"));

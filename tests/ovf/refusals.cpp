@@ -36,6 +36,12 @@ TEST_F(OvfRefusal, AnotherFormat) {
   expect_refused(std::string(100, '\0'), "it is not an OVF file");
   expect_refused(replaced(small_text(), "# OOMMF OVF 2.0", "# OOMMF: rectangular mesh v1.0"),
                  "it is OVF 1.0; accepted: OVF 2.0");
+  for (std::string const old : {"rectangular mesh v0.99", "irregular mesh v1.0"})
+    expect_refused(replaced(small_text(), "# OOMMF OVF 2.0", "# OOMMF: " + old),
+                   "it is OVF 1.0; accepted: OVF 2.0");
+  for (std::string const other : {"rectangular mesh v2.0", "rectangular mesh v10.0", "mesh"})
+    expect_refused(replaced(small_text(), "# OOMMF OVF 2.0", "# OOMMF: " + other),
+                   "its first line is \"# OOMMF: " + other + "\"");
   expect_refused(replaced(small_text(), "OVF 2.0", "OVF 3.0"), "its first line is \"# OOMMF OVF 3");
   expect_refused(std::string(100000, 'x'), "a line of its header does not end");
 }
@@ -77,6 +83,39 @@ TEST_F(OvfRefusal, TextThatIsNotThreeNumbersANode) {
   expect_refused(replaced(text, "0.6", "O.6"), "value 4 is \"O.6 -8e-1\"; accepted: a number");
   expect_refused(replaced(text, "0.6", "0.6,"), "value 4 is \"0.6, -8e-1\"");
   expect_refused(replaced(text, "-8e-1", "-8e-1 1"), "more values than its 2 nodes");
+}
+
+// As runtimes of C write what is no number.
+TEST_F(OvfRefusal, TextThatIsNoNumber) {
+  for (std::string const wrong :
+       {"1.#QNAN", "-1.#IND", "1.#INF", "-1.#INF00", "1.#SNAN", "1#0", "NA", "0x", "1,5", "--1"}) {
+    SCOPED_TRACE(wrong);
+    expect_refused(replaced(small_text(), "0.6", wrong),
+                   "value 4 is \"" + wrong + " -8e-1\"; accepted: a number");
+    expect_refused(replaced(small_text(), "-8e-1", wrong), "value 5 is \"" + wrong);
+  }
+}
+
+TEST_F(OvfRefusal, SecondSegment) {
+  auto const begin = small_text().find("# Begin: Segment");
+  auto const segment = small_text().substr(begin);
+  expect_refused(small_text() + segment,
+                 "goes on with \"# Begin: Segment\" after its values; "
+                 "accepted: one segment");
+  expect_refused(replaced(small_text(), "# Segment count: 1\n", "") + segment, "one segment");
+  expect_refused(small_text() + "# Begin: Data Text\n", "one segment");
+  expect_refused(small_text() + "1 0 0\n", "goes on with \"1 0 0\" after its values");
+  expect_refused(
+      binary("Binary 4", bytes(std::vector<float>{1234567, 1, 0, 0, 0, 0.6F, -0.8F})) + segment,
+      "one segment");
+}
+
+TEST_F(OvfRefusal, TwoValuesOfALabel) {
+  auto const text = small_text();
+  for (std::string const line : {"# xnodes: 3\n", "# meshtype: irregular\n", "# zstepsize: 4\n",
+                                 "# Segment count: 2\n", "# valueunits: A/m A/m A/m\n"})
+    expect_refused(replaced(text, "# End: Header\n", line + "# End: Header\n"),
+                   "its header has several values of ");
 }
 
 TEST_F(OvfRefusal, TruncatedBinary) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What tells a damaged file from a whole one.
 #include "hdf5/attribute.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
-#include "hdf5/read_in_child.hpp"
+#include "program/read_in_child.hpp"
 #include "trajectory/checksum.hpp"
 #include "trajectory_test.hpp"
 
@@ -10,9 +11,12 @@
 
 #include <sys/wait.h>
 
+#include <atomic>
 #include <bit>
+#include <chrono>
 #include <csignal>
 #include <cstring>
+#include <thread>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -94,7 +98,7 @@ TEST_F(TrajectoryTest, AttributeOfSeveralValuesIsRefused) {
                        "cannot read attribute threads: it is not one value"));
 }
 
-// All of a checkpoint is tried in the child, its numbers like its fields.
+// All of a checkpoint is tried when it is opened, its numbers like its fields.
 TEST_F(TrajectoryTest, NumberOfACheckpointThatIsNoneIsRefused) {
   auto const path = folder_ / "a.checkpoint.h5";
   double number = 0.25;
@@ -201,11 +205,20 @@ TEST_F(TrajectoryTest, HeadOfTheFileIsOfVersionTwo) {
   EXPECT_EQ(read_bytes(path).at(8), 2);
 }
 
+using cayspin::program::try_in_child;
+
+/// Readings are tried as in the program.
+class Guard : public testing::Test {
+ protected:
+  Guard() { set_trial(try_in_child); }
+  ~Guard() override { set_trial(nullptr); }
+};
+
 std::string reason(void (*reading)()) {
-  return error_line("damaged.h5", [&] { try_in_child("damaged.h5", reading); });
+  return error_line("damaged.h5", [&] { try_reading("damaged.h5", reading); });
 }
 
-TEST(Guard, TellsWhatAReadingDied) {
+TEST_F(Guard, TellsWhatAReadingDied) {
   EXPECT_TRUE(contains(reason([] { std::raise(SIGSEGV); }), "damaged (reading it ends with Seg"));
   EXPECT_TRUE(contains(reason([] { std::abort(); }), "damaged (reading it ends with Abort"));
   EXPECT_TRUE(contains(reason([] { ::_exit(0); }), "damaged (reading it fails)"));
@@ -223,22 +236,60 @@ TEST(Guard, TellsWhatAReadingDied) {
 #endif
 }
 
-TEST(Guard, PassesOnWhatAReadingSays) {
-  EXPECT_EQ(error_line("a.h5",
-                       [] { try_in_child("a.h5", [] { throw std::runtime_error("a.h5: no"); }); }),
-            "a.h5: no");
+TEST_F(Guard, PassesOnWhatAReadingSays) {
+  EXPECT_EQ(
+      error_line("a.h5", [] { try_reading("a.h5", [] { throw std::runtime_error("a.h5: no"); }); }),
+      "a.h5: no");
   EXPECT_EQ(read_guarded("a.h5", [] { return 7; }), 7);
 }
 
-TEST(Guard, LeavesNoChildAndNoOutput) {
+TEST_F(Guard, LeavesNoChildAndNoOutput) {
   testing::internal::CaptureStderr();
-  try_in_child("a.h5", [] { std::fprintf(stderr, "not to be seen"); });
+  try_reading("a.h5", [] { std::fprintf(stderr, "not to be seen"); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
   std::signal(SIGCHLD, SIG_IGN);  // then the system keeps no status of children
   EXPECT_EQ(read_guarded("a.h5", [] { return 7; }), 7);
   EXPECT_TRUE(contains(reason([] { std::raise(SIGSEGV); }), "damaged (reading it fails)"));
   std::signal(SIGCHLD, SIG_DFL);
+}
+
+// A child that waits for something that never comes takes no time of a processor.
+TEST_F(Guard, EndsAChildThatWaits) {
+  auto const wait = [] { ::pause(); };
+  EXPECT_TRUE(contains(
+      error_line("damaged.h5",
+                 [&] { try_in_child("damaged.h5", wait, std::chrono::milliseconds(200)); }),
+      "damaged (reading it takes too long)"));
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1);
+}
+
+// HDF5 can be used in the child, whatever other threads do at the moment of the fork.
+TEST_F(Guard, WaitsForOtherThreadsThatUseHdf5) {
+  std::atomic<bool> done = false;
+  std::thread other([&] {
+    while (!done) {
+      QuietErrors const turn;
+      H5Tclose(H5Tcopy(H5T_C_S1));
+    }
+  });
+  for (int i = 0; i < 50; ++i)
+    EXPECT_EQ(read_guarded("a.h5", [] { return H5Tclose(H5Tcopy(H5T_C_S1)); }), 0);
+  done = true;
+  other.join();
+}
+
+TEST(NoTrial, ReadsOnceWithoutAChild) {
+  int readings = 0;
+  auto const parent = ::getpid();
+  EXPECT_EQ(read_guarded("a.h5", [&] { return ++readings; }), 1);
+  try_reading("a.h5", [&] { readings += ::getpid() == parent ? 1 : 0; });
+  EXPECT_EQ(readings, 2);
+  try_before("a.h5", [&] { ++readings; });
+  EXPECT_EQ(readings, 2);
+  EXPECT_TRUE(contains(
+      error_line("a.h5", [] { read_guarded("a.h5", [] { throw std::bad_alloc(); }); }),
+      "a.h5: cannot read the file: it is damaged (reading it takes more memory than there is)"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cayspin/spin_field.hpp>
 #include <cayspin/step.hpp>
 
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 
@@ -50,6 +51,7 @@ void require_unit_spins(Exec const& exec, SpinField<Real, MemorySpace> const& sp
   double const defect = norm_defect(exec, spins);
   if (defect <= tolerance) return;
   std::ostringstream message;
+  message.imbue(std::locale::classic());
   message
       << "cayspin::require_unit_spins: the spins must be of length 1, and the largest | |m| - 1 "
          "| is "

@@ -207,8 +207,14 @@ def _picture(texture, plane, quantity, colors, before, limit):
     """Checks what draw() is called with. Returns the picture, and "film", "crystal" or "chain"."""
     for name, word, accepted in (("quantity", quantity, ("spins", "charge")),
                                  ("colors", colors, ("hue", "safe"))):
-        if word not in accepted:
-            raise ValueError(f'{name} {word!r}; accepted: "{accepted[0]}" or "{accepted[1]}"')
+        if not isinstance(word, str) or word not in accepted:
+            shown = " ".join(repr(word).split())
+            raise ValueError(f'{name} {shown}; accepted: "{accepted[0]}" or "{accepted[1]}"')
+    if limit is not None and (isinstance(limit, (str, bytes)) or np.ndim(limit) or not limit >= 0):
+        raise ValueError(f"limit {limit!r}; accepted: a number >= 0")
+    if before is not None and before.dtype.kind not in "buif":
+        raise ValueError(f"a difference to an array of {before.dtype}; accepted: one of real "
+                         "numbers")
     if before is not None and (quantity == "charge" or before.shape != texture.spins.shape):
         raise ValueError(f"a difference to spins of shape {before.shape} with quantity "
                          f'"{quantity}"; accepted: {texture.spins.shape} with "spins"')

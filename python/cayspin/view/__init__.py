@@ -5,9 +5,14 @@ from __future__ import annotations
 
 import atexit
 import os
+import select
 import subprocess
 import sys
 import tempfile
+
+
+LONGEST_START = 600  # seconds: of a scene the run starts first, which may take minutes
+LONGEST_END = 90  # seconds: more than the server gives its run
 
 
 class View:
@@ -25,17 +30,26 @@ class View:
             self._server = subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=messages, text=True,
                 env={**os.environ, "CAYSPIN_PROGRAM": program()}, start_new_session=True)
-            self.address = self._server.stdout.readline().strip()
+            self.address = ""
+            if select.select([self._server.stdout], [], [], LONGEST_START)[0]:
+                self.address = self._server.stdout.readline().strip()
             if not self.address:
+                late = self._server.poll() is None
                 self.close()
                 messages.seek(0)
-                raise CayspinError(messages.read().strip().rpartition("\n")[2])
+                message = messages.read().strip().rpartition("\n")[2]
+                raise CayspinError(message if message or not late else
+                                   f"view: the page has not begun after {LONGEST_START} s")
         atexit.register(self.close)
 
     def close(self) -> None:
         """Ends the page, and the run that it started."""
         self._server.stdin.close()
-        self._server.wait()
+        try:
+            self._server.wait(LONGEST_END)
+        except subprocess.TimeoutExpired:
+            self._server.kill()
+            self._server.wait(LONGEST_END)
         self._server.stdout.close()
         atexit.unregister(self.close)
 

@@ -22,6 +22,9 @@ def _output_of(scene):
     return pathlib.Path(name) if name and isinstance(name, str) else None
 
 
+LONGEST_END = 60  # seconds that a step under way may take after a stop
+
+
 class Run:
     """Starts `cayspin run SCENE` and waits for its file. Raises ValueError when it refuses."""
 
@@ -68,10 +71,14 @@ class Run:
         self._send(signal.SIGINT, signal.SIGCONT, paused=False)
 
     def close(self) -> None:
-        """Stops it and waits for its end."""
+        """Stops it and waits for its end, or kills it after a minute: its file keeps the frames."""
         if self._process.poll() is None:
             self.stop()
-            self._process.wait()
+            try:
+                self._process.wait(LONGEST_END)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait(LONGEST_END)
         self._messages.close()
 
     def _send(self, *signals, paused):

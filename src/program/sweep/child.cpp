@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "child.hpp"
 
+#include "program/end_of_process.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 
@@ -13,6 +14,8 @@
 #endif
 
 #include <cerrno>
+#include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -70,7 +73,7 @@ Child::~Child() {
     if (stream >= 0) ::close(stream);
   if (process_ <= 0) return;
   ::kill(process_, SIGKILL);
-  ::waitpid(process_, nullptr, 0);
+  end_of_process(process_);
 }
 
 void Child::add_to(std::vector<pollfd>& polled) const {
@@ -101,7 +104,10 @@ void Child::read() {
     auto const before = end == 0 ? output.npos : output.find_last_of('\n', end - 1);
     auto const begin = before == output.npos ? 0 : before + 1;
     double step = 0, steps = 0;
-    if (std::sscanf(output.c_str() + begin, "%lf %lf", &step, &steps) == 2 && steps > 0)
+    auto const* const last = output.data() + end;
+    auto const [blank, error] = std::from_chars(output.data() + begin, last, step);
+    if (error == std::errc() && blank != last &&
+        std::from_chars(blank + 1, last, steps).ec == std::errc() && steps > 0)
       share_ = step / steps;
     output.erase(0, end + 1);
   }
@@ -110,9 +116,9 @@ void Child::read() {
 }
 
 int Child::wait() {
-  int status = 0;
-  while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-  }
+  // It has closed its streams, and a crash may still write a core. Where the system keeps no
+  // status, the file tells whether the run is complete.
+  int const status = end_of_process(process_, std::chrono::minutes(1)).value_or(0);
   process_ = -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

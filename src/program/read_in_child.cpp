@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "read_in_child.hpp"
 
-#include "error.hpp"
+#include "end_of_process.hpp"
 #include "files/available_memory.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -29,8 +31,10 @@
 #define CAYSPIN_SHADOW_MEMORY
 #endif
 
-namespace cayspin::inline v0_1::io {
+namespace cayspin::program {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 bool is_child = false;
 
@@ -75,9 +79,9 @@ void settle_signals(pid_t parent) {
 }
 
 void limit_resources(std::filesystem::path const& path) {
-  std::ofstream("/proc/self/oom_score_adj") << 1000;  // the first to go where memory runs out
+  std::ofstream("/proc/self/oom_score_adj") << "1000";  // the first to go where memory runs out
 #ifndef CAYSPIN_SHADOW_MEMORY
-  auto const room = static_cast<rlim_t>(available_memory()), used = address_space();
+  auto const room = static_cast<rlim_t>(io::available_memory()), used = address_space();
   if (room < RLIM_INFINITY - used) lower_limit(RLIMIT_AS, used + room);
 #endif
   lower_limit(RLIMIT_CPU, most_seconds(path), 5);
@@ -119,50 +123,72 @@ std::string answer(std::function<void()> const& reading) {
   ::_exit(0);  // without what the parent has to do at its exit
 }
 
-std::string receive(int pipe) {
+// Far above what a disk or a busy machine takes: only a child that waits for something reaches it.
+std::chrono::seconds longest_reading(std::filesystem::path const& path) {
+  return std::chrono::seconds(60 + 10 * most_seconds(path));
+}
+
+// All that a child sends, or what has come by the deadline.
+struct Received {
   std::string text;
+  bool is_late = false;
+};
+
+Received receive(int pipe, Clock::time_point deadline) {
+  Received received;
   char buffer[4096];
   while (true) {
+    auto const left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    pollfd polled{pipe, POLLIN, 0};
+    auto const ready = ::poll(&polled, 1, static_cast<int>(std::clamp<long>(left, 0, 60000)));
+    if (ready < 0 && errno != EINTR) return received;
+    if (ready == 0 && left <= 60000) return {std::move(received.text), true};
+    if (ready <= 0) continue;
     auto const count = ::read(pipe, buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(buffer, static_cast<std::size_t>(count));
+    if (count <= 0) return received;
+    received.text.append(buffer, static_cast<std::size_t>(count));
   }
 }
 
 // Why a child left no answer. A caller that ignores SIGCHLD leaves no status.
-std::string cause_of(std::optional<int> status) {
+std::string cause_of(std::optional<int> status, bool is_late) {
+  if (is_late) return "reading it takes too long";
   if (!status || !WIFSIGNALED(*status)) return "reading it fails";
   int const signal = WTERMSIG(*status);
   if (signal == SIGXCPU) return "reading it takes too long";
   return std::string("reading it ends with ") + ::strsignal(signal);
 }
 
-std::optional<int> status_of(pid_t child) {
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return std::nullopt;
-  return status;
+[[noreturn]] void throw_damaged(std::filesystem::path const& path, std::string const& cause) {
+  throw std::runtime_error(path.string() + ": cannot read the file: it is damaged (" + cause + ")");
 }
 
 }  // namespace
 
 void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading) {
+  try_in_child(path, reading, longest_reading(path));
+}
+
+void try_in_child(std::filesystem::path const& path, std::function<void()> const& reading,
+                  std::chrono::milliseconds longest) {
   if (is_child) return;
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return;
   pid_t const parent = ::getpid(), child = ::fork();
   if (child == 0) read_as_child(ends[1], parent, path, reading);
   ::close(ends[1]);
-  auto const text = child > 0 ? receive(ends[0]) : std::string(1, survived);
+  if (child < 0) {  // where no process is free, the file is read all the same
+    ::close(ends[0]);
+    return;
+  }
+  auto const [text, is_late] = receive(ends[0], Clock::now() + longest);
   ::close(ends[0]);
-  if (child < 0) return;  // where no process is free, the file is read all the same
-  auto const status = status_of(child);
-  auto const* const action = "cannot read the file";
-  if (text.empty()) throw_failure(path, action, "it is damaged (" + cause_of(status) + ")");
+  if (is_late) ::kill(child, SIGKILL);
+  auto const status = end_of_process(child);
+  if (is_late || text.empty()) throw_damaged(path, cause_of(status, is_late));
   if (text[0] == failed) throw std::runtime_error(text.substr(1));
-  if (text[0] == out_of_memory)
-    throw_failure(path, action, "it is damaged (reading it takes more memory than there is)");
+  if (text[0] == out_of_memory) throw_damaged(path, "reading it takes more memory than there is");
 }
 
-}  // namespace cayspin::inline v0_1::io
+}  // namespace cayspin::program

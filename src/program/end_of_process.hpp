@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+
+namespace cayspin::program {
+
+/// The status of a child that is about to end, as waitpid() gives it. It is killed where it has not
+/// ended within `longest`, and left where the system cannot end it. Nothing where there is no
+/// status.
+std::optional<int> end_of_process(pid_t child,
+                                  std::chrono::milliseconds longest = std::chrono::seconds(10));
+
+}  // namespace cayspin::program

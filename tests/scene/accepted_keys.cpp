@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+// Every key that a message lists as accepted is one that docs/reference/scene.md describes.
+#include "scene_file.hpp"
+#include "wrong_scenes.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace cayspin::inline v0_1::io::test {
+namespace {
+
+std::string page() {
+  std::ostringstream text;
+  text << std::ifstream(CAYSPIN_SCENE_PAGE).rdbuf();
+  return text.str();
+}
+
+/// What is said of a scene with an unknown key in a table.
+std::string said_of(std::string_view scene, std::string const& assignment) {
+  try {
+    parse_scene(std::string(scene), "scene.toml", {assignment});
+  } catch (SceneError const& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(AcceptedKeys, AreTheOnesOfThePage) {
+  auto const described = page();
+  int lists = 0;
+  for (std::string const assignment : {"nokey=1",
+                                       "system.nokey=1",
+                                       "system.damping={nokey=1}",
+                                       "system.inertia={nokey=1}",
+                                       "lattice.nokey=1",
+                                       "lattice.occupied={nokey=1}",
+                                       "lattice.frozen={nokey=1}",
+                                       "field.nokey=1",
+                                       "field.exchange={nokey=1}",
+                                       "field.dmi={nokey=1}",
+                                       "field.anisotropy={nokey=1}",
+                                       "field.anisotropy={constant={nokey=1}}",
+                                       "field.anisotropy=[{nokey=1}]",
+                                       "field.slab_demag={nokey=1}",
+                                       "field.demag={nokey=1}",
+                                       "field.couplings={nokey=1}",
+                                       "field.couplings=[{nokey=1}]",
+                                       "field.dmi=[{nokey=1}]",
+                                       "torque={nokey=1}",
+                                       "torque={zhang_li={nokey=1}}",
+                                       "torque={slonczewski={nokey=1}}",
+                                       "initial={nokey=1}",
+                                       "initial={nokey=1,uniform=[0,0,1]}",
+                                       "initial={random={nokey=1}}",
+                                       "integrator.nokey=1",
+                                       "integrator.isotropy={nokey=1}",
+                                       "thermal={nokey=1}",
+                                       "output.nokey=1"}) {
+    auto const message = said_of(llg_scene, assignment);
+    EXPECT_FALSE(message.empty()) << assignment;
+    if (message.find("unknown key") == message.npos) continue;
+    auto const at = message.find("; accepted: ");
+    ASSERT_NE(at, message.npos) << message;
+    ++lists;
+    for (auto const& key : split(message.substr(at + 12), ", ")) {
+      EXPECT_NE(key, "given") << message;
+      EXPECT_NE(described.find(key), described.npos) << key << ": " << message;
+    }
+  }
+  EXPECT_GE(lists, 15);
+}
+
+// What a program gives is named by what it is.
+TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
+  Given given;
+  given.numbers["output"] = std::make_shared<std::vector<double> const>(3, 1.0);
+  try {
+    parse_scene(std::string(llg_scene) + "\n[output]\ngiven = true\n", "scene.toml", {}, given);
+    ADD_FAILURE();
+  } catch (SceneError const& error) {
+    std::string const message = error.what();
+    EXPECT_NE(message.find("output: is an array of numbers of sites; accepted: "), message.npos)
+        << message;
+  }
+}
+
+}  // namespace
+}  // namespace cayspin::inline v0_1::io::test

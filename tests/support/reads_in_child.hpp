@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include "hdf5/reading_trial.hpp"
+#include "program/read_in_child.hpp"
+
+namespace cayspin::test {
+
+/// HDF5 files are read as the program reads them: faults of HDF5 stay in a child.
+inline bool const reads_in_child = [] {
+  io::set_trial(program::try_in_child);
+  return true;
+}();
+
+}  // namespace cayspin::test
