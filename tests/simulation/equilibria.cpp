@@ -50,14 +50,15 @@ class RandomText {
   }
   std::string of_sites(double least, double most) {
     if (chance(0.7)) return fmt::format("{:.6f}", uniform(least, most));
-    return fmt::format("'{:.6f} + {:.6f}*random(i+7*j+49*k+343*s, {})'", least, most - least,
-                       whole(0, 999));
+    return fmt::format("'{:.6f} + {:.6f}*random(i+7*j+49*k{}, {})'", least, most - least,
+                       of_site_, whole(0, 999));
   }
 
   void lattice(bool is_crystal) {
     if (is_crystal) {
       char const* const crystals[] = {"bcc", "hcp", "honeycomb", "kagome"};
       int const kind = whole(0, 3);
+      of_site_ = "+343*s";
       lattice_ += fmt::format("crystal = '{}'\nshape = [{}, {}, {}]\n", crystals[kind], whole(1, 3),
                               whole(1, 3), kind < 2 ? whole(1, 2) : 1);
       sites_ = kind == 3 ? 3 : 2;
@@ -75,7 +76,7 @@ class RandomText {
     is_open_ = is_open;
     lattice_ += fmt::format("boundary = [{}, {}, {}]\n", boundary(), boundary(), boundary());
     auto const some = [&](char const* key, double share) {
-      lattice_ += fmt::format("{} = 'random(i+7*j+49*k+343*s, {}) < {} ? 1 : 0'\n", key,
+      lattice_ += fmt::format("{} = 'random(i+7*j+49*k{}, {}) < {} ? 1 : 0'\n", key, of_site_,
                               whole(0, 999), share);
     };
     if (chance(0.6)) some("occupied", uniform(0.4, 0.95));
@@ -129,7 +130,7 @@ class RandomText {
   }
 
   std::mt19937 engine_;
-  std::string lattice_, field_;
+  std::string lattice_, field_, of_site_;
   int sites_ = 1;
   bool is_open_ = true;
 };

@@ -86,6 +86,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
       double const before = length(exec, v);
       combine(exec, -inner_product(exec, v, x), x, 1, v, v);
       if (to_p) combine(exec, -inner_product(exec, v, p), p, 1, v, v);
+      hessian.keep_tangent(v);
       double const after = length(exec, v);
       if (!(after > 1e3 * std::numeric_limits<Real>::epsilon() * before)) return false;
       multiply(1 / after, v);
