@@ -277,7 +277,10 @@ void expect_right_equilibria(unsigned seed) {
   if (start.mobile() == 0) return;
   auto const eigenvalues = start.curvatures();
   double const largest = eigenvalues.cwiseAbs().maxCoeff();
-  double const allowed = (is_double ? 1e-6 : 3e-4) * (largest + 1e-3);
+  if (start.largest_field() <= 1e-6 && largest == 0) return;  // without any field
+  // Fields that are not affine are differentiated to the power 2/3 of epsilon.
+  constexpr double part = is_double ? 1e-6 : 2e-3;
+  double const allowed = part * (largest + 1e-3);
   auto const at_start = minimizer.minimize(Space(), scene, field, spins,
                                            {.torque = 1e9, .lowest_curvature = true});
   EXPECT_EQ(numbers(), numbers());
@@ -297,13 +300,13 @@ void expect_right_equilibria(unsigned seed) {
   auto const curvatures = end.curvatures();
   double const most = curvatures.cwiseAbs().maxCoeff() + end.largest_field();
   EXPECT_GT(curvatures[0], -2 * torque - 1e-6 * most);
-  EXPECT_NEAR(found.curvature, curvatures[0], (is_double ? 1e-6 : 1e-3) * most);
+  EXPECT_NEAR(found.curvature, curvatures[0], part * most);
 }
 
 TEST_F(Equilibria, HaveTheCurvatureOfADenseHessian) {
   char const* const wanted = std::getenv("CAYSPIN_EQUILIBRIA");
   auto const scenes = static_cast<unsigned>(wanted ? std::atoi(wanted) : 60);
-  for (unsigned seed = 0; seed < scenes && !HasNonfatalFailure(); ++seed) {
+  for (unsigned seed = 0; seed < scenes; ++seed) {
     expect_right_equilibria<double>(seed);
     expect_right_equilibria<float>(seed);
   }
