@@ -30,16 +30,13 @@ class RandomText {
     bool const is_crystal = chance(0.3);
     lattice(is_crystal);
     terms(is_crystal);
-    text = fmt::format(
-        "{}[lattice]\n{}[field]\n{}[initial]\nrandom = {{ seed = {} }}\n", head, lattice_, field_,
-        seed);
+    text = fmt::format("{}[lattice]\n{}[field]\n{}[initial]\nrandom = {{ seed = {} }}\n", head,
+                       lattice_, field_, seed);
   }
   std::string text;
 
  private:
-  double uniform(double least, double most) {
-    return least + (most - least) * engine_() * 0x1p-32;
-  }
+  double uniform(double least, double most) { return least + (most - least) * engine_() * 0x1p-32; }
   bool chance(double probability) { return uniform(0, 1) < probability; }
   int whole(int least, int most) {
     return least + static_cast<int>(engine_() % static_cast<unsigned>(most - least + 1));
@@ -50,8 +47,8 @@ class RandomText {
   }
   std::string of_sites(double least, double most) {
     if (chance(0.7)) return fmt::format("{:.6f}", uniform(least, most));
-    return fmt::format("'{:.6f} + {:.6f}*random(i+7*j+49*k{}, {})'", least, most - least,
-                       of_site_, whole(0, 999));
+    return fmt::format("'{:.6f} + {:.6f}*random(i+7*j+49*k{}, {})'", least, most - least, of_site_,
+                       whole(0, 999));
   }
 
   void lattice(bool is_crystal) {
@@ -192,7 +189,8 @@ class Reference {
       return energy(exec_, field_, spins_).value;
     };
     double const h = 1e-2;
-    return (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) / (12 * h) -
+    return (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) /
+               (12 * h) -
            expected;
   }
 
@@ -259,10 +257,9 @@ void expect_right_equilibria(unsigned seed) {
   RandomText const random(seed);
   SCOPED_TRACE(fmt::format("seed {}, {} bytes\n{}", seed, sizeof(Real), random.text));
   auto const scene = scene_of(random.text);
-  auto const lattice =
-      make_plan_to_relax(scene, is_double ? Precision::double_precision
-                                          : Precision::single_precision)
-          .lattice;
+  auto const lattice = make_plan_to_relax(scene, is_double ? Precision::double_precision
+                                                           : Precision::single_precision)
+                           .lattice;
   Spins spins("spins", lattice);
   copy_from_host(io::initial_spins(scene), spins);
   auto const numbers = [&] {
@@ -281,8 +278,8 @@ void expect_right_equilibria(unsigned seed) {
   // Fields that are not affine are differentiated to the power 2/3 of epsilon.
   constexpr double part = is_double ? 1e-6 : 2e-3;
   double const allowed = part * (largest + 1e-3);
-  auto const at_start = minimizer.minimize(Space(), scene, field, spins,
-                                           {.torque = 1e9, .lowest_curvature = true});
+  auto const at_start =
+      minimizer.minimize(Space(), scene, field, spins, {.torque = 1e9, .lowest_curvature = true});
   EXPECT_EQ(numbers(), numbers());
   EXPECT_NEAR(at_start.torque, start.torque(),
               64 * epsilon(is_double ? Precision::double_precision : Precision::single_precision) *

@@ -122,11 +122,11 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     double const decrease = inner_product(exec, hw, w);
     // An eigenvalue is within `rest` of the quotient. Near an instability several may be close.
     bool const is_positive = found.value > 1e-2 * scale && rest < 0.3 * found.value;
-    bool const is_clear = is_exact ? rest < error
-                                   : rest < 0.1 * tolerance ||
-                                         (found.value > 10 * tolerance &&
-                                          rest < 1e-3 * found.value) ||
-                                         (is_positive && decrease < 0.01 * found.value);
+    bool const is_clear = is_exact
+                              ? rest < error
+                              : rest < 0.1 * tolerance ||
+                                    (found.value > 10 * tolerance && rest < 1e-3 * found.value) ||
+                                    (is_positive && decrease < 0.01 * found.value);
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;
