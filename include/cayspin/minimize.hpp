@@ -87,7 +87,7 @@ class Minimizer {
   }
 
  private:
-  static constexpr double largest_turn = 1;   // of any spin in a step
+  static constexpr double largest_turn = 1;  // of any spin in a step
   static constexpr double turn_from_saddle = 0.3, largest_newton_turn = 0.15;
   static constexpr double least_turn = 1e-5;  // of the spin that turns most, out of a saddle
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
@@ -144,8 +144,8 @@ class Minimizer {
     bool newton_failed = false;
     while (so_far_.torque >= options.torque) {
       if (so_far_.evaluations >= options.evaluations) return MinimizeEnd::evaluation_limit;
-      if (takes_newton_ && (so_far_.evaluations > newton_until_ ||
-                            !take_newton_step(exec, field, spins, options))) {
+      if (takes_newton_ &&
+          (so_far_.evaluations > newton_until_ || !take_newton_step(exec, field, spins, options))) {
         takes_newton_ = false;
         newton_failed = true;
       }
@@ -241,9 +241,9 @@ class Minimizer {
                                MinimizeOptions const& options, detail::NewtonOptions newton) {
     auto const& pairs = lbfgs_.pairs();
     newton.residual = 0.3 * options.torque;
-    detail::Hessian hessian(exec, field, options.time, spins, is_mobile_,
-                            detail::HessianArrays<Spins>{search_.trial, pairs.change(1),
-                                                         pairs.change(2)});
+    detail::Hessian hessian(
+        exec, field, options.time, spins, is_mobile_,
+        detail::HessianArrays<Spins>{search_.trial, pairs.change(1), pairs.change(2)});
     auto const step = detail::find_newton_step(
         hessian, exec, search_.gradient, search_.direction,
         detail::NewtonArrays<Spins>{pairs.step(1), pairs.step(2), pairs.step(3), pairs.step(4)},
@@ -253,9 +253,9 @@ class Minimizer {
   }
 
   /// Turns the spins along search_.direction, by `longest` at most, and by Newton steps across soft
-  /// modes to where the energy is lower than before; otherwise they stay. Along a bent valley of the
-  /// energy it rises before it falls (the watchdog of Chamberlain, Powell, Lemarechal and Pedersen
-  /// 1982).
+  /// modes to where the energy is lower than before; otherwise they stay. Along a bent valley of
+  /// the energy it rises before it falls (the watchdog of Chamberlain, Powell, Lemarechal and
+  /// Pedersen 1982).
   template <class Exec, class Field>
   bool move_and_correct(Exec const& exec, Field const& field, Spins& spins, double slope,
                         double longest, MinimizeOptions const& options) {
@@ -333,8 +333,9 @@ class Minimizer {
   detail::LowestCurvature find_curvature(Exec const& exec, Field const& field, Spins const& spins,
                                          MinimizeOptions const& options) {
     auto const& pairs = lbfgs_.pairs();
-    detail::CurvatureArrays<Spins> const arrays{search_.direction, pairs.step(0),   pairs.step(1),
-                                                pairs.step(2),     pairs.change(0), pairs.change(1)};
+    detail::CurvatureArrays<Spins> const arrays{search_.direction, pairs.step(0),
+                                                pairs.step(1),     pairs.step(2),
+                                                pairs.change(0),   pairs.change(1)};
     detail::Hessian hessian(
         exec, field, options.time, spins, is_mobile_,
         detail::HessianArrays<Spins>{search_.trial, pairs.change(2), lbfgs_.scratch()});
@@ -359,7 +360,8 @@ class Minimizer {
     double const slope = detail::inner_product(exec, search_.gradient, vector);
     double const step = (slope > 0 ? -turn_from_saddle : turn_from_saddle) / longest;
     detail::combine(exec, step, vector, 0, vector, vector);
-    bool const leaves = move_and_correct(exec, field, spins, slope * step, turn_from_saddle, options);
+    bool const leaves =
+        move_and_correct(exec, field, spins, slope * step, turn_from_saddle, options);
     if (leaves)
       begin_newton();
     else

@@ -50,8 +50,7 @@ TEST(SlidingSkyrmion, LeavesTheSaddlesOfItsPosition) {
   expect_minimum(lattice, EffectiveField(Exchange(lattice, 10), BulkDmi(lattice, 6), applied), 0);
   std::vector<Coupling> const bonds{Coupling::of({0, 0}, {1, 0, 0}, 10, {6, 0, 0}),
                                     Coupling::of({0, 0}, {0, 1, 0}, 10, {0, 6, 0})};
-  expect_minimum(lattice,
-                 EffectiveField(PairCouplings<Kokkos::HostSpace>(lattice, bonds), applied),
+  expect_minimum(lattice, EffectiveField(PairCouplings<Kokkos::HostSpace>(lattice, bonds), applied),
                  -10.0 * 2 * n * n);
 }
 

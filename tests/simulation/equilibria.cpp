@@ -30,16 +30,13 @@ class RandomText {
     bool const is_crystal = chance(0.3);
     lattice(is_crystal);
     terms(is_crystal);
-    text = fmt::format(
-        "{}[lattice]\n{}[field]\n{}[initial]\nrandom = {{ seed = {} }}\n", head, lattice_, field_,
-        seed);
+    text = fmt::format("{}[lattice]\n{}[field]\n{}[initial]\nrandom = {{ seed = {} }}\n", head,
+                       lattice_, field_, seed);
   }
   std::string text;
 
  private:
-  double uniform(double least, double most) {
-    return least + (most - least) * engine_() * 0x1p-32;
-  }
+  double uniform(double least, double most) { return least + (most - least) * engine_() * 0x1p-32; }
   bool chance(double probability) { return uniform(0, 1) < probability; }
   int whole(int least, int most) {
     return least + static_cast<int>(engine_() % static_cast<unsigned>(most - least + 1));
@@ -50,7 +47,7 @@ class RandomText {
   }
   std::string of_sites(double least, double most) {
     if (chance(0.7)) return fmt::format("{:.6f}", uniform(least, most));
-    return fmt::format("'{:.6f} + {:.6f}*random(i+7*j+49*k+343*s, {})'", least, most - least,
+    return fmt::format("'{:.6f} + {:.6f}*random(i+7*j+49*k{}, {})'", least, most - least, of_site_,
                        whole(0, 999));
   }
 
@@ -58,6 +55,7 @@ class RandomText {
     if (is_crystal) {
       char const* const crystals[] = {"bcc", "hcp", "honeycomb", "kagome"};
       int const kind = whole(0, 3);
+      of_site_ = "+343*s";
       lattice_ += fmt::format("crystal = '{}'\nshape = [{}, {}, {}]\n", crystals[kind], whole(1, 3),
                               whole(1, 3), kind < 2 ? whole(1, 2) : 1);
       sites_ = kind == 3 ? 3 : 2;
@@ -75,7 +73,7 @@ class RandomText {
     is_open_ = is_open;
     lattice_ += fmt::format("boundary = [{}, {}, {}]\n", boundary(), boundary(), boundary());
     auto const some = [&](char const* key, double share) {
-      lattice_ += fmt::format("{} = 'random(i+7*j+49*k+343*s, {}) < {} ? 1 : 0'\n", key,
+      lattice_ += fmt::format("{} = 'random(i+7*j+49*k{}, {}) < {} ? 1 : 0'\n", key, of_site_,
                               whole(0, 999), share);
     };
     if (chance(0.6)) some("occupied", uniform(0.4, 0.95));
@@ -129,7 +127,7 @@ class RandomText {
   }
 
   std::mt19937 engine_;
-  std::string lattice_, field_;
+  std::string lattice_, field_, of_site_;
   int sites_ = 1;
   bool is_open_ = true;
 };
@@ -191,7 +189,8 @@ class Reference {
       return energy(exec_, field_, spins_).value;
     };
     double const h = 1e-2;
-    return (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) / (12 * h) -
+    return (8 * (energy_at(h) - energy_at(-h)) - (energy_at(2 * h) - energy_at(-2 * h))) /
+               (12 * h) -
            expected;
   }
 
@@ -217,7 +216,7 @@ class Reference {
       hessian(i, i) += vector(m_, site).dot(vector(h_, site));
     }
     Eigen::MatrixXd const symmetric = 0.5 * (hessian + hessian.transpose());
-    EXPECT_LT((hessian - symmetric).cwiseAbs().maxCoeff(), 1e-9 * largest_field());
+    EXPECT_LT((hessian - symmetric).cwiseAbs().maxCoeff(), 1e-9 * largest_field() + 1e-12);
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly)
         .eigenvalues();
   }
@@ -258,10 +257,9 @@ void expect_right_equilibria(unsigned seed) {
   RandomText const random(seed);
   SCOPED_TRACE(fmt::format("seed {}, {} bytes\n{}", seed, sizeof(Real), random.text));
   auto const scene = scene_of(random.text);
-  auto const lattice =
-      make_plan_to_relax(scene, is_double ? Precision::double_precision
-                                          : Precision::single_precision)
-          .lattice;
+  auto const lattice = make_plan_to_relax(scene, is_double ? Precision::double_precision
+                                                           : Precision::single_precision)
+                           .lattice;
   Spins spins("spins", lattice);
   copy_from_host(io::initial_spins(scene), spins);
   auto const numbers = [&] {
@@ -276,9 +274,12 @@ void expect_right_equilibria(unsigned seed) {
   if (start.mobile() == 0) return;
   auto const eigenvalues = start.curvatures();
   double const largest = eigenvalues.cwiseAbs().maxCoeff();
-  double const allowed = (is_double ? 1e-6 : 3e-4) * (largest + 1e-3);
-  auto const at_start = minimizer.minimize(Space(), scene, field, spins,
-                                           {.torque = 1e9, .lowest_curvature = true});
+  if (largest == 0) return;  // no spin sees a field
+  // Fields that are not affine are differentiated to the power 2/3 of epsilon.
+  constexpr double part = is_double ? 1e-6 : 2e-3;
+  double const allowed = part * (largest + 1e-3);
+  auto const at_start =
+      minimizer.minimize(Space(), scene, field, spins, {.torque = 1e9, .lowest_curvature = true});
   EXPECT_EQ(numbers(), numbers());
   EXPECT_NEAR(at_start.torque, start.torque(),
               64 * epsilon(is_double ? Precision::double_precision : Precision::single_precision) *
@@ -296,13 +297,13 @@ void expect_right_equilibria(unsigned seed) {
   auto const curvatures = end.curvatures();
   double const most = curvatures.cwiseAbs().maxCoeff() + end.largest_field();
   EXPECT_GT(curvatures[0], -2 * torque - 1e-6 * most);
-  EXPECT_NEAR(found.curvature, curvatures[0], (is_double ? 1e-6 : 1e-3) * most);
+  EXPECT_NEAR(found.curvature, curvatures[0], part * most);
 }
 
 TEST_F(Equilibria, HaveTheCurvatureOfADenseHessian) {
   char const* const wanted = std::getenv("CAYSPIN_EQUILIBRIA");
   auto const scenes = static_cast<unsigned>(wanted ? std::atoi(wanted) : 60);
-  for (unsigned seed = 0; seed < scenes && !HasNonfatalFailure(); ++seed) {
+  for (unsigned seed = 0; seed < scenes; ++seed) {
     expect_right_equilibria<double>(seed);
     expect_right_equilibria<float>(seed);
   }

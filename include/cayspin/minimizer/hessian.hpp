@@ -88,9 +88,9 @@ struct LargestSquare {
 /// max |v| of a site; waits.
 template <class Exec, class Spins>
 double largest_length(Exec const& exec, Spins const& vectors) {
-  return std::sqrt(reduce_sites<Maximum, 1>(
-      exec, "cayspin::minimize::largest_length", vectors.layout(),
-      LargestSquare<typename Spins::value_type>{vectors.array()})[0]);
+  return std::sqrt(
+      reduce_sites<Maximum, 1>(exec, "cayspin::minimize::largest_length", vectors.layout(),
+                               LargestSquare<typename Spins::value_type>{vectors.array()})[0]);
 }
 
 /// Memory that products with the Hessian work in.

@@ -86,6 +86,7 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
       double const before = length(exec, v);
       combine(exec, -inner_product(exec, v, x), x, 1, v, v);
       if (to_p) combine(exec, -inner_product(exec, v, p), p, 1, v, v);
+      hessian.keep_tangent(v);
       double const after = length(exec, v);
       if (!(after > 1e3 * std::numeric_limits<Real>::epsilon() * before)) return false;
       multiply(1 / after, v);
@@ -121,11 +122,11 @@ LowestCurvature find_lowest_curvature(AnyHessian& hessian, Exec const& exec,
     double const decrease = inner_product(exec, hw, w);
     // An eigenvalue is within `rest` of the quotient. Near an instability several may be close.
     bool const is_positive = found.value > 1e-2 * scale && rest < 0.3 * found.value;
-    bool const is_clear = is_exact ? rest < error
-                                   : rest < 0.1 * tolerance ||
-                                         (found.value > 10 * tolerance &&
-                                          rest < 1e-3 * found.value) ||
-                                         (is_positive && decrease < 0.01 * found.value);
+    bool const is_clear = is_exact
+                              ? rest < error
+                              : rest < 0.1 * tolerance ||
+                                    (found.value > 10 * tolerance && rest < 1e-3 * found.value) ||
+                                    (is_positive && decrease < 0.01 * found.value);
     if (!(decrease > 0) || is_clear) break;
     bool const has_p = step > 0;
     if (!make_normal(w, has_p)) break;

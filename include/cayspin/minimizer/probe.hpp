@@ -120,9 +120,8 @@ struct FieldAlongSpins {
     using Value = typename AnyStencil::value_type;
     Value const none(0.0), half(0.5);
     auto const& m = stencil.center();
-    return Value(
-        select<Value>(dot(m, stencil.template previous<Axis>()) < none, half, none) +
-        select<Value>(dot(m, stencil.template next<Axis>()) < none, half, none));
+    return Value(select<Value>(dot(m, stencil.template previous<Axis>()) < none, half, none) +
+                 select<Value>(dot(m, stencil.template next<Axis>()) < none, half, none));
   }
 };
 
