@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
+#include "describe.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/plan.hpp"
