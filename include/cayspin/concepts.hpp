@@ -51,6 +51,15 @@ concept counts_evaluations = requires(Stepper const& stepper) {
   { stepper.evaluations_done() } -> std::convertible_to<std::int64_t>;
 };
 
+/// Evaluations in the next step of a stepper that does not count them itself.
+template <class Stepper>
+int evaluations_of_next_step(Stepper const& stepper) {
+  if constexpr (requires { stepper.next_step_evaluations(); })
+    return stepper.next_step_evaluations();
+  else
+    return Stepper::evaluations;
+}
+
 }  // namespace detail
 
 /// A term of the effective field, with H = -dE/dm. On devices it has const templates over the
@@ -132,6 +141,7 @@ concept Generator =
 /// | `step(exec, generator, spins, t, dt)` | advances spins from t to t + dt | required |
 /// | `static int evaluations` | of the generator in each step | evaluations_done() is required |
 /// | `int64 evaluations_done()` | of the generator so far | evaluations is required |
+/// | `int next_step_evaluations()` | those of a first step may be more | evaluations |
 /// | `static int order` | of the error | not known |
 /// | `static int ghosts` | a step needs at each inner end of a part of a lattice | no parts |
 /// | `reset()` | forgets the steps so far | there is nothing to forget |

@@ -249,8 +249,11 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
   if constexpr (requires { stepper.reset(); }) {
     if (!times.continues) stepper.reset();
   }
-  std::int64_t evaluations_before = 0;
-  if constexpr (counts_evaluations<Stepper>) evaluations_before = stepper.evaluations_done();
+  std::int64_t evaluations_before = 0, first_evaluations = 0;
+  if constexpr (counts_evaluations<Stepper>)
+    evaluations_before = stepper.evaluations_done();
+  else
+    first_evaluations = evaluations_of_next_step(stepper);
   std::pair<std::int64_t, std::int64_t> own_before;
   if constexpr (AdaptiveStepper<Stepper>)
     own_before = {stepper.accepted_steps(), stepper.rejected_steps()};
@@ -262,8 +265,9 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
   Summary summary = integration.run(times, batches);
   if constexpr (counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;
-  else
-    summary.evaluations = summary.steps * evaluations_per_step<Stepper>().value_or(0);
+  else if (summary.steps > 0)
+    summary.evaluations =
+        first_evaluations + (summary.steps - 1) * evaluations_per_step<Stepper>().value_or(0);
   if constexpr (AdaptiveStepper<Stepper>) {
     summary.own_steps = stepper.accepted_steps() - own_before.first;
     summary.rejected = stepper.rejected_steps() - own_before.second;

@@ -90,7 +90,12 @@ double error_past_a_jump(double dt, bool told, std::int64_t starts,
                          FieldExtrapolationOptions const& options = {}) {
   Slab slab = hard_magnet(block, 0.1);
   Spins spins = random_spins(block, 5), exact = copy_of(spins);
-  Stepper stepper(spins, options);
+  auto stepper = [&] {
+    if constexpr (std::is_same_v<Stepper, Plain>)
+      return Stepper(spins);
+    else
+      return Stepper(spins, options);
+  }();
   Rkmk4<Spins> fine(spins);
   int const half = static_cast<int>(std::lround(0.5 / dt));
   for (int part = 0; part < 2; ++part) {

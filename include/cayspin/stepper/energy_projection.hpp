@@ -154,13 +154,14 @@ class EnergyProjection : public detail::StepperBase<typename Stepper::spins_type
   template <class Exec, class Generator>
   void step_and_project(Exec const& exec, Generator const& generator, Spins& spins, double t,
                         double dt) {
+    [[maybe_unused]] std::int64_t counted = 0;
     if constexpr (detail::counts_evaluations<Stepper>)
-      evaluations_done_ -= stepper_.evaluations_done();
+      counted = stepper_.evaluations_done();
+    else
+      evaluations_done_ += detail::evaluations_of_next_step(stepper_);
     stepper_.step(exec, generator, spins, t, dt);
     if constexpr (detail::counts_evaluations<Stepper>)
-      evaluations_done_ += stepper_.evaluations_done();
-    else
-      evaluations_done_ += Stepper::evaluations;
+      evaluations_done_ += stepper_.evaluations_done() - counted;
 
     auto const prepared = detail::prepare_term(generator, exec, begin_, t);
     using Slope = detail::EnergyAlongCoordinates<std::remove_const_t<decltype(prepared)>, Real>;

@@ -168,8 +168,9 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_(name + "::kept_generator", like.lattice()),
         streaming_(detail::exceeds_caches<DefaultExec>(like.bytes() + work_bytes())) {}
 
-  /// Evaluations of the generator so far: in the first step of a method that remembers steps two.
-  std::int64_t evaluations_done() const { return evaluations_done_; }
+  /// Evaluations of the generator in the next step: two in the first one of a method that remembers
+  /// steps.
+  int next_step_evaluations() const { return last_dt_ == 0 ? 2 : evaluations; }
 
   std::size_t work_bytes() const { return work_fields * next_.bytes(); }
 
@@ -248,7 +249,6 @@ class TwoPoint : public detail::StepperBase<Spins> {
         kept_.output(streaming_ && !Rule::reads),
         next.output(streaming_ && next.allocation().data() != start.allocation().data()),
         static_cast<Real>(dt)};
-    ++evaluations_done_;
     auto const& layout = start.layout();
     bool const predicts = !Rule::reads;
     detail::for_each_site<Real>(exec, label, layout, kernel, layout.own_and(predicts ? 1 : 0));
@@ -261,7 +261,6 @@ class TwoPoint : public detail::StepperBase<Spins> {
   Spins next_, kept_;
   bool streaming_;  // stores of what is only written go around the caches
   double last_dt_ = 0;
-  std::int64_t evaluations_done_ = 0;
 };
 
 /// The two-step method of Adams and Bashforth, order 2 with one evaluation:
