@@ -42,7 +42,8 @@ class Simulation:
     that of Kokkos), `threads` their number: the first simulation of a process decides that.
 
     `restart` names a file of save(), or the trajectory of a run: the simulation goes on from there
-    with the bits of one without a break.
+    with the bits of one without a break. Its lattice has to be the scene's; a warning names what
+    else differs.
 
     While it steps, other Python threads run. Ctrl-C stops it between two steps with
     KeyboardInterrupt, and it can go on from there. N calls of step() give the bits of one step(N),
@@ -64,6 +65,9 @@ class Simulation:
         self._scene = scene
         self._observers: list[tuple[int, Callable[[Simulation], Any]]] = []
         self._dt_is_checked = False
+        warning = self._run.restart_warning()
+        if warning:
+            warnings.warn(warning, stacklevel=2)
 
     def step(self, n: int = 1) -> None:
         """Takes n steps of dt, or fewer when an observer returns True."""

@@ -206,6 +206,7 @@ void define_run(nb::module_& module) {
       .def("advance", advance, "count"_a, "period"_a, "until_torque"_a)
       .def("relax", relax, "torque"_a, "evaluations"_a, "applied"_a.none(), "keep_saddles"_a)
       .def("warning", &SceneRun::warning)
+      .def("restart_warning", &SceneRun::restart_warning)
       .def("step_at", &SceneRun::step_at)
       .def("spins", [](SceneRun& run) { return array_of(without_gil<&SceneRun::spins>(run)); })
       .def("set_spins",

@@ -48,10 +48,20 @@ void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ra
                           accepted + "or a normal along y or z on a host without where = \"host\"");
 }
 
+// What is refused, with the option that names the file.
+template <class Work>
+auto as_restart(Work const& work) {
+  try {
+    return work();
+  } catch (UsageError const& error) {
+    throw UsageError(std::string("--restart ") + error.what());
+  }
+}
+
 Restart restart_of(EarlierRun left, io::Scene const& scene, Plan const& plan,
                    RunOptions const& options) {
   auto const output = output_file(scene, options.output);
-  try {
+  return as_restart([&] {
     Restart restart(std::move(left), scene, plan, options.precision, scene.integrator.steps);
     std::error_code ignored;
     for (auto const& file : restart.files())
@@ -61,9 +71,7 @@ Restart restart_of(EarlierRun left, io::Scene const& scene, Plan const& plan,
               fmt::format("{}: the run would write into it; accepted: another file for --output",
                           file.string()));
     return restart;
-  } catch (UsageError const& error) {
-    throw UsageError(std::string("--restart ") + error.what());
-  }
+  });
 }
 
 std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
@@ -72,7 +80,8 @@ std::vector<double> start_of(io::Scene const& scene, Lattice const& lattice,
   // An expression that fails at one site has to end all ranks, which later wait for each other.
   io::occupied(scene, own);
   io::frozen(scene, own);
-  return restart ? restart->spins(own) : io::initial_spins(scene, own);
+  if (!restart) return io::initial_spins(scene, own);
+  return as_restart([&] { return restart->spins(scene, own); });
 }
 
 template <class Real, class Space>
@@ -240,7 +249,10 @@ int run(RunOptions const& options, Ranks& ranks) {
       fmt::print(stderr, "warning: {}\n", *warning);
     if (ranks.is_first()) warn_of_notes(scene);
     if (!left) return nullptr;
-    return std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
+    auto from = std::make_unique<Restart>(restart_of(std::move(*left), scene, plan, options));
+    if (auto const& warning = from->warning(); warning && ranks.is_first())
+      fmt::print(stderr, "warning: --restart {}\n", *warning);
+    return from;
   });
   catch_signals();
   return in_space(space, options.precision, [&]<class Real, class Space>() {

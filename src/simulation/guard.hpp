@@ -51,8 +51,10 @@ class Guard {
   void visit_memory(Visit const& visit) {
     bool looked = first_.has_value();
     visit("looked", looked);
-    if (!looked) return;
     Look first = first_.value_or(Look{}), last = last_.value_or(Look{});
+    first_.reset();
+    last_.reset();
+    if (!looked) return;
     visit("first_step", first.step);
     visit("first_energy", first.energy);
     visit("last_step", last.step);

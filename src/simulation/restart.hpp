@@ -36,17 +36,20 @@ struct EarlierRun {
 class Restart {
  public:
   /// Throws UsageError when there is no such state: the lattice, the precision or the units are
-  /// others, its time is not that of its step, no step is left before `end`, or the method
+  /// others, its time is not that of a step, no step is left before `end`, or the method
   /// remembers steps that are in no checkpoint.
   Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Precision precision,
           std::int64_t end);
 
   std::int64_t step() const { return step_; }
-  /// Those of a box, or all, as io::read_spins gives them: bits are kept.
-  std::vector<double> spins(io::SiteBox const& box) const;
-  std::vector<double> spins() const;
+  /// Those of a box, or all, as io::read_spins gives them: bits are kept. Throws UsageError where
+  /// other sites are vacant than in the scene.
+  std::vector<double> spins(io::Scene const& scene, io::SiteBox const& box) const;
+  std::vector<double> spins(io::Scene const& scene) const;
   /// What the run remembered, where that is needed.
   io::CheckpointReader* memory() const { return memory_; }
+  /// One line that names what differs from the scene of the file, beside what may.
+  std::optional<std::string> const& warning() const { return warning_; }
   /// The files that it reads.
   std::vector<std::filesystem::path> files() const;
 
@@ -55,6 +58,7 @@ class Restart {
   std::int64_t step_ = 0;
   bool uses_checkpoint_ = false;
   io::CheckpointReader* memory_ = nullptr;
+  std::optional<std::string> warning_;
 };
 
 }  // namespace cayspin::simulation

@@ -105,6 +105,7 @@ class RunningScene : public Simulation<Real, Space> {
     exchange_memory(guard_, checkpoint, "guard.");
     if (rest_) exchange_memory(*rest_, checkpoint, "rest.");
     if (control_) exchange_memory(*control_, checkpoint, "energy_control.");
+    if (noise_ && checkpoint.restores()) noise_->reset();
   }
 
  private:

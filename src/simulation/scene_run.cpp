@@ -165,10 +165,11 @@ std::unique_ptr<SceneRun> SceneRun::open(io::Scene const& typed, RunSettings con
       space, settings.precision, [&]<class Real, class Space>() -> std::unique_ptr<SceneRun> {
         return std::make_unique<SceneRunInSpace<Real, Space>>(
             own, plan, settings.precision, space,
-            restart ? restart->spins() : normalised<io::SceneError>(own, "initial"));
+            restart ? restart->spins(own) : normalised<io::SceneError>(own, "initial"));
       });
   if (!restart) return run;
   run->number_ = restart->step();
+  run->restart_warning_ = restart->warning();
   if (restart->memory()) run->exchange(*restart->memory());
   return run;
 }

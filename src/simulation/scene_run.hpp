@@ -87,6 +87,8 @@ class SceneRun {
   /// What `cayspin run` warns of: a dt that is too large. Throws it as io::SceneError where the
   /// scene refuses to be unstable.
   std::optional<std::string> warning() const;
+  /// What of the scene differs from that of the file that the run goes on from, in one line.
+  std::optional<std::string> const& restart_warning() const { return restart_warning_; }
 
   /// The step at time t. Throws UsageError when t is no whole number of steps.
   std::int64_t step_at(double t) const;
@@ -139,6 +141,7 @@ class SceneRun {
 
   io::Scene scene_;
   Plan plan_;
+  std::optional<std::string> restart_warning_;
   // Other threads read them while the run goes on.
   std::atomic<std::int64_t> number_ = 0, evaluations_ = 0, own_steps_ = 0, rejected_ = 0;
   std::atomic<double> step_seconds_ = 0;

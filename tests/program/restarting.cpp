@@ -19,6 +19,21 @@ class Restarting : public ProgramTest {
                      more));
   }
 
+  static Arguments to_second(Arguments const& more) {
+    return joined({"run", "chain.toml", "--quiet", "--output", "second.h5", "--overwrite",
+                   "--restart", "first.h5"},
+                  more);
+  }
+
+  /// Done, with one line that names these keys and ends in `end`.
+  void expect_named(Arguments const& more, std::string const& keys,
+                    std::string const& end = "") const {
+    auto const outcome = start(to_second(more));
+    EXPECT_EQ(outcome.status, 0) << outcome.errors;
+    EXPECT_EQ(outcome.errors,
+              "warning: --restart first.h5: other than in its scene: " + keys + end + "\n");
+  }
+
   void expect_refused(Arguments const& more, std::string const& part,
                       std::string const& output = "second.h5") const {
     ProgramTest::expect_refused(
@@ -48,13 +63,89 @@ TEST_F(Restarting, IsRefusedForAnotherStateThanTheScenes) {
   run_to("12", "first.h5");
   expect_refused(set("lattice.shape=[20,4]"), "its lattice is 20 x 3 x 1");
   expect_refused({"--precision", "single"}, "accepted: --precision double");
-  expect_refused(set("integrator.dt=0.01"), "its step 12 is at t = 0.24");
+  expect_refused(set("integrator.dt=0.013"), "its step 12 is at t = 0.24");
   expect_refused(set("integrator.steps=12"), "it ends at step 12, the scene at step 12");
   auto const before = last_spins("first.h5");
   expect_refused({"--overwrite"}, "another file for --output", "first.h5");
   EXPECT_EQ(last_spins("first.h5"), before);
   std::filesystem::remove(in_folder("first.h5"));
   expect_refused({}, "first.h5");
+}
+
+// What a lattice is has to be equal, however it is typed.
+TEST_F(Restarting, IsRefusedOnAnotherLattice) {
+  run_to("12", "first.h5");
+  auto const expect_key = [&](std::string const& change, std::string const& key) {
+    expect_refused(set(change),
+                   "first.h5: its " + key + " is another than the scene's; accepted: ");
+  };
+  expect_key("lattice.spacing=2.0", "lattice.spacing");
+  expect_key("lattice.spacing=[1.0,1.0000001]", "lattice.spacing");
+  expect_key("lattice.boundary=['open','periodic']", "lattice.boundary");
+  expect_key("lattice.occupied='i<15'", "lattice.occupied");
+  expect_key("lattice.frozen='i==0'", "lattice.frozen");
+  expect_key("lattice.moments=[0.5]", "lattice.moments");
+  expect_key("lattice.gyromagnetic=[0.5]", "lattice.gyromagnetic");
+  // Typed otherwise, but the same.
+  output_of(
+      to_second(set("lattice={shape=[20,3,1],spacing=[1,1.0,7.5],boundary=['open','open',"
+                    "'periodic'],occupied='i>=0',frozen='i>99',moments=[1.0]}",
+                    "integrator.method='rkmk4'")));
+}
+
+TEST_F(Restarting, IsRefusedOnAnotherCell) {
+  auto const with_cell = [](std::string const& cell) {
+    return set("lattice={shape=[6,3],cell=" + cell + ",basis=[[0,0,0],[0.5,0.5,0]]}",
+               "field={couplings=[{offset=[1,0,0],J=1.0}]}");
+  };
+  std::string const square = "[[1,0,0],[0,1,0],[0,0,1]]";
+  run_to("12", "first.h5", with_cell(square));
+  expect_refused(with_cell("[[1,0,0],[0.5,1,0],[0,0,1]]"), "its lattice.cell is another");
+  auto other = with_cell(square);
+  expect_refused(joined(other, set("lattice.basis=[[0,0,0],[0.5,0.4,0]]")),
+                 "its lattice.basis is another");
+  output_of(to_second(other));
+}
+
+TEST_F(Restarting, IsRefusedWhereOtherSitesAreVacant) {
+  Arguments const some = set("lattice.occupied='i<15'");
+  run_to("12", "first.h5", some);
+  for (std::string const occupied : {"i<16", "i<14", "i<15 || j==2", "i>=0"})
+    expect_refused(set("lattice.occupied='" + occupied + "'"), "its lattice.occupied is another");
+  expect_refused({}, "its lattice.occupied is another");
+  run_to("25", "whole.h5", some);
+  output_of(to_second(set("lattice.occupied='i<=14'")));
+  EXPECT_EQ(last_spins("second.h5"), last_spins("whole.h5"));
+}
+
+TEST_F(Restarting, NamesWhatElseDiffers) {
+  run_to("12", "first.h5");
+  expect_named(set("field.applied=[0.1,0,0]"), "field.applied");
+  expect_named(set("system.damping=0.3", "field.mu0=1.0"), "field.mu0, system.damping");
+  expect_named(set("thermal={temperature=0.01,seed=2}"), "thermal");
+  expect_named(set("integrator.dt=0.01"), "integrator.dt");
+  EXPECT_EQ(info_of("second.h5").frame_steps.front(), 24);
+  // 1.0 is 1, and what belongs to the new run alone is not named.
+  output_of(to_second(set("field.exchange=1", "output.every=3", "initial={uniform=[0,0,1]}")));
+}
+
+// What a method remembers of another motion would be wrong: the energy that it holds, for example.
+TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
+  for (std::string const method : {"ab2", "fx4", "dp5"}) {
+    SCOPED_TRACE(method);
+    Arguments same = set("integrator.method='" + method + "'", "field.applied=[0.3,-0.2,0.1]");
+    if (method == "dp5") same = joined(same, set("integrator.tolerance=1e-6"));
+    run_to("12", "first.h5", joined(same, {"--overwrite"}));
+    auto const other = joined(same, set("field.applied=[3.0,-0.2,0.1]"));
+    expect_named(other, "field.applied", "; the method begins again");
+    // By hand: the state as a start, the field of no use before.
+    run_to("13", "third.h5",
+           joined(other, joined(set("initial={file='first.h5'}"), {"--overwrite"})));
+    auto const one = last_spins("second.h5"), other_one = last_spins("third.h5");
+    ASSERT_EQ(one.size(), other_one.size());
+    for (std::size_t i = 0; i < one.size(); ++i)
+      EXPECT_NEAR(one[i], other_one[i], method == "dp5" ? 1e-6 : 1e-14);
+  }
 }
 
 /// What makes a run remember more than its spins.
@@ -100,7 +191,7 @@ TEST_F(Restarting, NeedsTheCheckpointOfAMethodThatRemembers) {
 
 TEST_F(Restarting, BeginsAnewByAnotherMethod) {
   run_to("12", "first.h5");
-  run_to("25", "second.h5", {"--set", "integrator.method='ab2'", "--restart", "first.h5"});
+  expect_named(set("integrator.method='ab2'"), "integrator.method", "; the method begins again");
   run_to("25", "third.h5", set("integrator.method='ab2'", "initial={file='first.h5'}"));
   EXPECT_EQ(info_of("second.h5").frame_steps.front(), 12);
 }

@@ -70,6 +70,22 @@ class Bits(PackageTest):
         self.assert_refused(cayspin.CayspinError, "missing.h5", cayspin.Simulation, of,
                             restart="missing.h5")
 
+    def test_restart_of_another_scene(self):
+        of = scene(field={"applied": [0.1, 0, 0]})
+        run = cayspin.Simulation(of)
+        run.step(5)
+        file = self.folder / "other.checkpoint.h5"
+        run.save(file)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            cayspin.Simulation(of, restart=file)
+        with self.assertWarnsRegex(UserWarning, "other than in its scene: field.applied$"):
+            cayspin.Simulation(scene(field={"applied": [0.2, 0, 0]}), restart=file)
+        for lattice, key in (({"spacing": 3.0}, "spacing"), ({"frozen": "i==0"}, "frozen"),
+                             ({"occupied": "i>0"}, "occupied")):
+            self.assert_refused(cayspin.CayspinError, f"lattice.{key} is another",
+                                cayspin.Simulation, scene(lattice=lattice), restart=file)
+
     def test_noise_is_that_of_the_seed(self):
         for precision in ("double", "single"):
             one, other = (stepped(scene(thermal={"temperature": 0.4, "seed": seed}), 40, precision)

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <cayspin/io/changes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <set>
+#include <string_view>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+// To the round-off of a conversion from SI.
+bool same(double a, double b) {
+  return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+}
+
+bool same(Triple const& a, Triple const& b) {
+  return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) <= 1e-12; });
+}
+
+bool same_spacing(Scene const& before, Scene const& now, std::size_t axis) {
+  return same(before.lattice.spacing[axis] * before.units.length,
+              now.lattice.spacing[axis] * now.units.length);
+}
+
+// Numbers of the cell's sites, which are all 1 where none are typed.
+bool same_of_cell(std::vector<double> before, std::vector<double> now, std::size_t sites) {
+  if (before.empty()) before.assign(sites, 1);
+  if (now.empty()) now.assign(sites, 1);
+  return std::ranges::equal(before, now, [](double a, double b) { return same(a, b); });
+}
+
+using OfSites = std::vector<unsigned char> (*)(Scene const&, SiteBox const&);
+
+// `where`: empty stands for sites that all have the value `otherwise`.
+bool same_sites(Scene const& before, Scene const& now, SiteNumbers Lattice::*numbers, OfSites where,
+                unsigned char otherwise) {
+  auto const &a = before.lattice.*numbers, &b = now.lattice.*numbers;
+  if (!a.there() && !b.there()) return true;
+  if (a.there() == b.there() && a.expression == b.expression && a.file == b.file &&
+      !a.given == !b.given)
+    return true;
+  auto const& [nx, ny, nz] = now.lattice.shape;
+  bool const by_planes = a.file.empty() && !a.given && b.file.empty() && !b.given;
+  auto const at_once = by_planes ? 1 : nz;
+  for (std::int64_t plane = 0; plane < nz; plane += at_once) {
+    SiteBox const box{{0, 0, plane}, {nx, ny, at_once}};
+    auto one = where(before, box), other = where(now, box);
+    auto const count = static_cast<std::size_t>(nx * ny * at_once);
+    for (auto* const some : {&one, &other})
+      if (some->empty()) some->assign(count, otherwise);
+    if (one != other) return false;
+  }
+  return true;
+}
+
+bool same(toml::node const& a, toml::node const& b);
+
+bool same(toml::array const& a, toml::array const& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (!same(a[i], b[i])) return false;
+  return true;
+}
+
+bool same(toml::table const& a, toml::table const& b) {
+  if (a.size() != b.size()) return false;
+  return std::ranges::all_of(a, [&](auto const& entry) {
+    auto const* const other = b.get(entry.first.str());
+    return other && same(entry.second, *other);
+  });
+}
+
+bool same(toml::node const& a, toml::node const& b) {
+  if (a.is_number() && b.is_number()) return a.value<double>() == b.value<double>();
+  if (a.type() != b.type()) return false;
+  return a.visit([&](auto const& typed) {
+    using Node = std::remove_cvref_t<decltype(typed)>;
+    auto const& other = *b.as<toml::impl::unwrap_node<Node>>();
+    if constexpr (toml::is_table<Node> || toml::is_array<Node>)
+      return same(typed, other);
+    else
+      return *typed == *other;
+  });
+}
+
+void find_changes(toml::table const& before, toml::table const& now, std::string const& prefix,
+                  std::vector<std::string>& found) {
+  std::set<std::string, std::less<>> keys;
+  for (auto const* const table : {&before, &now})
+    for (auto const& [key, value] : *table) keys.emplace(key.str());
+  for (auto const& key : keys) {
+    auto const *const a = before.get(key), *const b = now.get(key);
+    if (a && b && a->is_table() && b->is_table())
+      find_changes(*a->as_table(), *b->as_table(), prefix + key + '.', found);
+    else if (!a || !b || !same(*a, *b))
+      found.push_back(prefix + key);
+  }
+}
+
+}  // namespace
+
+std::string changed_lattice_key(Scene const& before, Scene const& now) {
+  auto const &a = before.lattice, &b = now.lattice;
+  if (before.system.kind != now.system.kind) return "system.kind";
+  if (now.system.kind != SystemKind::llg) return {};
+  if (!std::ranges::equal(a.cell, b.cell, [](auto& x, auto& y) { return same(x, y); }))
+    return "lattice.cell";
+  if (!std::ranges::equal(a.basis, b.basis, [](auto& x, auto& y) { return same(x, y); }))
+    return "lattice.basis";
+  bool const is_crystal = b.basis.size() > 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    bool const counts = b.shape[axis] > 1 || is_crystal || before.field.demag || now.field.demag;
+    if (!counts) continue;
+    if (!same_spacing(before, now, axis)) return "lattice.spacing";
+    if (a.boundary[axis] != b.boundary[axis]) return "lattice.boundary";
+  }
+  if (!same_of_cell(a.moments, b.moments, b.basis.size())) return "lattice.moments";
+  if (!same_of_cell(a.gyromagnetic, b.gyromagnetic, b.basis.size())) return "lattice.gyromagnetic";
+  if (!same_sites(before, now, &Lattice::occupied, occupied, 1)) return "lattice.occupied";
+  if (!same_sites(before, now, &Lattice::frozen, frozen, 0)) return "lattice.frozen";
+  return {};
+}
+
+std::vector<std::string> changed_keys(std::string const& before, std::string const& now) {
+  auto const parsed = [](std::string const& text) {
+    try {
+      return toml::parse(text);
+    } catch (toml::parse_error const& error) {
+      throw SceneError("a scene's text is not TOML: " + std::string(error.description()));
+    }
+  };
+  std::vector<std::string> found;
+  find_changes(parsed(before), parsed(now), {}, found);
+  return found;
+}
+
+}  // namespace cayspin::inline v0_1::io
