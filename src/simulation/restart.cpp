@@ -169,7 +169,7 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   else if (!changes.empty())
     warning_ = fmt::format("{}: other than in its scene: {}{}", from_.path.string(),
                            fmt::join(changes, ", "),
-                           !alike && remembers(scene, plan) ? "; the method starts anew" : "");
+                           !alike && remembers(scene, plan) ? "; the method begins again" : "");
 }
 
 std::vector<double> Restart::spins(io::Scene const& scene, io::SiteBox const& box) const {
