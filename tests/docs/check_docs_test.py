@@ -86,10 +86,6 @@ class CheckDocs(unittest.TestCase):
         program["README.md"] = program["README.md"].replace("main() {}", "main() { }")
         self.assertIn("is not that of", self.faults(GOOD, program)[0][2])
 
-    def test_number_of_words(self):
-        self.expect(GOOD + "\n| " + "word " * check_docs.WORD_LIMIT + "|\n", "words in README and docs")
-        self.assertEqual(self.faults(GOOD + "\n```\n" + "word " * check_docs.WORD_LIMIT + "\n```\n"), [])
-
     def test_sources(self):
         comment = {"include/a.hpp": "int behind;\n// is read anew\n"}
         self.expect(GOOD, '"anew"', 2, comment)
