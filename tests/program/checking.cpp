@@ -241,18 +241,18 @@ TEST_F(Checking, PeriodicFilmsGoOnForEver) {
     return read_dataset("out.h5", "/energy").values.front() / 400;
   };
   EXPECT_NEAR(energy({}), 0.5, 1e-10);
-  EXPECT_NEAR(energy(set("field.demag.periodic_images=[1,1,0]")), 0.4923, 1e-3);
+  EXPECT_NEAR(energy(set("field.demag={periodic_images=[1,1,0]}")), 0.4923, 1e-3);
   EXPECT_TRUE(contains(output_of({"check", write("film.toml", film)}),
                        "by FFTs, infinitely many images along x and y"));
-  auto const outcome =
-      run_into("out.h5", film, joined({"--overwrite"}, set("field.demag.periodic_images=[0,1,0]")));
+  auto const outcome = run_into(
+      "out.h5", film, joined({"--overwrite"}, set("field.demag={periodic_images=[0,1,0]}")));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(contains(outcome.errors,
-                       "warning: --set field.demag.periodic_images=[0,1,0]: "
+                       "warning: --set field.demag={periodic_images=[0,1,0]}: "
                        "field.demag.periodic_images: no images along x"))
       << outcome.errors;
   EXPECT_TRUE(contains(
-      output_of(joined({"check", "film.toml"}, set("field.demag.periodic_images=[0,1,0]"))),
+      output_of(joined({"check", "film.toml"}, set("field.demag={periodic_images=[0,1,0]}"))),
       "note        "));
   expect_refused({"check", "film.toml", "--set", "lattice.shape=[4,4,4]"}, "periodic_images");
 }
