@@ -65,7 +65,7 @@ struct WriteFrame {
   Generator const& generator;
   io::TrajectoryFile& file;
 
-  void operator()(Exec const& exec, cayspin::Step const& step, Spins const& spins) {
+  void operator()(Exec const& exec, cayspin::Step const& step, Spins const& spins) const {
     auto const now = cayspin::sample(exec, generator, step, spins);
     auto const& m = now.magnetization;
     io::Scalars const scalars{now.energy.value, now.norm_defect, {m.x, m.y, m.z}};

@@ -3,6 +3,7 @@
 // synchronisation is there in part, in any order. CAYSPIN_POWER_CUTS and CAYSPIN_SEED: how many,
 // and which.
 #include "damaged_bytes.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"
 #include "memory_folder.hpp"
 #include "recorded_disk.hpp"

@@ -2,6 +2,7 @@
 // Writers of files in memory, killed at random times. CAYSPIN_RANDOM_KILLS and CAYSPIN_SEED: how
 // many, and which.
 #include "damaged_bytes.hpp"
+#include "hdf5/guarded_reading.hpp"
 #include "known_run.hpp"
 #include "memory_folder.hpp"
 #include "support/reads_in_child.hpp"

@@ -197,6 +197,28 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
   }
 }
 
+// Devices, and hosts without packs, solve lines along x number by number.
+TYPED_TEST(Helmholtz, LinesOfSingleNumbersFindTheRowsOfPaddedPlanes) {
+  using Real = typename TypeParam::Real;
+  using Field = SiteField<Real, 3, Kokkos::HostSpace>;
+  using Lines = detail::SolveLines<Real, 3>;
+  Problem const problem{"", Lattice::cubic(14, 16, 4), {0, 0, 0}};
+  auto const layout = detail::RowLayout::of<Real>(problem.lattice);
+  std::vector<Real> const inverse(7, Real(0.5)), ratio(7, Real(0));
+  detail::LineFactors<Real> factors;
+  factors.inverse = inverse.data();
+  factors.ratio = ratio.data();
+  factors.other = 1;
+  auto const right = random_numbers(problem, false, 1);
+  Field const r = field_of<Field>(problem.lattice, right), z("z", problem.lattice);
+  Lines const lines{factors, layout, 0, r.array(), z.array(), Real(1)};
+  for (std::int64_t task = 0; task < lines.tasks(1); ++task)
+    detail::SolveLinesOnDevice<Lines>{lines}(task);
+  auto const solved = numbers_from(z);
+  for (std::size_t i = 0; i < right.size(); ++i)
+    ASSERT_EQ(solved[i].real(), 0.5 * static_cast<double>(static_cast<Real>(right[i].real()))) << i;
+}
+
 TYPED_TEST(Helmholtz, RealFormIsSymmetricAndPositive) {
   using Real = typename TypeParam::Real;
   auto problems = grids();

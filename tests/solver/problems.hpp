@@ -54,6 +54,7 @@ inline std::vector<Problem> lines() {
       };
       add("x ", Lattice::chain(n), {700, 0, 0});
       add("x in planes ", Lattice::cubic(n, 3, 2), {700, 0, 0});
+      add("x in padded planes ", Lattice::cubic(12 + n, 16, 4), {700, 0, 0});
       add("y ", Lattice::cubic(37, n, 3), {0, 30, 0});
       add("z ", Lattice::cubic(5, 2, n), {0, 0, 2e4});
     }

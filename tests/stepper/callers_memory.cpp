@@ -105,8 +105,9 @@ TYPED_TEST(CallersMemory, IsWhereAMinimizationEnds) {
 // A copy of a stepper would share its fields, and not its numbers.
 TYPED_TEST(CallersMemory, SteppersAreMovedAndNotCopied) {
   using Field = typename TestFixture::Field;
+  auto const like = this->start();
   for_each_stepper<Field>([&](std::string const& name, auto const& make, Takes) {
-    using Stepper = decltype(make(this->start()));
+    using Stepper = decltype(make(like));
     static_assert(!std::is_copy_constructible_v<Stepper> && !std::is_copy_assignable_v<Stepper>);
     static_assert(std::is_move_constructible_v<Stepper> && std::is_move_assignable_v<Stepper>);
     EXPECT_FALSE(name.empty());

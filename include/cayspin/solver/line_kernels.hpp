@@ -118,9 +118,7 @@ struct SolveLines {
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION void run(std::int64_t task) const {
     constexpr int lanes = lanes_of<Value>;
-    if constexpr (lanes > 1) {
-      if (axis == 0) return solve<Value, true>(layout.row_offset(task));
-    }
+    if (axis == 0) return solve<Value, (lanes > 1)>(layout.row_offset(task));
     std::int64_t const line = task / tasks_across(lanes), x = task % tasks_across(lanes) * lanes;
     solve<Value, false>(x + line * (axis == 1 ? layout.plane : layout.pitch));
   }
