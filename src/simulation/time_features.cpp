@@ -193,7 +193,9 @@ class Parts {
 TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch const& search) {
   TimeFeatures features;
   TimeSamples samples(vectors, search);
-  auto const jumps = find_jumps(samples, samples.evaluations() + search.most_evaluations);
+  std::optional<std::vector<Jump>> jumps;
+  if (!samples.are_too_coarse())
+    jumps = find_jumps(samples, samples.evaluations() + search.most_evaluations);
   Parts parts(samples, search);
   double begin = 0;
   bool resolved = jumps.has_value();

@@ -110,19 +110,21 @@ std::pair<std::size_t, std::size_t> TimeSamples::within(double begin, double end
   return {static_cast<std::size_t>(first), static_cast<std::size_t>(std::max(first, last))};
 }
 
-std::string const& TimeSamples::key_of_fastest() const {
-  std::size_t fastest = 0;
-  double most = -1;
+TimeSamples::Fastest TimeSamples::fastest() const {
+  Fastest fastest;
   for (std::size_t c = 0; c < components(); ++c) {
     double sum = 0;
     for (std::size_t i = 0; i + 1 < count(); ++i) sum += change(i, c);
     double const times_through = ranges_[c] > 0 ? sum / ranges_[c] : 0;
-    if (times_through > most) {
-      most = times_through;
-      fastest = c;
-    }
+    if (times_through > fastest.times_through) fastest = {c, times_through};
   }
-  return key_of(fastest);
+  return fastest;
+}
+
+std::string const& TimeSamples::key_of_fastest() const { return key_of(fastest().component); }
+
+bool TimeSamples::are_too_coarse() const {
+  return 4 * fastest().times_through > static_cast<double>(count());
 }
 
 std::vector<std::pair<double, double>> TimeSamples::all(std::size_t component) const {

@@ -41,12 +41,20 @@ class TimeSamples {
 
   std::string const& key_of(std::size_t component) const { return vectors_[component / 3].key; }
   std::string const& key_of_fastest() const;
+  /// Does a component go through its range more than once in four samples? Then what lies between
+  /// them is not known.
+  bool are_too_coarse() const;
   /// The largest length of each vector, of all values.
   std::vector<double> const& largest() const { return largest_; }
   /// All values of a component by time, at a time once.
   std::vector<std::pair<double, double>> all(std::size_t component) const;
 
  private:
+  struct Fastest {
+    std::size_t component = 0;
+    double times_through = -1;  // its range, up or down
+  };
+  Fastest fastest() const;
   std::vector<double> times_near_events() const;
   void add_sample(double t);
 

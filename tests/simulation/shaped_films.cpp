@@ -52,8 +52,8 @@ class ShapedText {
       case 3:
         return shape("[8, 8, 8]", fmt::format("k < {:.0f}", uniform(1, 7)));
       default:
-        return shape("[14, 12, 2]", fmt::format("random(i+14*j+168*k, 3) < {:.3f}",
-                                                uniform(0.6, 0.95)));
+        return shape("[14, 12, 2]",
+                     fmt::format("random(i+14*j+168*k, 3) < {:.3f}", uniform(0.6, 0.95)));
     }
   }
   void shape(std::string const& extents, std::string const& occupied) {
@@ -107,9 +107,10 @@ void expect_minimum(unsigned seed) {
 
 TEST(ShapedFilms, EndInMinima) {
   // Opening a run initialises Kokkos.
-  end_of(scene_of("system = { kind = 'llg', damping = 0.1 }\n"
-                  "integrator = { method = 'rkmk4', dt = 0.1, steps = 0 }\n"
-                  "lattice = { shape = [1] }\ninitial = { uniform = [0, 0, 1] }\n"));
+  end_of(
+      scene_of("system = { kind = 'llg', damping = 0.1 }\n"
+               "integrator = { method = 'rkmk4', dt = 0.1, steps = 0 }\n"
+               "lattice = { shape = [1] }\ninitial = { uniform = [0, 0, 1] }\n"));
   char const* const wanted = std::getenv("CAYSPIN_SHAPED_FILMS");
   auto const films = static_cast<unsigned>(wanted ? std::atoi(wanted) : 30);
   for (unsigned seed = 0; seed < films; ++seed)
