@@ -75,7 +75,7 @@ TEST(AcceptedKeys, ArraysWhereNoneIsTakenAreNamed) {
   Given given;
   given.numbers["output"] = std::make_shared<std::vector<double> const>(3, 1.0);
   try {
-    parse_scene(std::string(llg_scene) + "\n[output]\ngiven = true\n", "scene.toml", {}, given);
+    parse_scene(std::string(llg_scene), "scene.toml", {"output.given=true"}, given);
     ADD_FAILURE();
   } catch (SceneError const& error) {
     std::string const message = error.what();
