@@ -12,6 +12,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <array>
 #include <cstdlib>
 #include <random>
 
@@ -56,8 +57,8 @@ class RandomText {
       char const* const crystals[] = {"bcc", "hcp", "honeycomb", "kagome"};
       int const kind = whole(0, 3);
       of_site_ = "+343*s";
-      lattice_ += fmt::format("crystal = '{}'\nshape = [{}, {}, {}]\n", crystals[kind], whole(1, 3),
-                              whole(1, 3), kind < 2 ? whole(1, 2) : 1);
+      set_shape(whole(1, 3), whole(1, 3), kind < 2 ? whole(1, 2) : 1);
+      lattice_ += fmt::format("crystal = '{}'\n", crystals[kind]);
       sites_ = kind == 3 ? 3 : 2;
       if (chance(0.5)) {
         std::string moments;
@@ -65,7 +66,7 @@ class RandomText {
         lattice_ += "moments = [" + moments + "]\n";
       }
     } else {
-      lattice_ += fmt::format("shape = [{}, {}, {}]\n", whole(1, 6), whole(1, 4), whole(1, 2));
+      set_shape(whole(1, 6), whole(1, 4), whole(1, 2));
       if (chance(0.2)) lattice_ += fmt::format("moments = [{:.4f}]\n", uniform(0.5, 2));
     }
     bool const is_open = chance(0.4);
@@ -78,6 +79,11 @@ class RandomText {
     };
     if (chance(0.6)) some("occupied", uniform(0.4, 0.95));
     if (chance(0.3)) some("frozen", 0.2);
+  }
+
+  void set_shape(int nx, int ny, int nz) {
+    lattice_ += fmt::format("shape = [{}, {}, {}]\n", nx, ny, nz);
+    extents_ = {nx, ny};
   }
 
   void terms(bool is_crystal) {
@@ -106,8 +112,11 @@ class RandomText {
   void couplings(double strength) {
     std::string list;
     for (int i = whole(1, 3); i > 0; --i) {
-      list += fmt::format("{{ between = [{}, {}], offset = [1, {}, 0]", whole(0, sites_ - 1),
-                          whole(0, sites_ - 1), i - 2);
+      // One that leaves the lattice from every cell is refused, and so is a site with itself.
+      int const x = extents_[0] > 1 ? 1 : 0, y = extents_[1] > 1 ? i - 2 : 0;
+      int const from = whole(0, sites_ - 1), to = whole(0, sites_ - 1);
+      if (x == 0 && y == 0 && from == to) continue;
+      list += fmt::format("{{ between = [{}, {}], offset = [{}, {}, 0]", from, to, x, y);
       switch (whole(0, 2)) {
         case 0:
           list += fmt::format(", J = {:.4f}, D = {}", uniform(-strength, strength),
@@ -123,11 +132,12 @@ class RandomText {
       }
       list += " }, ";
     }
-    field_ += "couplings = [" + list + "]\n";
+    if (!list.empty()) field_ += "couplings = [" + list + "]\n";
   }
 
   std::mt19937 engine_;
   std::string lattice_, field_, of_site_;
+  std::array<int, 2> extents_{};
   int sites_ = 1;
   bool is_open_ = true;
 };

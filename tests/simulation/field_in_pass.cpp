@@ -121,7 +121,9 @@ steps = 50
           double const there = large[3 * (19 * j + i) + c];
           largest = std::max(largest, std::abs(there - (i < 9 ? small[3 * (9 * j + i) + c] : 0)));
         }
-    EXPECT_LT(largest, method->adaptive ? 1e-6 : 1e-13);
+    // Stiff steps solve their equation to a part of their error, by another solver on each lattice.
+    bool const is_rounded = !method->adaptive && !method->word.starts_with("stiff");
+    EXPECT_LT(largest, is_rounded ? 1e-13 : 1e-6);
     auto const of_half = SceneRun::open(*half, {})->sample();
     auto const of_whole = SceneRun::open(*whole, {})->sample();
     EXPECT_NEAR(of_whole.energy.value, of_half.energy.value, 1e-12);
