@@ -91,8 +91,8 @@ TEST_F(SiScene, RestartGivesTheBitsOfARunWithoutABreak) {
                      "other.h5",  "--precision",
                      "single"};
   };
-  expect_refused(joined(again(scene("25")), set("integrator.dt=2e-13")),
-                 "its step 12 is at t = 1.2e-12 s, not at that many steps of dt = 2e-13 s");
+  expect_refused(joined(again(scene("25")), set("integrator.dt=2.5e-13")),
+                 "its step 12 is at t = 1.2e-12 s, not at that many steps of dt = 2.5e-13 s");
   expect_refused(again(reduced_film("method = \"rkmk4\"\ndt = 0.01\nsteps = 25", "[0, 0, 0]")),
                  "it is in SI units; accepted: the units of the scene");
 }

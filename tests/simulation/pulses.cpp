@@ -153,7 +153,7 @@ TEST(Pulses, AreWaitedForByRunsThatEndAtRest) {
   auto const run = SceneRun::open(scene, {});
   EXPECT_EQ(run->advance(scene.integrator.steps, {.until_torque = true}), Advanced::at_rest);
   EXPECT_GT(run->time(), 501.5);
-  EXPECT_LT(run->time(), 600);
+  EXPECT_LE(run->time(), 600);  // the next look
 }
 
 TEST(Pulses, BitsOfARunInPiecesAreThoseOfOne) {
