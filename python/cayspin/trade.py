@@ -109,6 +109,8 @@ class Advice:
     warning: str | None  #: what is too large about dt, as `run` warns
     horizon: float  #: the time up to which the error is predicted
     units: str  #: of dt and horizon, the scene's: "reduced" or "SI"
+    space: str  #: the execution space in which `seconds` holds
+    threads: int  #: as many as that takes
     scene: Scene  #: with the method and its steps: Simulation(advice.scene, advice.precision)
     others: list[dict]  #: method and seconds of the next ones
 

@@ -23,6 +23,7 @@ class Advice(PackageTest):
     def test_what_is_advised_runs(self):
         advice = cayspin.advise(scene(**SPIN), error=1e-4, precision="double", threads=1)
         self.assertEqual(advice.precision, "double")
+        self.assertEqual(advice.threads, 1)
         self.assertLessEqual(advice.error, 1e-4)
         sim = cayspin.Simulation(advice.scene, advice.precision)
         sim.run()
@@ -39,7 +40,7 @@ class Advice(PackageTest):
                                              capture_output=True).stdout))
         self.assertEqual(keys, {"method", "precision", "dt", "steps", "tolerance", "error",
                                 "seconds", "memory", "horizon", "units", "warning", "overrides",
-                                "others"})
+                                "others", "space", "threads"})
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         for word in ("scene ", "method ", "error ", "memory ", "run it ", "next to it"):
             self.assertIn(word, text)
