@@ -127,6 +127,10 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   step_ = uses_checkpoint_ ? checkpoint->step : trajectory->frame_steps.back();
   if (shape != scene.lattice.shape || cell_sites != std::ssize(scene.lattice.basis))
     refuse(fmt::format("its lattice is {}", cells_text(shape, cell_sites)), of_this_lattice);
+  auto const& units = scene.units;
+  bool const is_si = trajectory ? trajectory->header.units.si : checkpoint->si;
+  if (is_si != units.si)
+    refuse(units.si ? "it is in reduced units" : "it is in SI units", "the units of the scene");
   if (before)
     if (auto const key = other_lattice_key(*before, scene); !key.empty())
       refuse(fmt::format("its {} is another than the scene's", key),
@@ -134,10 +138,6 @@ Restart::Restart(EarlierRun from, io::Scene const& scene, Plan const& plan, Prec
   if (stored != to_string(precision))
     refuse(fmt::format("its spins are in {} precision", stored),
            fmt::format("--precision {}", stored));
-  auto const& units = scene.units;
-  bool const is_si = trajectory ? trajectory->header.units.si : checkpoint->si;
-  if (is_si != units.si)
-    refuse(units.si ? "it is in reduced units" : "it is in SI units", "the units of the scene");
   // As the file's times were made, so that those of the same scene are equal to the bit.
   double const dt = scene.integrator.dt * units.time;
   auto const is_at = [&](std::int64_t step) {

@@ -12,9 +12,11 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <random>
+#include <set>
 
 namespace cayspin::simulation::test {
 namespace {
@@ -111,11 +113,18 @@ class RandomText {
 
   void couplings(double strength) {
     std::string list;
+    std::set<std::array<int, 4>> bonds;
     for (int i = whole(1, 3); i > 0; --i) {
-      // One that leaves the lattice from every cell is refused, and so is a site with itself.
+      // Refused are one that leaves the lattice from every cell, a site with itself, and one twice.
       int const x = extents_[0] > 1 ? 1 : 0, y = extents_[1] > 1 ? i - 2 : 0;
       int const from = whole(0, sites_ - 1), to = whole(0, sites_ - 1);
-      if (x == 0 && y == 0 && from == to) continue;
+      bool const in_cell = x == 0 && y == 0;
+      if (in_cell && from == to) continue;
+      if (!bonds
+               .insert(
+                   {in_cell ? std::min(from, to) : from, in_cell ? std::max(from, to) : to, x, y})
+               .second)
+        continue;
       list += fmt::format("{{ between = [{}, {}], offset = [{}, {}, 0]", from, to, x, y);
       switch (whole(0, 2)) {
         case 0:
