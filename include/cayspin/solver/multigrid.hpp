@@ -38,6 +38,7 @@ class Multigrid {
         restrict_label_("cayspin::" + name + "::restrict"),
         interpolate_label_("cayspin::" + name + "::interpolate"),
         coarse_label_("cayspin::" + name + "::coarse") {
+    lattice.cell_sites = 1;  // a coarse grid need not hold whole cells
     std::vector<CellAxis> axes;
     for (std::size_t axis = 0; axis < 3; ++axis)
       axes.emplace_back(lattice.shape[axis], lattice.boundary[axis] == Boundary::periodic);
