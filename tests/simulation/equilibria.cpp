@@ -12,7 +12,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <random>
@@ -118,13 +117,11 @@ class RandomText {
       // Refused are one that leaves the lattice from every cell, a site with itself, and one twice.
       int const x = extents_[0] > 1 ? 1 : 0, y = extents_[1] > 1 ? i - 2 : 0;
       int const from = whole(0, sites_ - 1), to = whole(0, sites_ - 1);
-      bool const in_cell = x == 0 && y == 0;
-      if (in_cell && from == to) continue;
-      if (!bonds
-               .insert(
-                   {in_cell ? std::min(from, to) : from, in_cell ? std::max(from, to) : to, x, y})
-               .second)
-        continue;
+      if (x == 0 && y == 0 && from == to) continue;
+      bool const is_reversed = x == 0 && (y < 0 || (y == 0 && from > to));
+      bool const is_new = is_reversed ? bonds.insert({to, from, x, -y}).second
+                                      : bonds.insert({from, to, x, y}).second;
+      if (!is_new) continue;
       list += fmt::format("{{ between = [{}, {}], offset = [{}, {}, 0]", from, to, x, y);
       switch (whole(0, 2)) {
         case 0:
