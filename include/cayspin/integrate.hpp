@@ -102,7 +102,7 @@ Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const
 template <class Observer>
 inline constexpr bool begins_step = requires { requires Observer::begins_step; };
 
-/// Of observers in their order: is there one that may stop a run after one that begins a step?
+/// In the order of the observers: may one stop the run after another one has begun a step?
 template <class Exec, class Spins, class... Observers>
 constexpr bool may_stop_in_a_step() {
   bool begun = false, stops = false;

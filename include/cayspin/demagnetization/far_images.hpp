@@ -152,7 +152,7 @@ class FarImages {
     }
   }
 
-  /// The same of the sheets that whole lines make beyond these.
+  /// Adds the sheets that the lines of images form farther away.
   void add_sheet(Entries& e, double weight, double y, double z) const {
     std::size_t const q = *sheet_, n = normal();
     for (int const side : {-1, 1}) {

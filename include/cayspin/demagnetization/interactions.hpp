@@ -121,8 +121,8 @@ class InteractionsOfCells {
   bool is_infinite(std::size_t axis) const { return images(axis) == infinitely_many_images; }
   double period_length(std::size_t axis) const { return cells_[axis] * cell_[axis]; }
 
-  /// Of infinitely many images, those within two of the longer periods are summed for each
-  /// distance.
+  /// For each distance, sums the images within two of the longer periods. far_images.hpp has the
+  /// infinitely many others.
   void choose_nearest() {
     nearest_ = options_.periodic_images;
     std::vector<double> periods;

@@ -210,8 +210,8 @@ inline DemagnetizingTensor divided_demagnetizing_tensor(Lengths const& position,
   return sum;
 }
 
-/// The same with the longest edge halved until no edge is over 16 times the shortest. Pairs of
-/// pieces that are far from each other by then are summed as they come, so that few remain.
+/// The tensor of slender cells: the longest edge is halved until no edge is over 16 times the
+/// shortest. Pairs of pieces that are already far apart are summed at once, so that few remain.
 inline DemagnetizingTensor slender_demagnetizing_tensor(Lengths const& position,
                                                         Lengths const& cell) {
   using Offset = std::array<std::int64_t, 3>;  // between the pieces of a pair, in pieces

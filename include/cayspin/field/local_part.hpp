@@ -57,12 +57,12 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Term const& term, Spin co
     return zero<ValueOf<Spin>>();
 }
 
-/// Of a prepared term: does it say what its parts are?
+/// Does a prepared term split its field into a local and a neighbour part?
 template <class Term, class Stencil>
 inline constexpr bool says_its_parts =
     is_local<Term> ||
     requires(Term const& term, Stencil const& stencil) { term.neighbor_field(stencil); };
-/// The same of each term of a sum for itself.
+/// Does each term of a prepared sum do so?
 template <class Term, class Stencil>
 inline constexpr bool comes_in_parts = says_its_parts<Term, Stencil>;
 

@@ -8,7 +8,7 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// What a scene says that acts nowhere, or that does not go with another key: each in one line,
+/// Lists each key of a scene that acts nowhere, or that does not go with another key, in one line,
 /// "FILE:LINE: key: message". `cayspin check` prints these, and `run` and `relax` warn of them.
 /// Opens the files with numbers of sites. Throws SceneError.
 std::vector<std::string> notes(Scene const& scene);

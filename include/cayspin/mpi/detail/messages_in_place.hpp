@@ -26,7 +26,7 @@ struct Box {
   std::int64_t rows() const { return extent(1) * extent(2); }
 };
 
-/// What goes to the neighbour before and to the one after, and where what comes from them goes.
+/// Boxes sent to the previous and the next neighbour, and the boxes that receive theirs.
 struct Faces {
   std::array<Box, 2> sent, received;
 };
