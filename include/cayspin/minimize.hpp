@@ -53,8 +53,8 @@ class Minimizer {
   }
 
   /// Moves `spins` to a minimum. Waits. Throws
-  /// std::invalid_argument for spins of another lattice, options that cannot be, and a field that
-  /// is not finite at the start.
+  /// std::invalid_argument for spins of another lattice and options that cannot be, and
+  /// FieldNotFinite for a field that is not finite at the start.
   template <class Exec, class Field>
   Minimum minimize(Exec const& exec, Field const& field, Spins& spins,
                    MinimizeOptions const& options = {}) {
@@ -118,7 +118,7 @@ class Minimizer {
     Kokkos::deep_copy(exec, search_.direction.allocation(), Real(0));
     auto const start = look(exec, field, spins, 0, options);
     if (!start.is_finite())
-      throw std::invalid_argument("cayspin::minimize: the field or its energy is not finite");
+      throw FieldNotFinite("cayspin::minimize: the field or its energy is not finite");
     swap(search_.gradient, search_.new_gradient);
     take(start);
   }

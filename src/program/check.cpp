@@ -88,7 +88,10 @@ void print_notes(io::Scene const& scene) {
 // Nothing without notes.
 std::string notes_json(io::Scene const& scene) {
   auto const all = io::notes(scene);
-  return all.empty() ? std::string() : fmt::format(", \"notes\": {}", nlohmann::json(all).dump());
+  return all.empty() ? std::string()
+                     : fmt::format(", \"notes\": {}",
+                                   nlohmann::json(all).dump(
+                                       -1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void print_json(io::Scene const& scene, Plan const& plan, Precision precision,

@@ -11,10 +11,6 @@ Precision precision_named(std::string const& name) {
   throw UsageError(fmt::format("--precision {}: accepted: double, single", name));
 }
 
-bool is_on_host(std::string const& space) {
-  return space == "serial" || space == "openmp" || space == "threads";
-}
-
 void add_device_options(CLI::App& command, DeviceOptions& options) {
   add_scene_options(command, options);
   command.add_option("--output", options.output, "The file to write; wins over output.file");

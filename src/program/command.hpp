@@ -72,9 +72,6 @@ void add_scene_options(CLI::App& command, Options& options,
       ->type_name("NAME");
 }
 
-/// Is it a host's execution space?
-bool is_on_host(std::string const& space);
-
 /// An option that may be given more than once, always with the same value. Throws UsageError for
 /// two values.
 template <class Value>

@@ -12,6 +12,10 @@
 #include <type_traits>
 
 namespace cayspin::simulation {
+bool is_on_host(std::string const& space) {
+  return space == "serial" || space == "openmp" || space == "threads";
+}
+
 namespace {
 
 Kokkos::InitializationSettings settings(std::string const& space, std::optional<int> threads,
@@ -29,6 +33,9 @@ Kokkos::InitializationSettings settings(std::string const& space, std::optional<
   int const devices = Kokkos::num_devices();
   if (devices < 1)
     throw UsageError("--device: there is no device, or no backend for one is compiled in");
+  if (is_on_host(space))
+    throw UsageError(fmt::format("--device {}: --space {} is on the host; accepted: no --device",
+                                 *device, space));
   if (*device >= devices)
     throw UsageError(fmt::format("--device {}: accepted: 0 .. {}", *device, devices - 1));
   settings.set_device_id(*device);

@@ -27,6 +27,9 @@ bool has_name(std::string const& word) {
          (word == "serial" && cayspin::detail::is_host_execution<Space>);
 }
 
+/// Is it a host's execution space?
+bool is_on_host(std::string const& space);
+
 /// The word asked for, or Kokkos' default. Throws UsageError when it is not compiled in, and for
 /// "serial" where Kokkos already runs with more threads.
 std::string chosen_space(std::optional<std::string> const& asked);
@@ -42,7 +45,7 @@ int expected_threads();
 /// Kokkos, from here to the end of the scope.
 class KokkosSession {
  public:
-  /// Throws UsageError for a device that there is not.
+  /// Throws UsageError for a device that there is not, and for one of a host's space.
   KokkosSession(std::string const& space, std::optional<int> threads, std::optional<int> device);
   ~KokkosSession() { Kokkos::finalize(); }
   KokkosSession(KokkosSession const&) = delete;

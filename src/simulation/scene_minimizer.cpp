@@ -47,7 +47,7 @@ Minimum SceneMinimizer<Real, Space>::minimize(Space const& exec, io::Scene const
                                               MinimizeOptions const& options) {
   try {
     return minimizer_.minimize(exec, field, spins, options);
-  } catch (std::invalid_argument const&) {
+  } catch (FieldNotFinite const&) {
     throw NumbersFailed(fmt::format("{}: the field of the start, or its energy, is not finite",
                                     scene.path.string()));
   }

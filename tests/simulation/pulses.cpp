@@ -58,6 +58,7 @@ TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
   static constexpr char const* methods[] = {"tsit5", "dp5", "bs3", "projected_dp5",
                                             "stiff2_adaptive"};
   std::int64_t const count = setting("CAYSPIN_PULSES", 24);
+  std::int64_t refused = 0;
   double worst = 0;
   for (std::int64_t number = 0; number < count; ++number) {
     RandomPulses const pulses(random_seed(), number);
@@ -67,12 +68,21 @@ TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
         "{}integrator = {{ method = '{}', tolerance = {:e}, end = {:.17g}{} }}\n", pulses.tables(),
         method, tolerance, pulses.end, number % 15 == 0 ? ", generator = 'orthogonal'" : ""));
     auto const exact = pulses.exact();
-    double const error = largest_distance(end_of(scene), {exact[0], exact[1], exact[2]});
+    std::vector<double> end;
+    try {
+      end = end_of(scene);
+    } catch (StepTooSmall const& refusal) {
+      ++refused;
+      std::printf("%ld %s\n%s\n", static_cast<long>(number), refusal.what(), scene.text.c_str());
+      continue;
+    }
+    double const error = largest_distance(end, {exact[0], exact[1], exact[2]});
     worst = std::max(worst, error / tolerance);
     EXPECT_LT(error, 30 * tolerance) << number << '\n' << scene.text;
   }
-  std::printf("    error over tolerance, of %ld fields: at most %.3g\n", static_cast<long>(count),
-              worst);
+  std::printf("    error over tolerance, of %ld fields: at most %.3g; %ld refused\n",
+              static_cast<long>(count), worst, static_cast<long>(refused));
+  EXPECT_LE(refused, count / 100);
 }
 
 TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string_view>
 
 namespace cayspin::inline v0_1 {
@@ -33,6 +34,12 @@ constexpr std::string_view to_string(MinimizeEnd end) {
   }
   return "";
 }
+
+/// Thrown when the field, or its energy, is not finite at the start of a minimisation.
+class FieldNotFinite : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
 
 /// How far a minimisation has come, and at the end its result.
 struct Minimum {
