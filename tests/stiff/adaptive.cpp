@@ -103,6 +103,23 @@ TEST(AdaptiveStiff, AFieldSwitchedOnAtRestIsFollowed) {
   expect_below("after the jump", largest_distance(spins, exact), 30 * tolerance);
 }
 
+// Corrections of spins at rest are round-off, from which no step follows.
+TEST(AdaptiveStiff, ShortStepsAtRestAreTakenAndLeftAgain) {
+  auto const lattice = Lattice::chain(1);
+  Vector const field{0.14205055664220612, 0.17394872326938271, 1};
+  LandauLifshitz const generator(FieldThatJumps{100, field, field}, 0.32755298957973433);
+  auto const start =
+      make_spins(lattice, [&](auto...) { return (1 / std::sqrt(dot(field, field))) * field; });
+  for (double const max_dt : {0.01, 0.02, 0.05}) {
+    auto spins = copy_of(start);
+    Stepper stepper(spins, {.tolerance = 1e-3, .end = 60, .bounds = {{10, 40, max_dt}}});
+    stepper.step(Space(), generator, spins, 0, 60);
+    auto const steps = static_cast<double>(stepper.accepted_steps());
+    EXPECT_LT(steps, 30 / max_dt + 100);
+    EXPECT_LT(largest_distance(spins, start), steps * std::numeric_limits<double>::epsilon());
+  }
+}
+
 TEST(AdaptiveStiff, InSinglePrecisionIsTheSameMethod) {
   using Single = SpinField<float, Space::memory_space>;
   Slab const slab = thin_slab(40, 0.5);

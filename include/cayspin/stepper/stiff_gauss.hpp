@@ -189,7 +189,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
         bool const measures = !has_history || contraction_ > 0.1 || ++unmeasured_ >= 16;
         if (!measures && contraction_ * change <= tolerance) return true;
       } else {
-        double const contraction = before > 0 ? change / before : 0;
+        // The quotient of two corrections that are round-off tells nothing.
+        double const contraction = before > 4 * epsilon ? change / before : 0;
         if (i == 1) contraction_ = contraction;
         unmeasured_ = 0;
         if (contraction < 0.9 && change * contraction <= (1 - contraction) * tolerance) return true;
