@@ -34,7 +34,8 @@ NewtonStep find_newton_step(AnyHessian& hessian, Exec const& exec, Spins const& 
                             Spins const& step, NewtonArrays<Spins> const& arrays,
                             NewtonOptions const& options, Precondition const& precondition) {
   constexpr int most_products = 60;
-  auto const& [r, z, d, hd] = arrays;
+  Spins const &r = arrays.residual, &z = arrays.preconditioned, &d = arrays.direction,
+              &hd = arrays.product;
   NewtonStep found;
   combine(exec, 0, gradient, 0, gradient, step);
   combine(exec, -1, gradient, 0, gradient, r);

@@ -88,7 +88,7 @@ struct WithoutVacancies {
 /// H is not zero, and finds whether a spin never saw a field.
 template <class Field, class Real>
 struct FieldAlongSpins {
-  enum { along, along_square, square, sites, opposed_bonds, rests, values };
+  enum { along, along_square, square, sites, opposed_neighbors, rests, values };
   using Combine = SumsThenMaxima<rests>;
 
   Field field;
@@ -107,7 +107,7 @@ struct FieldAlongSpins {
     found[along_square] = found[along] * found[along];
     found[square] = occupied * dot(h, h);
     found[sites] = occupied;
-    found[opposed_bonds] = opposed<0>(stencil) + opposed<1>(stencil) + opposed<2>(stencil);
+    found[opposed_neighbors] = opposed<0>(stencil) + opposed<1>(stencil) + opposed<2>(stencil);
     Value const before = site.load(is_mobile);
     Value const now = select<Value>(found[square] == none, before, one);
     found[rests] = occupied - now;
@@ -188,7 +188,7 @@ FieldStrengths probe(
     auto const opposed = sample_at(AlternatingSigns::along_axis(axis));
     rests = opposed[Sample::rests];
     // Each bond between opposite spins takes 4 J from the sum of m.H.
-    double const bonds = opposed[Sample::opposed_bonds];
+    double const bonds = opposed[Sample::opposed_neighbors];
     double const difference = parallel[Sample::along] - opposed[Sample::along];
     double const coupling = difference / (4 * bonds);
     bool const is_noise = !(std::abs(difference) > 1e-5 * std::abs(parallel[Sample::along]));
