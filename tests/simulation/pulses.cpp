@@ -101,7 +101,7 @@ TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {
       auto const warning = dt_warning(plan, scene.units).value_or("");
       if (share > 1)
         EXPECT_NE(warning, "") << scene.text;
-      else
+      else if (!pulses.has_sums())
         EXPECT_EQ(warning.find("may miss"), std::string::npos) << warning << '\n' << scene.text;
     }
   }

@@ -161,10 +161,14 @@ class RandomPulses {
     double least = std::numeric_limits<double>::infinity();
     for (auto const& shapes : shapes_)
       for (auto const& shape : shapes)
-        if (shape.kind != TimeShape::step && shape.middle > shape.width &&
-            shape.last() + shape.width < end)
-          least = std::min(least, shape.width_at_half_height());
+        if (is_within(shape)) least = std::min(least, shape.width_at_half_height());
     return least;
+  }
+
+  /// Are there two in one component? Where one jumps on the flank of the other their sum may have a
+  /// pulse that is shorter than both.
+  bool has_sums() const {
+    return std::ranges::any_of(shapes_, [](auto const& shapes) { return shapes.size() > 1; });
   }
 
   /// At the end, by classical Runge-Kutta steps that end at all corners.
@@ -193,6 +197,12 @@ class RandomPulses {
   }
 
  private:
+  /// A sinc has lobes on both sides of its middle.
+  bool is_within(TimeShape const& shape) const {
+    if (shape.kind == TimeShape::step) return false;
+    if (shape.kind == TimeShape::sinc) return shape.middle + 5 * shape.width < end;
+    return shape.middle > shape.width && shape.last() + shape.width < end;
+  }
   double between(double a, double b) {
     return a + (b - a) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
