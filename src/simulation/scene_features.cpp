@@ -130,7 +130,8 @@ FeatureSearch search_of(io::Scene const& scene, std::optional<double> error) {
   auto const& integrator = scene.integrator;
   FeatureSearch search;
   search.end = integrator.dt * static_cast<double>(integrator.steps);
-  search.angle = std::max(0.01 * error.value_or(1e-4), 1e-10);
+  // Alike for all but the smallest errors: a run sees what its trial by another tolerance has seen.
+  search.angle = std::clamp(0.01 * error.value_or(1e-6), 1e-10, 1e-8);
   if (scene.field.own.uniform) {  // a call may take long
     search.samples = 1 << 12;
     search.most_evaluations = 100'000;
