@@ -12,6 +12,7 @@
 #include <type_traits>
 
 namespace cayspin::simulation {
+
 bool is_on_host(std::string const& space) {
   return space == "serial" || space == "openmp" || space == "threads";
 }

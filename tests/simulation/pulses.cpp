@@ -58,7 +58,6 @@ TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
   static constexpr char const* methods[] = {"tsit5", "dp5", "bs3", "projected_dp5",
                                             "stiff2_adaptive"};
   std::int64_t const count = setting("CAYSPIN_PULSES", 24);
-  std::int64_t refused = 0;
   double worst = 0;
   for (std::int64_t number = 0; number < count; ++number) {
     RandomPulses const pulses(random_seed(), number);
@@ -68,21 +67,12 @@ TEST(Pulses, RandomOnesAreFollowedToTheTolerance) {
         "{}integrator = {{ method = '{}', tolerance = {:e}, end = {:.17g}{} }}\n", pulses.tables(),
         method, tolerance, pulses.end, number % 15 == 0 ? ", generator = 'orthogonal'" : ""));
     auto const exact = pulses.exact();
-    std::vector<double> end;
-    try {
-      end = end_of(scene);
-    } catch (NumbersFailed const& refusal) {
-      ++refused;
-      std::printf("    %ld: %s\n", static_cast<long>(number), refusal.what());
-      continue;
-    }
-    double const error = largest_distance(end, {exact[0], exact[1], exact[2]});
+    double const error = largest_distance(end_of(scene), {exact[0], exact[1], exact[2]});
     worst = std::max(worst, error / tolerance);
     EXPECT_LT(error, 30 * tolerance) << number << '\n' << scene.text;
   }
-  std::printf("    error over tolerance, of %ld fields: at most %.3g; %ld refused\n",
-              static_cast<long>(count), worst, static_cast<long>(refused));
-  EXPECT_LE(refused, count / 100);
+  std::printf("    error over tolerance, of %ld fields: at most %.3g\n", static_cast<long>(count),
+              worst);
 }
 
 TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {
@@ -101,7 +91,7 @@ TEST(Pulses, ThatEqualStepsMayMissAreWarnedOf) {
       auto const warning = dt_warning(plan, scene.units).value_or("");
       if (share > 1)
         EXPECT_NE(warning, "") << scene.text;
-      else if (!pulses.has_sums())
+      else if (!pulses.overlap())
         EXPECT_EQ(warning.find("may miss"), std::string::npos) << warning << '\n' << scene.text;
     }
   }

@@ -165,10 +165,14 @@ class RandomPulses {
     return least;
   }
 
-  /// Are there two in one component? Where one jumps on the flank of the other their sum may have a
-  /// pulse that is shorter than both.
-  bool has_sums() const {
-    return std::ranges::any_of(shapes_, [](auto const& shapes) { return shapes.size() > 1; });
+  /// Do two overlap in one component? Where one jumps on the flank of the other their sum may have
+  /// a pulse that is shorter than both.
+  bool overlap() const {
+    return std::ranges::any_of(shapes_, [](auto const& shapes) {
+      if (shapes.size() < 2) return false;
+      auto const a = shapes[0].corners(), b = shapes[1].corners();
+      return a.front() < b.back() && b.front() < a.back();
+    });
   }
 
   /// At the end, by classical Runge-Kutta steps that end at all corners.
