@@ -194,6 +194,15 @@ bool needs_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
     return depends_on_time<Term> || is_stationary(term, exec, spins);
 }
 
+/// Is t enough for prepare_for_rows?
+template <class Term, class Exec, class Spins>
+bool rows_need_time_alone(Term const& term, Exec const& exec, Spins const& spins) {
+  if constexpr (requires { term.rows_need_time_alone(exec, spins); })
+    return term.rows_need_time_alone(exec, spins);
+  else
+    return needs_time_alone(term, exec, spins);
+}
+
 /// Is H affine in the spins, of a term with a linear part? What a term says at run time, and all
 /// parts of a sum or a wrapper.
 template <class Term>

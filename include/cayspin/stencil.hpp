@@ -43,6 +43,14 @@ class Stencil {
     return neighbor_or<Axis, 1>(missing);
   }
 
+  /// Are there neighbours on both sides, at all sites of a pack?
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION bool is_between() const
+    requires requires(Site const& site) { site.template is_between<Axis>(); }
+  {
+    return site_.template is_between<Axis>();
+  }
+
   /// Position and loads of further per-site arrays (SiteField::array).
   KOKKOS_FORCEINLINE_FUNCTION Site const& site() const { return site_; }
 
@@ -94,6 +102,18 @@ KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil,
 }
 
 namespace detail {
+
+/// m_next - m_previous, the zero vector in place of a missing neighbour. Where none is missing,
+/// from what other terms load, too.
+template <int Axis, class AnyStencil>
+KOKKOS_FORCEINLINE_FUNCTION typename AnyStencil::vector_type difference(AnyStencil const& stencil) {
+  if constexpr (requires { stencil.template is_between<Axis>(); }) {
+    if (stencil.template is_between<Axis>()) [[likely]]
+      return stencil.template next<Axis>() - stencil.template previous<Axis>();
+  }
+  auto const none = zero<typename AnyStencil::value_type>();
+  return stencil.template next<Axis>(none) - stencil.template previous<Axis>(none);
+}
 
 /// A stencil without neighbours: a spin that is in no field, and a site for coefficients.
 template <class Site>

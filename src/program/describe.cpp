@@ -274,9 +274,6 @@ std::vector<std::pair<std::string, std::string>> describe(io::Scene const& scene
       auto const& factors = is_exchange ? field.exchange_factors : field.dmi_factors;
       if (term) lines.emplace_back(Term::key, term_text(*term) + factors_text(factors));
     });
-    if (field.bulk_dmi)
-      lines.emplace_back("dmi", fmt::format("E = {:.6g} m.curl m{}", field.bulk_dmi->constant,
-                                            factors_text(field.dmi_factors)));
     if (auto const bonds = io::couplings(scene); !bonds.empty())
       lines.emplace_back("couplings", couplings_text(scene, bonds));
     add_anisotropies(scene, lines);

@@ -27,7 +27,6 @@ void check_energy_control(Scene const& scene) {
   if (system.kind == SystemKind::llg && (system.damping != 0 || !system.precession))
     refuse(scene, key, "needs a system that conserves its energy",
            "damping = 0 with precession, or no such key");
-  if (depends_on_time(scene.field)) refuse(scene, key, "needs a field without t", "no such key");
   if (!integrator.method->has_equal_steps())
     refuse(scene, key,
            fmt::format("method \"{}\" does not step from the spins that it changes",
@@ -73,11 +72,9 @@ void check_isotropy(Scene const& scene) {
   if (system.damping != 0 || !system.precession)
     refuse(scene, key, "\"energy\" needs a system that conserves its energy",
            "damping = 0 with precession, or another isotropy");
-  if (depends_on_time(scene.field))
-    refuse(scene, key, "\"energy\" needs a field without t", "another isotropy");
 }
 
-// Colours of a checkerboard that closes on itself, and spins that see their neighbours alone.
+// Colours of a checkerboard that closes on itself.
 void check_two_colours(Scene const& scene) {
   constexpr std::string_view key = "integrator.method";
   auto const method = scene.integrator.method->word;
@@ -97,15 +94,6 @@ void check_two_colours(Scene const& scene) {
                          method, extent, "xyz"[axis]),
              "an even extent, an open boundary, or another method");
   }
-  if (is_nonlocal(scene.field))
-    refuse(scene,
-           scene.field.own.nonlocal ? "field"
-           : scene.field.demag      ? "field.demag"
-                                    : "field.slab_demag",
-           fmt::format("method \"{}\" needs a field of the neighbours alone", method),
-           scene.field.own.nonlocal ? "no nonlocal field, or another method"
-           : scene.field.demag      ? "no such key, or another method"
-                                    : "neither average nor where, or another method");
 }
 
 void check_tangent(Scene const& scene) {
@@ -122,35 +110,8 @@ void check_tangent(Scene const& scene) {
            "\"cayley\"");
 }
 
-// Terms that are evaluated for all spins at once.
-void check_pass(Scene const& scene) {
-  if (!needs_pass(scene)) return;
-  auto const& [field, integrator] = std::tie(scene.field, scene.integrator);
-  auto const& method = *integrator.method;
-  auto const refuse_method = [&](bool wrong, std::string_view why) {
-    if (wrong)
-      refuse(scene, "integrator.method", fmt::format("\"{}\" {}", method.word, why),
-             "another method, such as \"heun\", \"rkmk4\", \"dp5\"");
-  };
-  refuse_method(method.neighbors == Neighbors::by_colour, "needs a field of the neighbours alone");
-  refuse_method(method.differentiates_field,
-                "differentiates the field, which it cannot with terms such as couplings");
-  if (integrator.isotropy == Isotropy::analytic || integrator.isotropy == Isotropy::energy)
-    refuse(scene, "integrator.isotropy",
-           fmt::format("\"{}\" does not go with terms such as couplings",
-                       to_string(integrator.isotropy)),
-           "\"zero\", { constant = sigma }");
-  if (integrator.energy_control)
-    refuse(scene, "integrator.energy_control", "does not go with terms such as couplings",
-           "no such key");
-  if (has_torque(field) && integrator.until_torque)
-    refuse(scene, "integrator.until_torque", "a current moves spins for ever", "no such key");
-}
-
-}  // namespace
-
-void check_combination(Scene const& scene) {
-  check_pass(scene);
+// The keys of [integrator] among each other.
+void check_integrator(Scene const& scene) {
   if (scene.field.own.nonlocal && scene.field.slab_demag && scene.field.slab_demag->on_host)
     refuse(scene, "field.slab_demag", "where = \"host\" does not go with a program's own field",
            "no such key");
@@ -177,10 +138,13 @@ void check_combination(Scene const& scene) {
   if (method.neighbors == Neighbors::by_colour) check_two_colours(scene);
   if (integrator.generator == Generator::tangent) return check_tangent(scene);
   check_isotropy(scene);
-  if (method.differentiates_field && depends_on_time(scene.field))
-    refuse(scene, "integrator.method",
-           fmt::format("\"{}\" refuses fields that depend on t", method.word),
-           "a method without derivatives, or numbers in field.applied");
+}
+
+}  // namespace
+
+void check_combination(Scene const& scene) {
+  check_integrator(scene);
+  detail::check_pairs(scene);
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -51,12 +51,15 @@ void read_basis(Item const& item, Lattice& lattice) {
                           "sites at places of their own");
 }
 
-std::vector<double> read_numbers_of_sites(Item const& item, std::size_t sites) {
-  if (!item.node->is_array()) return std::vector<double>(sites, positive_number(item));
+std::vector<double> read_numbers_of_sites(Item const& item, std::size_t sites,
+                                          Limits const& limits) {
+  if (!item.node->is_array()) return std::vector<double>(sites, number(item, limits));
   std::vector<double> numbers;
-  auto const accepted = fmt::format("{} numbers > 0, one for each site of the cell", sites);
+  constexpr std::string_view one = "a number";
+  auto const accepted = fmt::format("{} numbers{}, one for each site of the cell", sites,
+                                    limits.accepted.substr(one.size()));
   for (auto const& entry : entries(item, sites, sites, accepted))
-    numbers.push_back(positive_number(entry));
+    numbers.push_back(number(entry, limits));
   return numbers;
 }
 
@@ -79,9 +82,9 @@ void read_crystal(Table const& root, Table const& table, Lattice& lattice) {
   if (auto const item = table.find("basis")) read_basis(*item, lattice);
   auto const sites = lattice.basis.size();
   if (auto const item = table.find("moments"))
-    lattice.moments = read_numbers_of_sites(*item, sites);
+    lattice.moments = read_numbers_of_sites(*item, sites, not_negative);
   if (auto const item = table.find("gyromagnetic"))
-    lattice.gyromagnetic = read_numbers_of_sites(*item, sites);
+    lattice.gyromagnetic = read_numbers_of_sites(*item, sites, positive);
 }
 
 void check_crystal(Scene const& scene) {

@@ -62,6 +62,7 @@ void read_lattice_terms(Table const& table, Field& field) {
     auto const item = table.find(Term::key);
     if (!item) return;
     if (std::is_same_v<Term, InterfacialDmi>) return read_dmi(*item, table.scene(), field);
+    if (std::is_same_v<Term, BulkDmi>) return;  // read beside it
     if (std::is_same_v<Term, Exchange> &&
         read_site_numbers(*item, table.scene(), field.exchange_factors)) {
       field.exchange = {1};
@@ -73,8 +74,9 @@ void read_lattice_terms(Table const& table, Field& field) {
 
 std::vector<std::string_view> field_keys() {
   std::vector<std::string_view> keys;
-  for_each_lattice_term(Field{},
-                        [&]<class Term>(std::optional<Term> const&) { keys.push_back(Term::key); });
+  for_each_lattice_term(Field{}, [&]<class Term>(std::optional<Term> const&) {
+    if (keys.empty() || keys.back() != Term::key) keys.push_back(Term::key);
+  });
   keys.insert(keys.end(), {"couplings", "anisotropy", "applied", "slab_demag", "demag", "mu0"});
   return keys;
 }

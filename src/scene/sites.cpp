@@ -37,19 +37,34 @@ void read_occupied(Table const& root, Scene& scene) {
 
 void require_occupied(Scene const& scene) {
   auto const& shape = scene.lattice.shape;
-  if (!scene.lattice.occupied.there()) return;
+  if (!has_vacancies(scene)) return;
   auto const at_once = scene.lattice.occupied.expression.empty() ? shape[2] : 1;
   for (std::int64_t plane = 0; plane < shape[2]; plane += at_once) {
     auto const there = occupied(scene, {{0, 0, plane}, {shape[0], shape[1], at_once}});
     if (std::ranges::find(there, 1) != there.end()) return;
   }
-  refuse(scene, "lattice.occupied", "leaves no spin", "numbers that are not 0 somewhere");
+  refuse(scene, scene.lattice.occupied.there() ? "lattice.occupied" : "lattice.moments",
+         "leaves no spin", "numbers that are not 0 somewhere");
 }
 
 }  // namespace detail
 
+bool has_vacancies(Scene const& scene) {
+  auto const& lattice = scene.lattice;
+  return lattice.occupied.there() || std::ranges::find(lattice.moments, 0) != lattice.moments.end();
+}
+
 std::vector<unsigned char> occupied(Scene const& scene, SiteBox const& box) {
-  return sites_where(scene, scene.lattice.occupied, "lattice.occupied", box);
+  if (!has_vacancies(scene)) return {};
+  auto where = sites_where(scene, scene.lattice.occupied, "lattice.occupied", box);
+  auto const& moments = scene.lattice.moments;
+  auto const in_plane = static_cast<std::size_t>(box.extent[0] * box.extent[1]);
+  auto const first = static_cast<std::size_t>(box.begin[2]);
+  if (where.empty()) where.assign(in_plane * static_cast<std::size_t>(box.extent[2]), 1);
+  // The planes of a box are the sites of a cell in turn.
+  for (std::size_t site = 0; site < where.size() && !moments.empty(); ++site)
+    if (moments[(first + site / in_plane) % moments.size()] == 0) where[site] = 0;
+  return where;
 }
 std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box) {
   return sites_where(scene, scene.lattice.frozen, "lattice.frozen", box);
@@ -59,9 +74,17 @@ double largest_noise(Scene const& scene) {
   auto const& [moments, gyromagnetic] = std::tie(scene.lattice.moments, scene.lattice.gyromagnetic);
   double largest = 0;
   for (std::size_t site = 0; site < scene.lattice.basis.size(); ++site)
-    largest = std::max(largest, (gyromagnetic.empty() ? 1 : gyromagnetic[site]) /
-                                    (moments.empty() ? 1 : moments[site]));
+    if (moments.empty() || moments[site] > 0)
+      largest = std::max(largest, (gyromagnetic.empty() ? 1 : gyromagnetic[site]) /
+                                      (moments.empty() ? 1 : moments[site]));
   return largest;
+}
+
+bool has_linear_field(Scene const& scene) {
+  auto const& field = scene.field;
+  return field.cubic_anisotropies.empty() && !has_torque(field) && field.couplings_file.empty() &&
+         std::ranges::all_of(field.couplings,
+                             [](auto const& bond) { return bond.biquadratic == 0; });
 }
 
 bool needs_pass(Scene const& scene) {
@@ -75,7 +98,7 @@ bool needs_pass(Scene const& scene) {
   return lattice.basis.size() > 1 || !lattice.moments.empty() || !lattice.gyromagnetic.empty() ||
          lattice.occupied.there() || lattice.frozen.there() || !field.couplings.empty() ||
          !field.couplings_file.empty() || !field.cubic_anisotropies.empty() || has_sites ||
-         field.bulk_dmi || field.torque.zhang_li || field.torque.slonczewski;
+         field.torque.zhang_li || field.torque.slonczewski;
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -6,11 +6,14 @@
 #include "ranks.hpp"
 #include "sites_of_cell.hpp"
 #include "space.hpp"
+#include "terms_along_row.hpp"
 
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/reduce_sites.hpp>
+#include <cayspin/detail/sweep_plan.hpp>
 #include <cayspin/detail/table.hpp>
+#include <cayspin/field/site_dependent_exchange.hpp>
 #include <cayspin/io/scene.hpp>
 #include <cayspin/scalars.hpp>
 
@@ -25,16 +28,11 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace cayspin::simulation {
 namespace {
-
-// That of all sites alike.
-double bulk_constant(io::Scene const& scene) {
-  auto const& field = scene.field;
-  return field.bulk_dmi && !field.dmi_factors.there() ? field.bulk_dmi->constant : 0;
-}
 
 // The largest magnitude in all parts: of doubles >= 0 their words are in the same order.
 double largest_of_parts(Lattice const& lattice, std::vector<double> const& values) {
@@ -57,6 +55,8 @@ ScalarField<Real, Memory> field_of(char const* name, Lattice const& lattice,
                                    std::vector<double> const& numbers) {
   ScalarField<Real, Memory> made(std::string("FieldInPass::") + name, lattice);
   copy_from_host(numbers, made);
+  // Terms look at the numbers of neighbours, too.
+  cayspin::detail::update_ghosts(typename Memory::execution_space(), lattice, made);
   return made;
 }
 
@@ -68,14 +68,26 @@ class FieldInPass<Spins>::Terms {
   Terms(io::Scene const& scene, Lattice const& lattice);
 
   template <class Exec>
-  EvaluateInPass<Real> kernel(Exec const& exec, SceneFieldNow<Real> const& usual,
-                              Spins const& spins, double t, FieldFor purpose) const;
+  PassTerms<Real> at(Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins,
+                     double t, FieldFor purpose) const;
+
+  /// The applied field is the same for all spins, and so H without it is linear in the spins.
+  bool adds_applied(FieldFor purpose) const {
+    return purpose == FieldFor::generator && std::ranges::all_of(cell_, [&](auto const& site) {
+             return site.gyromagnetic == cell_[0].gyromagnetic;
+           });
+  }
+
+  /// Of `usual`, what is compiled into stages; none where they load the whole H.
+  std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual) const;
 
  private:
   friend FieldInPass;
 
   void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
                             std::vector<double> moves);
+  void add_bonds(ScalarField<Real, Memory> const& constants);
+  void add_vacancies(io::Scene const& scene);
 
   template <class Element>
   using Table = Kokkos::View<Element*, Memory>;
@@ -89,23 +101,30 @@ class FieldInPass<Spins>::Terms {
   Lattice lattice_;
   SceneLatticeTerms none_;
   PairCouplings<Memory> pairs_;
-  cayspin::detail::UniformBulkDmi bulk_dmi_;
   Torques torques_;
   Table<CellSite> sites_;
   Table<CubicAnisotropy> cubics_;
-  bool has_lattice_terms_ = false, has_pairs_, has_bulk_dmi_, has_vacancies_, is_affine_;
+  bool has_lattice_terms_ = false, has_pairs_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
   std::optional<ScalarField<Real, Memory>> rates_;  // moves_ over Gilbert's 1 + damping^2
-  std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
+  ExchangeOfBonds<Real> exchange_of_sites_ = {};
+  std::vector<ScalarField<Real, Memory>> bonds_;
   Vec3<double> dmi_vectors_[3] = {};
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
   Table<AnisotropyOfSites<Real>> anisotropies_;
   bool precession_;
+  std::vector<CellSite> cell_;
+  SceneLatticeTerms seen_;  // by the moments of a cell with one site
+  std::optional<ScalarField<Real, Memory>> missing_;
   double largest_moment_ = 0;
   std::vector<double> noise_of_sites_;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
-  mutable std::optional<EvaluateInPass<Real>> along_rows_;  // of the stage that is being run
+  // Of the stages that are being run: those of a sweep are so together.
+  mutable std::array<std::variant<std::monostate, AddedTerms<Real>, WholeTerms<Real>>,
+                     cayspin::detail::SweepPlan::most_stages>
+      along_rows_;
+  mutable std::size_t last_along_rows_ = 0;
 };
 
 template <class Spins>
@@ -113,12 +132,11 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     : lattice_(lattice),
       none_(lattice_terms_of({}, lattice)),
       pairs_(lattice, io::couplings(scene)),
-      bulk_dmi_(lattice, bulk_constant(scene)),
       has_pairs_(std::ranges::max(pairs_.field_bounds()) > 0),
-      has_bulk_dmi_(bulk_constant(scene) != 0),
-      has_vacancies_(scene.lattice.occupied.there()),
-      is_affine_(scene.field.cubic_anisotropies.empty() && !pairs_.has_biquadratic()),
+      has_vacancies_(io::has_vacancies(scene)),
+      is_affine_(io::has_linear_field(scene) && !pairs_.has_biquadratic()),
       precession_(scene.system.precession),
+      seen_(none_),
       field_("FieldInPass::field", lattice),
       energies_("FieldInPass::energies", lattice) {
   auto const& torque = scene.field.torque;
@@ -134,9 +152,15 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   }
   auto const [sites, cubics] = sites_of_cell(scene);
   for (auto const& site : sites) {
-    noise_of_sites_.push_back(site.gyromagnetic / site.moment);
+    noise_of_sites_.push_back(site.moment > 0 ? site.gyromagnetic / site.moment : 1);
     largest_moment_ = std::max(largest_moment_, site.moment);
   }
+  cell_ = sites;
+  auto seen = io::without_numbers_of_sites(scene.field);
+  io::for_each_lattice_term(seen, [&](auto& term) {
+    if (term) term->strength() *= sites[0].gyromagnetic * sites[0].per_moment;
+  });
+  seen_ = lattice_terms_of(seen, lattice);
   sites_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::sites", sites);
   cubics_ = cayspin::detail::table_of<Memory>("cayspin::FieldInPass::cubics", cubics);
 
@@ -150,6 +174,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
   }
   if (!frozen.empty()) moves_ = field_of<Real, Memory>("moves", lattice, moves);
   moments_ = field_of<Real, Memory>("moments", lattice, moments);
+  if (has_vacancies_) add_vacancies(scene);
 
   add_numbers_of_sites(scene, box, std::move(moves));
 
@@ -160,12 +185,46 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     none_.magnitude += term->energy_magnitude(lattice);
     has_lattice_terms_ = true;
   });
-  none_.magnitude +=
-      0.5 * std::ranges::max(pairs_.field_bounds()) + 3 * std::abs(bulk_constant(scene));
+  none_.magnitude += 0.5 * std::ranges::max(pairs_.field_bounds());
   for (auto const& term : scene.field.anisotropies)
     none_.magnitude += 0.5 * std::abs(term.constant);
   for (auto const& term : scene.field.cubic_anisotropies)
     none_.magnitude += std::abs(term.constant);
+}
+
+// The exchange of stages takes a vacancy, the zero vector, for a neighbour m': it has A (m' - m).
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
+  auto const field = io::without_numbers_of_sites(scene.field);
+  if (!field.exchange) return;
+  missing_.emplace("FieldInPass::missing", lattice_);
+  FindMissing<Real> find{moments_.array(), missing_->output(false), {0, 0, 0}};
+  double const seen = cell_[0].gyromagnetic * cell_[0].per_moment * field.exchange->constant;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lattice_.has_neighbors(static_cast<int>(axis)))
+      find.bonds[axis] = seen / (lattice_.spacing[axis] * lattice_.spacing[axis]);
+  typename Memory::execution_space const exec;
+  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass::find_missing",
+                                       missing_->layout(), find, missing_->layout().own);
+  cayspin::detail::update_ghosts(exec, lattice_, *missing_);
+  exec.fence("cayspin::FieldInPass: missing neighbours found");
+}
+
+template <class Spins>
+void FieldInPass<Spins>::Terms::add_bonds(ScalarField<Real, Memory> const& constants) {
+  typename Memory::execution_space const exec;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!lattice_.has_neighbors(axis)) continue;
+    auto const& bonds = bonds_.emplace_back("FieldInPass::bonds", lattice_);
+    double const spacing = lattice_.spacing[static_cast<std::size_t>(axis)];
+    cayspin::detail::for_each_site<Real>(
+        exec, "cayspin::FieldInPass::find_bonds", bonds.layout(),
+        FindBonds<Real>{constants.array(), bonds.output(false), axis, 1 / (spacing * spacing)},
+        bonds.layout().own);
+    cayspin::detail::update_ghosts(exec, lattice_, bonds);
+    exchange_of_sites_.bonds[axis] = bonds.array();
+  }
+  exec.fence("cayspin::FieldInPass: bonds found");
 }
 
 template <class Spins>
@@ -183,7 +242,8 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
     double const bonds = field.exchange->energy_magnitude(lattice_);
     auto const constants = read("exchange", field.exchange_factors, "field.exchange", bonds);
     try {
-      exchange_of_sites_.emplace(constants);
+      SiteDependentExchange<Real, Memory>{constants};
+      add_bonds(constants);
     } catch (std::invalid_argument const& error) {
       std::string_view const message = error.what();
       throw io::scene_error(scene, field.exchange_factors.key_or("field.exchange"),
@@ -224,9 +284,9 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
 
 template <class Spins>
 template <class Exec>
-auto FieldInPass<Spins>::Terms::kernel(Exec const& exec, SceneFieldNow<Real> const& usual,
-                                       Spins const& spins, double t, FieldFor purpose) const
-    -> EvaluateInPass<Real> {
+auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& usual,
+                                   Spins const& spins, double t, FieldFor purpose) const
+    -> PassTerms<Real> {
   auto others = usual;
   others.zeeman = {};
   others.has_applied = false;
@@ -234,45 +294,44 @@ auto FieldInPass<Spins>::Terms::kernel(Exec const& exec, SceneFieldNow<Real> con
   auto const strengths = torques_.strengths ? (*torques_.strengths)(t) : Vec3<double>{0, 0, 0};
   bool const has_usual =
       has_lattice_terms_ || others.quadratic.present() || others.has_layers || others.has_stored;
-  EvaluateInPass<Real> kernel{
-      .terms = {.usual = others,
-                .pairs = pairs_.prepare(exec, spins, t),
-                .bulk_dmi = bulk_dmi_,
-                .zhang_li = {lattice_, velocity, torques_.nonadiabaticity},
-                .slonczewski = {strengths.x, strengths.y, torques_.polarization},
-                .applied = usual.zeeman,
-                .sites = sites_.data(),
-                .cubics = cubics_.data(),
-                .exchange_of_sites = {},
-                .dmi_of_sites = {},
-                .anisotropies_of_sites = anisotropies_.data(),
-                .anisotropies = static_cast<std::int32_t>(anisotropies_.size()),
-                .has_usual = has_usual,
-                .has_cubics = cubics_.size() > 0,
-                .has_pairs = has_pairs_,
-                .has_bulk_dmi = has_bulk_dmi_,
-                .has_zhang_li = torques_.velocity.has_value(),
-                .has_slonczewski = torques_.strengths.has_value(),
-                .has_vacancies = has_vacancies_,
-                .is_gradient = purpose == FieldFor::energy},
-      .spins = spins.array(),
-      .moves = {},
-      .dampings = {},
-      .precession = precession_,
-      .field = field_.output(false),
-      .energies = energies_.output(false)};
-  if (exchange_of_sites_)
-    kernel.terms.exchange_of_sites = exchange_of_sites_->prepare(exec, spins, t);
+  PassTerms<Real> terms{.usual = others,
+                        .pairs = pairs_.prepare(exec, spins, t),
+                        .zhang_li = {lattice_, velocity, torques_.nonadiabaticity},
+                        .slonczewski = {strengths.x, strengths.y, torques_.polarization},
+                        .applied = usual.zeeman,
+                        .sites = sites_.data(),
+                        .cubics = cubics_.data(),
+                        .exchange_of_sites = exchange_of_sites_,
+                        .dmi_of_sites = {},
+                        .anisotropies_of_sites = anisotropies_.data(),
+                        .anisotropies = static_cast<std::int32_t>(anisotropies_.size()),
+                        .cubics_of_cell = static_cast<std::int32_t>(cubics_.size()),
+                        .moments = moments_.array(),
+                        .applied_in_field = usual.zeeman.applied,
+                        .has_usual = has_usual,
+                        .has_pairs = has_pairs_,
+                        .has_zhang_li = torques_.velocity.has_value(),
+                        .has_slonczewski = torques_.strengths.has_value(),
+                        .has_vacancies = has_vacancies_,
+                        .is_gradient = purpose == FieldFor::energy};
   if (dmi_of_sites_) {
-    kernel.terms.dmi_of_sites.constants = dmi_of_sites_->array();
-    std::copy_n(dmi_vectors_, 3, kernel.terms.dmi_of_sites.vectors);
+    terms.dmi_of_sites.constants = dmi_of_sites_->array();
+    std::copy_n(dmi_vectors_, 3, terms.dmi_of_sites.vectors);
   }
-  if (moves_) kernel.moves = moves_->array();
-  if (dampings_ && purpose == FieldFor::generator) {
-    kernel.dampings = dampings_->array();
-    if (rates_) kernel.moves = rates_->array();
-  }
-  return kernel;
+  return terms;
+}
+
+template <class Spins>
+auto FieldInPass<Spins>::Terms::in_stages(SceneFieldNow<Real> const& usual) const
+    -> std::optional<SceneFieldNow<Real>> {
+  if (lattice_.cell_sites > 1 || has_pairs_) return std::nullopt;
+  auto const& site = cell_[0];
+  auto now = usual;
+  now.lattice_terms = seen_;
+  now.quadratic = usual.quadratic.with(site.quadratic, site.gyromagnetic * site.per_moment);
+  now.zeeman.applied = site.gyromagnetic * usual.zeeman.applied;
+  now.has_layers = now.has_stored = false;
+  return now;
 }
 
 template <class Spins>
@@ -284,14 +343,28 @@ template <class Exec>
 SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
     FieldFor purpose) const {
+  return evaluate_with(exec, usual, spins, t, purpose, terms_->adds_applied(purpose));
+}
+
+template <class Spins>
+template <class Exec>
+SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
+    Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
+    FieldFor purpose, bool adds_applied) const {
   Kokkos::Profiling::ScopedRegion const region("cayspin::FieldInPass");
   // Bonds reach further than the ghosts that a stage before this one has kept up to date. The field
   // of ghosts is nobody's concern: what a stage makes of it is replaced before the next look.
   cayspin::detail::update_ghosts(exec, terms_->lattice_, spins);
-  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(),
-                                       terms_->kernel(exec, usual, spins, t, purpose),
+  EvaluateInPass<Real> kernel{.terms = terms_->at(exec, usual, spins, t, purpose),
+                              .spins = spins.array(),
+                              .moves = {},
+                              .field = terms_->field_.output(false),
+                              .energies = terms_->energies_.output(false)};
+  if (terms_->moves_ && purpose != FieldFor::generator) kernel.moves = terms_->moves_->array();
+  auto now = adds_applied ? without_spins(usual, purpose) : nothing();
+  if (adds_applied) kernel.terms.applied_in_field = {0, 0, 0};
+  cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel,
                                        spins.layout().own);
-  auto now = nothing();
   now.stored = {terms_->field_.array(), -0.5};
   now.has_stored = true;
   now.energies = terms_->energies_.array();
@@ -306,15 +379,51 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::along_rows(
     Exec const& exec, SceneFieldNow<Real> const& usual, Spins const& spins, double t,
     FieldFor purpose) const {
   if constexpr (cayspin::detail::is_host_execution<Exec>) {
-    if (terms_->lattice_.part == nullptr) {
-      terms_->along_rows_ = terms_->kernel(exec, usual, spins, t, purpose);
+    // The bonds of couplings reach further than the ghosts that a stage has kept up to date.
+    bool const reaches_far = terms_->has_pairs_ && terms_->lattice_.part != nullptr;
+    if (!reaches_far && purpose == FieldFor::generator) {
+      auto& last = terms_->last_along_rows_;
+      last = (last + 1) % terms_->along_rows_.size();
+      auto& kept = terms_->along_rows_[last];
+      auto const terms = terms_->at(exec, usual, spins, t, purpose);
+      if (auto now = terms_->in_stages(usual)) {
+        auto const& site = terms_->cell_[0];
+        AddedTerms<Real> added{terms, {}, site.gyromagnetic * site.per_moment};
+        if (terms_->missing_) added.missing.exchange = terms_->missing_->array();
+        if (added.any())
+          now->along_rows = {&evaluate_along<AddedTerms<Real>, Real>,
+                             &kept.template emplace<AddedTerms<Real>>(added)};
+        return *now;
+      }
       auto now = nothing();
-      now.has_stored = true;
-      now.along_rows = {&EvaluateInPass<Real>::along_row, &*terms_->along_rows_};
+      now.along_rows = {&evaluate_along<WholeTerms<Real>, Real>,
+                        &kept.template emplace<WholeTerms<Real>>(terms), true};
       return now;
     }
   }
-  return evaluate(exec, usual, spins, t, purpose);
+  return evaluate_with(exec, usual, spins, t, purpose, false);
+}
+
+template <class Spins>
+OwnOfSites<typename Spins::value_type> FieldInPass<Spins>::own_of_sites() const {
+  OwnOfSites<Real> own{.precession = terms_->precession_};
+  if (terms_->moves_) own.rates = terms_->moves_->array();
+  if (terms_->rates_) own.rates = terms_->rates_->array();
+  if (terms_->dampings_) own.dampings = terms_->dampings_->array();
+  return own;
+}
+
+template <class Spins>
+SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::without_spins(
+    SceneFieldNow<Real> const& usual, FieldFor purpose) const {
+  auto now = nothing();
+  if (terms_->adds_applied(purpose)) now.zeeman.applied = gyromagnetic() * usual.zeeman.applied;
+  return now;
+}
+
+template <class Spins>
+double FieldInPass<Spins>::gyromagnetic() const {
+  return terms_->cell_[0].gyromagnetic;
 }
 
 template <class Spins>
@@ -336,6 +445,11 @@ double FieldInPass<Spins>::norm_defect(Exec const& exec, Spins const& spins) con
       exec, "cayspin::FieldInPass::norm_defect", spins.layout(),
       NormDefectOfMoments<Real>{spins.array(), terms_->moments_.array()});
   return cayspin::detail::norm_defect_of(largest[0], largest[1]);
+}
+
+template <class Spins>
+bool FieldInPass<Spins>::rows_need_time_alone() const {
+  return !terms_->has_pairs_;
 }
 
 template <class Spins>

@@ -15,8 +15,8 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// What a field is evaluated for: to turn spins, with the damping of each site in it, as
-/// H + damping m x H or its second part alone; for itself; or as -dE/dm, for an energy that falls.
+/// What a field is evaluated for: to turn those spins that do; for itself, zero where a spin is
+/// frozen; or as -dE/dm, the same, for an energy that falls.
 enum class FieldFor { generator, itself, energy };
 
 /// The field of a scene whose terms are those of few scenes: couplings, sublattices, currents,
@@ -37,16 +37,26 @@ class FieldInPass {
   SceneFieldNow<Real> evaluate(Exec const& exec, SceneFieldNow<Real> const& usual,
                                Spins const& spins, double t, FieldFor purpose) const;
 
-  /// The same without energies for a host loop over rows, which then evaluates H as it goes.
+  /// For a host loop over rows, without energies: it evaluates as it goes what the terms that are
+  /// compiled into stages do not have, or all.
   template <class Exec>
   SceneFieldNow<Real> along_rows(Exec const& exec, SceneFieldNow<Real> const& usual,
                                  Spins const& spins, double t, FieldFor purpose) const;
 
+  /// Does `along_rows` look at no other spins than those of a stage?
+  bool rows_need_time_alone() const;
+
   /// Is H affine in the spins?
   bool is_affine() const;
 
-  /// Without any term.
-  SceneFieldNow<Real> nothing() const;
+  /// How sites turn in H, each by its own numbers.
+  OwnOfSites<Real> own_of_sites() const;
+
+  /// Of `usual`, what no spin is looked at for.
+  SceneFieldNow<Real> without_spins(SceneFieldNow<Real> const& usual, FieldFor purpose) const;
+
+  /// Of all spins alike.
+  double gyromagnetic() const;
 
   /// The mean of m weighted by moments, over the sites that have a spin.
   template <class Exec>
@@ -62,6 +72,15 @@ class FieldInPass {
   std::optional<ScalarField<Real, Memory>> const& moves() const;
 
  private:
+  /// `adds_applied`: kernels add what the applied field makes. Otherwise H has it, as along rows.
+  template <class Exec>
+  SceneFieldNow<Real> evaluate_with(Exec const& exec, SceneFieldNow<Real> const& usual,
+                                    Spins const& spins, double t, FieldFor purpose,
+                                    bool adds_applied) const;
+
+  /// Without any term.
+  SceneFieldNow<Real> nothing() const;
+
   class Terms;
   std::shared_ptr<Terms const> terms_;
 };

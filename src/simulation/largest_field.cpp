@@ -97,10 +97,6 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
   auto const field = io::without_numbers_of_sites(scene.field);
   of_all += bound_of_numbers(scene, lattice);
   cayspin::detail::BondLists const bonds(lattice, io::couplings(scene));
-  if (field.bulk_dmi)
-    for (int axis = 0; axis < 3; ++axis)
-      if (lattice.has_neighbors(axis))
-        of_all += 2 * std::abs(field.bulk_dmi->constant) / lattice.spacing[axis];
   double largest = 0;
   for (std::size_t site = 0; site < bonds.field_bounds.size(); ++site) {
     double bound = of_all + bonds.field_bounds[site];
@@ -112,8 +108,9 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
     auto const of_site = [&](std::vector<double> const& numbers) {
       return numbers.empty() ? 1 : numbers[site];
     };
-    bound *= of_site(scene.lattice.gyromagnetic) / of_site(scene.lattice.moments);
-    largest = std::max(largest, bound);
+    double const moment = of_site(scene.lattice.moments);
+    if (moment > 0)
+      largest = std::max(largest, bound * of_site(scene.lattice.gyromagnetic) / moment);
   }
   return largest;
 }

@@ -3,10 +3,9 @@
 
 #include "scene_field_now.hpp"
 
-#include <cayspin/field/bulk_dmi.hpp>
 #include <cayspin/field/cubic_anisotropy.hpp>
+#include <cayspin/field/field_with_vacancies.hpp>
 #include <cayspin/field/pair_couplings.hpp>
-#include <cayspin/field/site_dependent_exchange.hpp>
 #include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slonczewski.hpp>
 #include <cayspin/field/zhang_li.hpp>
@@ -22,47 +21,122 @@ struct CellSite {
   std::int32_t first_cubic = 0, last_cubic = 0;
 };
 
-/// A stencil in which the zero vector, of a site without a spin, is a missing neighbour.
-template <class Inner>
-class StencilAmongSpins {
- public:
-  using value_type = typename Inner::value_type;
-  using vector_type = typename Inner::vector_type;
-
-  KOKKOS_FORCEINLINE_FUNCTION explicit StencilAmongSpins(Inner const& inner) : inner_(inner) {}
-
-  KOKKOS_FORCEINLINE_FUNCTION vector_type const& center() const { return inner_.center(); }
-  template <int Axis>
-  KOKKOS_FORCEINLINE_FUNCTION vector_type previous() const {
-    return previous<Axis>(center());
-  }
-  template <int Axis>
-  KOKKOS_FORCEINLINE_FUNCTION vector_type next() const {
-    return next<Axis>(center());
-  }
-  template <int Axis>
-  KOKKOS_FORCEINLINE_FUNCTION vector_type previous(vector_type const& missing) const {
-    return if_spin(inner_.template previous<Axis>(missing), missing);
-  }
-  template <int Axis>
-  KOKKOS_FORCEINLINE_FUNCTION vector_type next(vector_type const& missing) const {
-    return if_spin(inner_.template next<Axis>(missing), missing);
-  }
-  KOKKOS_FORCEINLINE_FUNCTION auto const& site() const { return inner_.site(); }
-
- private:
-  KOKKOS_FORCEINLINE_FUNCTION static vector_type if_spin(vector_type const& found,
-                                                         vector_type const& missing) {
-    return cayspin::detail::select<value_type>(dot(found, found) == value_type(0), missing, found);
-  }
-
-  Inner const& inner_;
-};
-
 /// An anisotropy whose constant differs from site to site.
 template <class Real>
 using AnisotropyOfSites =
     cayspin::detail::UniaxialAnisotropyOfSites<cayspin::detail::SiteArray<Real, 1>, Vec3<double>>;
+
+/// Exchange whose constant differs from site to site, as SiteDependentExchange.
+template <class Real>
+struct ExchangeOfBonds {
+  /// The constant of the bond to the next site along each axis over the spacing squared; without
+  /// data: none.
+  cayspin::detail::SiteArray<Real, 1> bonds[3];
+
+  KOKKOS_FORCEINLINE_FUNCTION bool there() const {
+    return bonds[0].data || bonds[1].data || bonds[2].data;
+  }
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
+      Stencil const& stencil) const {
+    auto h = zero<typename Stencil::value_type>();
+    if (bonds[0].data) h = along<0>(stencil, h);
+    if (bonds[1].data) h = along<1>(stencil, h);
+    if (bonds[2].data) h = along<2>(stencil, h);
+    return h;
+  }
+  /// Each site carries half of each of its bonds.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
+      Stencil const& stencil) const {
+    typename Stencil::value_type e(0);
+    if (bonds[0].data) e = energy_along<0>(stencil, e);
+    if (bonds[1].data) e = energy_along<1>(stencil, e);
+    if (bonds[2].data) e = energy_along<2>(stencil, e);
+    return e;
+  }
+
+ private:
+  template <class Stencil>
+  struct Pair {
+    typename Stencil::value_type before, after;
+    typename Stencil::vector_type back, on;  // to the neighbours
+  };
+  template <int Axis, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Pair<Stencil> pair(Stencil const& stencil) const {
+    auto const& site = stencil.site();
+    auto const after = site.load(bonds[Axis]);
+    return {site.template neighbor<Axis, 0>(bonds[Axis], after), after,
+            stencil.template previous<Axis>() - stencil.center(),
+            stencil.template next<Axis>() - stencil.center()};
+  }
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector along(Stencil const& stencil, Vector const& h) const {
+    auto const [before, after, back, on] = pair<Axis>(stencil);
+    return multiply_add(after, on, multiply_add(before, back, h));
+  }
+  template <int Axis, class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value energy_along(Stencil const& stencil, Value const& e) const {
+    auto const [before, after, back, on] = pair<Axis>(stencil);
+    return e + Value(0.25) * (after * dot(on, on) + before * dot(back, back));
+  }
+};
+
+/// The constants of a site's bonds to vacancies, over the spacing squared.
+template <class Real>
+struct FindMissing {
+  cayspin::detail::SiteArray<Real, 1> moments;  // 0: a vacancy
+  cayspin::detail::OutputArray<Real, 1> missing;
+  double bonds[3];
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    site.store(along<0>(site) + along<1>(site) + along<2>(site), missing);
+  }
+
+ private:
+  template <int Axis, class Site>
+  KOKKOS_FORCEINLINE_FUNCTION auto along(Site const& site) const {
+    using Value = typename Site::value_type;
+    Value const one(1);  // past an open end
+    Value const back = site.template neighbor<Axis, 0>(moments, one),
+                on = site.template neighbor<Axis, 1>(moments, one);
+    auto const bond = as_value<Value>(bonds[Axis]);
+    return Value(if_vacant(back, bond) + if_vacant(on, bond));
+  }
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value if_vacant(Value const& moment, Value const& bond) {
+    Value const none(0);
+    return cayspin::detail::select<Value>(moment == none, bond, none);
+  }
+};
+
+/// Finds its bonds: harmonic means of the constants at both ends.
+template <class Real>
+struct FindBonds {
+  cayspin::detail::SiteArray<Real, 1> constants;
+  cayspin::detail::OutputArray<Real, 1> bonds;
+  int axis;
+  double inverse_square;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    auto const own = site.load(constants);
+    site.store(axis == 0   ? mean(own, site.template neighbor<0, 1>(constants, own))
+               : axis == 1 ? mean(own, site.template neighbor<1, 1>(constants, own))
+                           : mean(own, site.template neighbor<2, 1>(constants, own)),
+               bonds);
+  }
+
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value mean(Value const& own, Value const& other) const {
+    Value const sum = own + other, none(0);
+    return as_value<Value>(2 * inverse_square) * (own * other) /
+           cayspin::detail::select<Value>(sum == none, Value(1), sum);
+  }
+};
 
 /// Dzyaloshinskii-Moriya interaction whose constant differs from site to site. That of a bond along
 /// the axis e is the mean of its ends': H = sum of D v x m' over next and -D v x m' over previous
@@ -95,35 +169,50 @@ struct DmiOfSites {
   }
 };
 
+/// H and E of terms. E is computed where it is used.
+template <class Value>
+struct FieldAndEnergy {
+  Vec3<Value> field;
+  Value energy;
+
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION void add(Term const& term, Stencil const& stencil) {
+    field = field + term.field(stencil);
+    energy = energy + term.energy_density(stencil);
+  }
+  /// Of a term whose H is linear in the spins.
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION void add_linear(Term const& term, Stencil const& stencil) {
+    Vec3<Value> const h = term.field(stencil);
+    field = field + h;
+    energy = energy + Value(-0.5) * dot(stencil.center(), h);
+  }
+};
+
 /// All terms of a scene at one instant, for one kernel. Which are there is asked at run time.
 template <class Real>
 struct PassTerms {
   SceneFieldNow<Real> usual;  // without the applied field
   cayspin::detail::PairField<Real> pairs;
-  cayspin::detail::UniformBulkDmi bulk_dmi;
   cayspin::detail::UniformZhangLi zhang_li;
   Slonczewski slonczewski;
   Zeeman applied;
   CellSite const* sites;
   CubicAnisotropy const* cubics;
-  cayspin::detail::ExchangeOfSites<Real> exchange_of_sites;  // without data: none
-  DmiOfSites<Real> dmi_of_sites;                             // the same
+  ExchangeOfBonds<Real> exchange_of_sites;
+  DmiOfSites<Real> dmi_of_sites;  // without data: none
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
-  std::int32_t anisotropies;
-  bool has_usual, has_cubics, has_pairs, has_bulk_dmi, has_zhang_li, has_slonczewski, has_vacancies;
+  std::int32_t anisotropies, cubics_of_cell;
+  cayspin::detail::SiteArray<Real, 1> moments;  // 0 where there is no spin
+  Vec3<double> applied_in_field;  // zero where another adds what it makes of the applied field
+  bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_vacancies;
   bool is_gradient;  // -dE/dm, without moments, gyromagnetic ratios and torques
 
-  template <class Value>
-  struct Result {
-    Vec3<Value> field;
-    Value energy;
-  };
-
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> operator()(
+  KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    Result<Value> of_pairs{zero<Value>(), Value(0)};
+    FieldAndEnergy<Value> of_pairs{zero<Value>(), Value(0)};
     if (has_pairs) {
       auto const parts = pairs.parts(stencil);
       of_pairs = {parts.field(), parts.energy(stencil.center())};
@@ -131,41 +220,64 @@ struct PassTerms {
     return beside_pairs(stencil, of_pairs);
   }
   /// The same with what the pairs contribute.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> beside_pairs(
-      Stencil const& stencil, Result<typename Stencil::value_type> const& of_pairs) const {
-    using Value = typename Stencil::value_type;
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<Value> beside_pairs(
+      Stencil const& stencil, FieldAndEnergy<Value> const& of_pairs) const {
     if (!has_vacancies) return among(stencil, of_pairs);
-    auto found = among(StencilAmongSpins<Stencil>(stencil), of_pairs);
-    Value const none(0), square = dot(stencil.center(), stencil.center());
-    found.energy = cayspin::detail::select<Value>(square == none, none, found.energy);
+    auto found = among(among_spins(stencil), of_pairs);
+    Value const none(0), moment = stencil.site().load(moments);
+    found.energy = cayspin::detail::select<Value>(moment == none, none, found.energy);
     return found;
   }
 
+  /// In which a vacancy is a missing neighbour.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::StencilAmongVacancies<Stencil, Real> among_spins(
+      Stencil const& stencil) const {
+    return {stencil, moments};
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION bool has_torques() const { return has_zhang_li || has_slonczewski; }
+  KOKKOS_FORCEINLINE_FUNCTION bool has_bonds_of_sites() const {
+    return exchange_of_sites.there() || dmi_of_sites.constants.data;
+  }
+  bool has_local_of_sites() const { return anisotropies > 0 || cubics_of_cell > 0; }
   /// Is there nothing but couplings, axes of the cell's sites, and an applied field? In most scenes
   /// of crystals, which need not ask for the rest at each site.
   bool has_few() const {
-    return !has_usual && !has_bulk_dmi && !has_zhang_li && !has_slonczewski && !is_gradient &&
-           !exchange_of_sites.constants.data && !dmi_of_sites.constants.data && anisotropies == 0 &&
-           !has_cubics;
-  }
-  /// Then H of sites begin .. end - 1 of a row, in place of what the pairs contribute.
-  CAYSPIN_DETAIL_NOINLINE void add_few(cayspin::detail::RowInput<Real> spins,
-                                       cayspin::detail::Row const& row, std::int32_t begin,
-                                       std::int32_t end,
-                                       cayspin::detail::RowFields<Real> fields) const {
-    using Value = cayspin::detail::Pack<Real>;
-    using Site = cayspin::detail::Site<Value>;
-    CellSite const mine = sites[pairs.site_of_plane(row.z)];
-    Vec3<double> const of_field = applied.applied;
-    for (std::int32_t x = begin; x < end; x += Site::lanes) {
-      auto h = fields.template load<Value>(x - begin);
-      if (mine.quadratic.present()) h = mine.quadratic.add_field(Site(row, x).load(spins), h);
-      fields.store(seen_by_moment(mine, of_field, h), x - begin);
-    }
+    return !has_usual && !has_torques() && !is_gradient && !has_bonds_of_sites() &&
+           !has_local_of_sites();
   }
 
- private:
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void add_bonds_of_sites(Stencil const& stencil,
+                                                      FieldAndEnergy<Value>& sum) const {
+    if (exchange_of_sites.there()) sum.add(exchange_of_sites, stencil);
+    if (dmi_of_sites.constants.data) sum.add_linear(dmi_of_sites, stencil);
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void add_anisotropies_of_sites(Stencil const& stencil,
+                                                             FieldAndEnergy<Value>& sum) const {
+    for (std::int32_t i = 0; i < anisotropies; ++i)
+      sum.add_linear(anisotropies_of_sites[i], stencil);
+  }
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION void add_cubics(Stencil const& stencil, std::int32_t first,
+                                              std::int32_t last, FieldAndEnergy<Value>& sum) const {
+    for (std::int32_t i = first; i < last; ++i) sum.add(cubics[i], stencil);
+  }
+  /// Torques are no derivatives of an energy.
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> add_torques(Stencil const& stencil, Vec3<Value> h) const {
+    if (has_zhang_li) h = h + zhang_li.field(stencil);
+    if (has_slonczewski) h = h + slonczewski.field(stencil);
+    return h;
+  }
+
+  KOKKOS_FORCEINLINE_FUNCTION CellSite const& site_of_plane(std::int32_t z) const {
+    return sites[pairs.site_of_plane(z)];
+  }
+
   /// Of -dE/dm.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
@@ -175,54 +287,26 @@ struct PassTerms {
            multiply_add(as_value<Value>(site.per_moment), h, as_value<Value>(applied));
   }
 
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Result<typename Stencil::value_type> among(
-      Stencil const& stencil, Result<typename Stencil::value_type> const& of_pairs) const {
-    using Value = typename Stencil::value_type;
+ private:
+  template <class Stencil, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION FieldAndEnergy<Value> among(
+      Stencil const& stencil, FieldAndEnergy<Value> const& of_pairs) const {
     auto const& m = stencil.center();
-    auto const& mine = sites[pairs.site_of_plane(stencil.site().z())];
+    auto const& mine = site_of_plane(stencil.site().z());
     // -dE/dm, of which each moment sees its own part.
-    Vec3<Value> h = of_pairs.field;
-    Value e = of_pairs.energy;
-    if (has_usual) {
-      h = h + usual.field(stencil);
-      e = e + usual.energy_density(stencil);
-    }
-    if (has_bulk_dmi) {
-      Vec3<Value> const of_bulk = bulk_dmi.field(stencil);
-      h = h + of_bulk;
-      e = e + Value(-0.5) * dot(m, of_bulk);
-    }
-    if (exchange_of_sites.constants.data) {
-      h = h + exchange_of_sites.field(stencil);
-      e = e + exchange_of_sites.energy_density(stencil);
-    }
-    if (dmi_of_sites.constants.data) {
-      Vec3<Value> const of_dmi = dmi_of_sites.field(stencil);
-      h = h + of_dmi;
-      e = e + Value(-0.5) * dot(m, of_dmi);
-    }
-    for (std::int32_t i = 0; i < anisotropies; ++i) {
-      Vec3<Value> const of_axis = anisotropies_of_sites[i].field(stencil);
-      h = h + of_axis;
-      e = e + Value(-0.5) * dot(m, of_axis);
-    }
+    auto sum = of_pairs;
+    if (has_usual) sum.add(usual, stencil);
+    add_bonds_of_sites(stencil, sum);
+    add_anisotropies_of_sites(stencil, sum);
     if (mine.quadratic.present()) {
-      h = mine.quadratic.add_field(m, h);
-      e = e + mine.quadratic.energy(m);
+      sum.field = mine.quadratic.add_field(m, sum.field);
+      sum.energy = sum.energy + mine.quadratic.energy(m);
     }
-    for (std::int32_t i = mine.first_cubic; i < mine.last_cubic; ++i) {
-      h = h + cubics[i].field(stencil);
-      e = e + cubics[i].energy_density(stencil);
-    }
+    add_cubics(stencil, mine.first_cubic, mine.last_cubic, sum);
     auto const moment = as_value<Value>(mine.moment);
-    e = e + moment * applied.energy_density(stencil);
-    if (is_gradient) return {multiply_add(moment, applied.field(stencil), h), e};
-    h = seen_by_moment(mine, applied.applied, h);
-    // Torques are no derivatives of an energy.
-    if (has_zhang_li) h = h + zhang_li.field(stencil);
-    if (has_slonczewski) h = h + slonczewski.field(stencil);
-    return {h, e};
+    sum.energy = sum.energy + moment * applied.energy_density(stencil);
+    if (is_gradient) return {multiply_add(moment, applied.field(stencil), sum.field), sum.energy};
+    return {add_torques(stencil, seen_by_moment(mine, applied_in_field, sum.field)), sum.energy};
   }
 };
 

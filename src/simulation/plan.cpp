@@ -56,10 +56,14 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
                  Precision precision, std::int64_t planes_at_once) {
   Memory memory;
   memory.spins = field_bytes<Real>(lattice, 3);
-  memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field) && !io::needs_pass(scene),
-                                   precision);
+  bool const is_far = !io::couplings(scene).empty();
+  memory.work = variant.work_bytes(lattice, !io::is_nonlocal(scene.field) && !is_far, precision);
   if (scene.field.own.nonlocal) memory.field += memory.spins;
-  if (io::needs_pass(scene)) memory.field += memory.spins + 3 * field_bytes<Real>(lattice, 1);
+  if (io::needs_pass(scene)) {
+    int const of_bonds = scene.field.exchange_factors.there() ? 4 : 0;
+    int const of_vacancies = io::has_vacancies(scene) ? 1 : 0;
+    memory.field += memory.spins + (3 + of_bonds + of_vacancies) * field_bytes<Real>(lattice, 1);
+  }
   if (auto const& slab = scene.field.slab_demag) {
     if (slab->on_host || slab->dear) memory.field += memory.spins;
     // Means, and of parts that share layers their exact sums.

@@ -12,7 +12,6 @@
 #include <cayspin/io/field.hpp>
 
 #include <optional>
-#include <stdexcept>
 #include <type_traits>
 #include <utility>
 
@@ -68,7 +67,8 @@ class SceneField {
   /// Looks at no spin: without the terms that do.
   template <class Exec>
   SceneFieldNow<Real> prepare_local(Exec const&, Spins const&, double t) const {
-    return pass_ ? pass_->nothing() : without_others(t);
+    auto const now = without_others(t);
+    return pass_ ? pass_->without_spins(now, purpose_) : now;
   }
 
   template <class Exec, class Any>
@@ -80,15 +80,20 @@ class SceneField {
     return !layers_ && !stored_ && !dear_ && !pass_;
   }
 
+  template <class Exec, class Any>
+  bool rows_need_time_alone(Exec const&, Any const&) const {
+    return !layers_ && !stored_ && !dear_ && (!pass_ || pass_->rows_need_time_alone());
+  }
+
   /// The same for rates of spins, the applied field's own rate in place of the field.
   template <class Exec>
   SceneFieldNow<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                    double dt) const {
-    if (pass_) throw std::logic_error("a field in a pass has no rate");
     auto now = prepare(exec, rates, t);
     now.has_applied = applied_.depends_on_time();
     now.zeeman = {};
-    if (now.has_applied) now.zeeman = {cayspin::detail::time_derivative(applied_, t, dt)};
+    double const seen = pass_ ? pass_->gyromagnetic() : 1;
+    if (now.has_applied) now.zeeman = {seen * cayspin::detail::time_derivative(applied_, t, dt)};
     return now;
   }
 

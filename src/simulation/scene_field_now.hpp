@@ -9,6 +9,7 @@
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/io/field.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace cayspin::simulation {
@@ -22,6 +23,15 @@ class QuadraticTerms {
     magnitude_.add(std::abs(constant), axis);
     bool const along_z = axis[0] == 0 && axis[1] == 0;
     form_ = along_z && form_ != Form::any ? Form::along_z : Form::any;
+  }
+
+  /// Those of both, `factor` times.
+  QuadraticTerms with(QuadraticTerms const& others, double factor) const {
+    QuadraticTerms both;
+    both.sum_ = sum_.with(others.sum_, factor);
+    both.magnitude_ = magnitude_.with(others.magnitude_, std::abs(factor));
+    both.form_ = std::max(form_, others.form_);
+    return both;
   }
 
   KOKKOS_FORCEINLINE_FUNCTION bool present() const { return form_ != Form::none; }
@@ -51,6 +61,10 @@ class QuadraticTerms {
       xx += c * e[0] * e[0], yy += c * e[1] * e[1], zz += c * e[2] * e[2];
       xy += c * e[0] * e[1], xz += c * e[0] * e[2], yz += c * e[1] * e[2];
     }
+    Sum with(Sum const& other, double factor) const {
+      return {factor * (xx + other.xx), factor * (yy + other.yy), factor * (zz + other.zz),
+              factor * (xy + other.xy), factor * (xz + other.xz), factor * (yz + other.yz)};
+    }
     template <class Value>
     KOKKOS_FORCEINLINE_FUNCTION cayspin::detail::SymmetricMatrix<Value> matrix() const {
       using Scalar = cayspin::detail::scalar_t<Value>;
@@ -72,13 +86,14 @@ class QuadraticTerms {
 };
 
 /// H along a piece of a row, by a function that is compiled once for all methods; none where
-/// `evaluate` is null.
+/// `evaluate` is null. `is_whole`: there is no other.
 template <class Real>
 struct FieldAlongRows {
   using Fields = cayspin::detail::RowFields<Real>;
-  void (*evaluate)(void const* terms, cayspin::detail::Row const& row, std::int32_t begin,
-                   std::int32_t end, Fields const& to) = nullptr;
+  void (*evaluate)(void const* terms, cayspin::detail::RowOfSpins<Real> const& row,
+                   std::int32_t begin, std::int32_t end, Fields const& to) = nullptr;
   void const* terms = nullptr;
+  bool is_whole = false;
 };
 
 /// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
@@ -93,14 +108,15 @@ struct SceneFieldNow {
   bool has_applied, has_layers, has_stored;
   cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
   FieldAlongRows<Real> along_rows = {};
+  cayspin::detail::RowInput<Real> row = {};  // what it found
 
   static constexpr int row_fields = 1;
-  void begin_row(cayspin::detail::Row const& row, std::int32_t begin, std::int32_t end,
-                 cayspin::detail::RowFields<Real> const& fields) {
+  void begin_row(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
+                 std::int32_t end, cayspin::detail::RowFields<Real> const& fields) {
     if (!along_rows.evaluate) [[likely]]
       return;
-    along_rows.evaluate(along_rows.terms, row, begin, end, fields);
-    stored.array = {fields.data - (row.offset + begin), fields.stride};
+    along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
+    row = {fields.data - begin, fields.stride};
   }
 
   template <class Stencil>
@@ -175,7 +191,30 @@ struct SceneFieldNow {
       if (has_layers) h = h + layers.field(stencil);
       if (has_stored) h = h + stored.field(stencil);
     }
+    if constexpr (requires { stencil.site().load(row); })
+      if (row.data) h = h + stencil.site().load(row);
     return h;
+  }
+};
+
+/// What differs from site to site in how spins turn in H.
+template <class Real>
+struct OwnOfSites {
+  cayspin::detail::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data
+  bool precession = true;
+
+  /// A, where `h` is H with all terms.
+  template <class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> of(Site const& site, Vec3<Value> const& m,
+                                             Vec3<Value> const& h) const {
+    if (!rates.data && !dampings.data) [[likely]]
+      return h;
+    auto a = h;
+    if (dampings.data) {
+      auto const turned = site.load(dampings) * cross(m, h);
+      a = precession ? h + turned : turned;
+    }
+    return rates.data ? site.load(rates) * a : a;
   }
 };
 

@@ -43,14 +43,24 @@ SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {
   SceneGenerator other = *this;
   other.llg_ = LandauLifshitz(llg_.field().made_for(FieldFor::itself), 0, true);
   other.orthogonal_ = false;
+  other.alone_ = true;
   return other;
+}
+
+template <class Spins>
+SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
+    LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
+    SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies, bool is_llg) const {
+  SceneGeneratorNow<Spins> now{llg, bodies, is_llg, orthogonal_};
+  if (auto const& pass = llg_.field().pass(); pass && !alone_) now.own = pass->own_of_sites();
+  return now;
 }
 
 template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare(Exec const& exec, Spins const& spins,
                                                         double t) const {
-  return {llg_.prepare(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_, orthogonal_};
+  return now(llg_.prepare(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_);
 }
 
 template <class Spins>
@@ -59,24 +69,21 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_for_rows(Exec const& exe
                                                                  Spins const& spins,
                                                                  double t) const {
   auto const llg = llg_.prepare_for_rows(exec, spins, t);
-  return {llg, bodies_.prepare(exec, spins, t), is_llg_ && !llg.part().along_rows.evaluate,
-          orthogonal_};
+  return now(llg, bodies_.prepare(exec, spins, t), is_llg_ && !llg.part().along_rows.is_whole);
 }
 
 template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_local(Exec const& exec, Spins const& spins,
                                                               double t) const {
-  return {llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_,
-          orthogonal_};
+  return now(llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_);
 }
 
 template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
                                                              double t, double dt) const {
-  return {llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t), is_llg_,
-          orthogonal_};
+  return now(llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t), is_llg_);
 }
 
 #define CAYSPIN_INSTANTIATE(Space, Real)                                        \

@@ -22,10 +22,12 @@ template <class Spins>
 struct SceneGeneratorNow {
   LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
   SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
-  bool is_llg, orthogonal;  // is_llg: and H is not found along rows
+  bool is_llg, orthogonal;  // is_llg: and stages have terms of H compiled in
+  OwnOfSites<typename Spins::value_type> own = {};
 
   static constexpr int row_fields = cayspin::detail::row_fields<decltype(llg)>;
-  void begin_row(cayspin::detail::Row const& row, std::int32_t begin, std::int32_t end,
+  void begin_row(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
+                 std::int32_t begin, std::int32_t end,
                  cayspin::detail::RowFields<typename Spins::value_type> const& fields) {
     llg.begin_row(row, begin, end, fields);
   }
@@ -34,20 +36,23 @@ struct SceneGeneratorNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
-    Vec3<Value> const a = is_llg ? llg(stencil) : rare(stencil);
+    Vec3<Value> const a =
+        own.of(stencil.site(), stencil.center(), is_llg ? llg(stencil) : rare(stencil));
     return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
       Stencil const& stencil) const {
-    return is_llg ? llg.turning_part(stencil) : rare(stencil);
+    return own.of(stencil.site(), stencil.center(),
+                  is_llg ? llg.turning_part(stencil) : rare(stencil));
   }
   /// Of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
   /// rigid body is its own.
   template <class Spin, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
                                                        Vec3<Value> const& neighbor_field) const {
-    Vec3<Value> const a = is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin);
+    Vec3<Value> const a = own.of(spin.site(), spin.center(),
+                                 is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin));
     return orthogonal ? cayspin::detail::orthogonal_part(a, spin.center()) : a;
   }
   template <class Stencil>
@@ -59,7 +64,7 @@ struct SceneGeneratorNow {
 
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
-    return is_llg ? llg.rate(m, rates) : bodies.rate(m, rates);
+    return own.of(rates.site(), m, is_llg ? llg.rate(m, rates) : bodies.rate(m, rates));
   }
 
   /// With the part along the spin.
@@ -99,12 +104,13 @@ struct SceneGeneratorNow {
   }
 
  private:
-  /// Of bodies, or of an H that begin_row has found, all terms in it.
+  /// Of bodies, or of an H that begin_row has found whole.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> rare(
       Stencil const& stencil) const {
     auto const& field = llg.part();
-    if (field.along_rows.evaluate) return llg.generator_at(stencil, field.stored.field(stencil));
+    if constexpr (requires { stencil.site().load(field.row); })
+      if (field.along_rows.is_whole) return llg.in_field(stencil, stencil.site().load(field.row));
     return bodies(stencil);
   }
 };
@@ -129,6 +135,10 @@ class SceneGenerator {
   bool needs_time_alone(Exec const& exec, Spins const& spins) const {
     return !is_llg_ || llg_.needs_time_alone(exec, spins);
   }
+  template <class Exec>
+  bool rows_need_time_alone(Exec const& exec, Spins const& spins) const {
+    return !is_llg_ || llg_.rows_need_time_alone(exec, spins);
+  }
   LandauLifshitz<SceneField<Spins>> const& landau_lifshitz() const { return llg_; }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
@@ -152,6 +162,11 @@ class SceneGenerator {
   LandauLifshitz<SceneField<Spins>> llg_;
   bool is_llg_, orthogonal_;
   SceneBodies<Spins> bodies_;
+  bool alone_ = false;  // without damping
+
+  SceneGeneratorNow<Spins> now(LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
+                               SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies,
+                               bool is_llg) const;
 };
 
 /// cayspin::sample, with the magnetization of a scene's own moments, of sites that have a spin.

@@ -24,7 +24,6 @@ std::vector<std::pair<std::string, io::Scene>> single_terms(io::Scene const& sce
         (add_lattice_term(member), ...);
       },
       io::Field::lattice_terms);
-  if (field.bulk_dmi) add("dmi").bulk_dmi = field.bulk_dmi;
   if (!field.couplings.empty() || !field.couplings_file.empty()) {
     auto& alone = add("couplings");
     alone.couplings = field.couplings;

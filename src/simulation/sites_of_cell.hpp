@@ -31,7 +31,7 @@ inline SitesOfCell sites_of_cell(io::Scene const& scene) {
     auto const is_here = [&](int site) { return site < 0 || site == static_cast<int>(number); };
     auto& site = all.sites.emplace_back();
     site.moment = of_site(scene.lattice.moments, number);
-    site.per_moment = 1 / site.moment;
+    site.per_moment = site.moment > 0 ? 1 / site.moment : 0;  // a moment of 0 is no spin
     site.gyromagnetic = of_site(scene.lattice.gyromagnetic, number);
     for (auto const& term : field.anisotropies)
       if (is_here(term.site) && !term.factors.there()) site.quadratic.add(term.constant, term.axis);

@@ -82,7 +82,7 @@ TEST(Crystals, AnyNewKeyNeedsAPass) {
     EXPECT_TRUE(needs_pass(crystal_with({"lattice={shape=[4]," + key + "}", plain}))) << key;
   for (std::string const key :
        {"couplings=[{offset=[1,0,0],J=1}]", "anisotropy={constant=1,axis=[0,0,1],site=0}",
-        "anisotropy={cubic=1,axes=[[1,0,0],[0,0,1]]}", "dmi={bulk=1}"})
+        "anisotropy={cubic=1,axes=[[1,0,0],[0,0,1]]}"})
     EXPECT_TRUE(needs_pass(crystal_with({"lattice={shape=[4]}", "field={" + key + "}"}))) << key;
   EXPECT_TRUE(needs_pass(
       crystal_with({"lattice={shape=[4]}", plain, "torque={zhang_li={velocity=[1,0,0]}}"})));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/rows.hpp>
 #include <cayspin/detail/sites_of_row.hpp>
 
 #include <cstddef>
@@ -11,7 +12,17 @@
 // such a term's prepare_for_rows returns, and what is made of such terms, has
 //   static constexpr int row_fields                       how many fields it keeps
 //   void begin_row(row, begin, end, RowFields<Real>)      H of sites begin .. end - 1
+// where `row` has the spins of the stage and their neighbours. Where the term says
+//   bool rows_need_time_alone(exec, spins)
+// it looks at no other spins, and a sweep need not have them in a field.
 namespace cayspin::inline v0_1::detail {
+
+/// A row, its spins, and those beside it along y and z.
+template <class Real>
+struct RowOfSpins {
+  Row const& row;
+  RowStencil<Real> const& spins;
+};
 
 /// Sites of a piece: few enough for the first cache.
 inline constexpr std::int32_t sites_per_piece = 256;

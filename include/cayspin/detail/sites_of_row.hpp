@@ -62,6 +62,16 @@ class SitesOfRow {
   KOKKOS_FORCEINLINE_FUNCTION bool has_neighbor() const {
     return row_.template has_neighbor<Axis, Direction>();
   }
+  /// Have all these sites neighbours on both sides?
+  template <int Axis>
+  KOKKOS_FORCEINLINE_FUNCTION bool is_between() const {
+    if constexpr (Axis > 0)
+      return has_neighbor<Axis, 0>() && has_neighbor<Axis, 1>();
+    else if constexpr (AtEdge)
+      return row_.periodic_x || !(holds_end<0>() || holds_end<1>());
+    else
+      return true;
+  }
   /// `found`, a neighbour along x, but `missing` on the lane at an open end.
   template <int Direction>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> unless_past_end(Vec3<Value> const& found,

@@ -53,9 +53,8 @@ class UniformBulkDmi {
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector bonds(Stencil const& stencil, Vector const& h) const {
     using Value = typename Stencil::value_type;
-    auto const none = zero<Value>();
     auto const plus = as_value<Value>(strength_[Axis]), minus = as_value<Value>(-strength_[Axis]);
-    Vector const d = stencil.template next<Axis>(none) - stencil.template previous<Axis>(none);
+    Vector const d = difference<Axis>(stencil);
     if constexpr (Axis == 0)
       return {h.x, detail::multiply_add(plus, d.z, h.y), detail::multiply_add(minus, d.y, h.z)};
     else if constexpr (Axis == 1)

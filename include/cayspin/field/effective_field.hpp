@@ -30,7 +30,8 @@ class EffectiveField<> : public Forwarding<EffectiveField<>> {
   static constexpr int degree = 1, energy_terms = 0, row_fields = 0;
 
   template <class Real>
-  void begin_row(detail::Row const&, std::int32_t, std::int32_t, detail::RowFields<Real> const&) {}
+  void begin_row(detail::RowOfSpins<Real> const&, std::int32_t, std::int32_t,
+                 detail::RowFields<Real> const&) {}
   template <class Make>
   EffectiveField with_parts(Make const&) const {
     return {};
@@ -63,7 +64,7 @@ class EffectiveField<First, Rest...>
   // For stages over rows.
   static constexpr int row_fields = detail::row_fields<First> + EffectiveField<Rest...>::row_fields;
   template <class Real>
-  void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
+  void begin_row(detail::RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
                  detail::RowFields<Real> const& fields) {
     if constexpr (detail::row_fields<First> > 0) first_.begin_row(row, begin, end, fields);
     rest_.begin_row(row, begin, end, fields.after(detail::row_fields<First>));

@@ -73,7 +73,7 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
   // For stages over rows.
   static constexpr int row_fields = detail::row_fields<Field>;
   template <class Real>
-  void begin_row(Row const& row, std::int32_t begin, std::int32_t end,
+  void begin_row(RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
                  RowFields<Real> const& fields) {
     if constexpr (row_fields > 0) field_.begin_row(row, begin, end, fields);
   }

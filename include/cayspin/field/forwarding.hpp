@@ -7,9 +7,26 @@
 #include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
+#include <type_traits>
 #include <utility>
 
 namespace cayspin::inline v0_1 {
+
+namespace detail {
+
+template <class Exec, class Spins>
+struct PrepareForRows {
+  Exec const& exec;
+  Spins const& spins;
+  double t;
+
+  template <class Part>
+  auto operator()(Part const& part) const {
+    return prepare_for_rows(part, exec, spins, t);
+  }
+};
+
+}  // namespace detail
 
 /// The host members of a term or generator that is made of others (CRTP): those that are called
 /// before a kernel are forwarded to its parts from here. Derived has two members:
@@ -32,16 +49,19 @@ class Forwarding {
   }
   template <class Exec, class Spins>
   auto prepare_for_rows(Exec const& exec, Spins const& spins, double t) const {
-    auto const for_rows = [&](auto const& part) {
-      return detail::prepare_for_rows(part, exec, spins, t);
-    };
-    using ForRows = decltype(derived().with_parts(for_rows));
-    constexpr int of_parts =
-        (0 + ... + detail::row_fields<decltype(for_rows(std::declval<Parts const&>()))>);
-    if constexpr (detail::row_fields<ForRows> == of_parts)
-      return derived().with_parts(for_rows);
+    if constexpr (goes_along_rows<Exec, Spins>())
+      return derived().with_parts(detail::PrepareForRows<Exec, Spins>{exec, spins, t});
     else
       return derived().prepare(exec, spins, t);
+  }
+  template <class Exec, class Spins>
+  bool rows_need_time_alone(Exec const& exec, Spins const& spins) const {
+    return derived().all_parts([&](auto const& part) {
+      if constexpr (goes_along_rows<Exec, Spins>())
+        return detail::rows_need_time_alone(part, exec, spins);
+      else
+        return detail::needs_time_alone(part, exec, spins);
+    });
   }
   template <class Exec, class Spins>
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
@@ -71,6 +91,15 @@ class Forwarding {
   }
 
  private:
+  /// Does what with_parts makes of the parts for rows call begin_row of each?
+  template <class Exec, class Spins>
+  static constexpr bool goes_along_rows() {
+    using Make = detail::PrepareForRows<Exec, Spins>;
+    using ForRows = decltype(std::declval<Derived const&>().with_parts(std::declval<Make>()));
+    return detail::row_fields<ForRows> ==
+           (0 + ... + detail::row_fields<std::invoke_result_t<Make, Parts const&>>);
+  }
+
   Derived const& derived() const { return static_cast<Derived const&>(*this); }
 };
 

@@ -62,11 +62,9 @@ class UniformInterfacialDmi {
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector bonds(Stencil const& stencil, Vector const& sum) const {
     using Value = typename Stencil::value_type;
-    auto const none = zero<Value>();
     Vector const v{as_value<Value>(vector_[Axis].x), as_value<Value>(vector_[Axis].y),
                    as_value<Value>(vector_[Axis].z)};
-    return sum +
-           cross(v, stencil.template next<Axis>(none) - stencil.template previous<Axis>(none));
+    return sum + cross(v, difference<Axis>(stencil));
   }
 
   Vec3<double> vector_[3];

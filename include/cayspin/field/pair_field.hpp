@@ -284,9 +284,9 @@ class PairFieldAlongRows : public PairField<Real> {
 
   using PairField<Real>::PairField;
 
-  void begin_row(Row const& row, std::int32_t begin, std::int32_t end,
+  void begin_row(RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
                  RowFields<Real> const& memory) {
-    this->evaluate_row(row, begin, end, memory);
+    this->evaluate_row(row.row, begin, end, memory);
     fields_ = memory;
     begin_ = begin;
   }

@@ -70,7 +70,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   // For stages over rows.
   static constexpr int row_fields = detail::row_fields<Field>;
   template <class Real>
-  void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
+  void begin_row(detail::RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
                  detail::RowFields<Real> const& fields) {
     if constexpr (row_fields > 0) field_.begin_row(row, begin, end, fields);
   }
@@ -84,6 +84,13 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
       Stencil const& stencil) const {
     return generator(stencil.site(), stencil.center(), detail::turning_field(field_, stencil));
+  }
+
+  /// A in a field H that is known.
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> in_field(
+      Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
+    return generator(stencil.site(), stencil.center(), h);
   }
 
   /// H from other spins, of which generator_at makes A at a spin that has moved on since.

@@ -68,7 +68,7 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   // For stages over rows.
   static constexpr int row_fields = detail::row_fields<Generator>;
   template <class Real>
-  void begin_row(detail::Row const& row, std::int32_t begin, std::int32_t end,
+  void begin_row(detail::RowOfSpins<Real> const& row, std::int32_t begin, std::int32_t end,
                  detail::RowFields<Real> const& fields) {
     if constexpr (row_fields > 0) generator_.begin_row(row, begin, end, fields);
   }

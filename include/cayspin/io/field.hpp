@@ -25,6 +25,7 @@
 namespace cayspin::inline v0_1 {
 class Exchange;
 class InterfacialDmi;
+class BulkDmi;
 }  // namespace cayspin::inline v0_1
 
 namespace cayspin::inline v0_1::io {
@@ -62,6 +63,9 @@ struct Key {
 struct Exchange {
   double constant = 0;
 
+  /// What H is proportional to.
+  double& strength() { return constant; }
+
   static constexpr std::string_view key = "exchange";
   /// One number alone is typed without a table.
   static constexpr auto keys() {
@@ -97,6 +101,8 @@ struct InterfacialDmi {
   double interfacial = 0;     ///< D in the energy density D (m_n div m - m . grad m_n)
   Triple normal = {0, 0, 1};  ///< unit vector n
 
+  double& strength() { return interfacial; }
+
   static constexpr std::string_view key = "dmi";
   static constexpr auto keys() {
     return std::to_array<Key<InterfacialDmi>>(
@@ -124,6 +130,37 @@ struct InterfacialDmi {
   template <class Lattice, class Term = cayspin::InterfacialDmi>
   Term term(Lattice const& lattice) const {
     return Term(lattice, interfacial, {normal[0], normal[1], normal[2]});
+  }
+};
+
+/// Bulk Dzyaloshinskii-Moriya interaction. It stands in place of the interfacial one.
+struct BulkDmi {
+  double constant = 0;  ///< D in the energy density D m.(curl m)
+
+  double& strength() { return constant; }
+
+  static constexpr std::string_view key = "dmi";
+  static constexpr auto keys() {
+    return std::to_array<Key<BulkDmi>>({{"bulk", &BulkDmi::constant, {}, true}});
+  }
+  static constexpr std::string_view formula = "E = {} m.curl m";
+
+  /// An upper bound: both neighbours along each axis.
+  template <class Lattice>
+  double field_bound(Lattice const& lattice) const {
+    return 2 * energy_magnitude(lattice);
+  }
+  template <class Lattice>
+  double energy_magnitude(Lattice const& lattice) const {
+    double sum = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (lattice.has_neighbors(axis))
+        sum += std::abs(constant) / lattice.spacing[static_cast<std::size_t>(axis)];
+    return sum;
+  }
+  template <class Lattice, class Term = cayspin::BulkDmi>
+  Term term(Lattice const& lattice) const {
+    return Term(lattice, constant);
   }
 };
 
@@ -164,11 +201,6 @@ struct CubicAnisotropy {
   std::array<Triple, 2> axes =
       {};         ///< unit vectors normal to each other; the third is their product
   int site = -1;  ///< of the cell; all where it is below 0
-};
-
-/// Bulk Dzyaloshinskii-Moriya interaction: E = constant m.(curl m).
-struct BulkDmi {
-  double constant = 0;
 };
 
 /// Zhang and Li 2004: t = -(u.grad) m + xi m x (u.grad) m.
@@ -257,7 +289,7 @@ struct Field {
   double mu0 = 1;  ///< multiplies applied, slab_demag and demag; NOT yet multiplied into them
   OwnField own;    ///< empty, unless a program sets it
 
-  static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi};
+  static constexpr std::tuple lattice_terms{&Field::exchange, &Field::dmi, &Field::bulk_dmi};
 };
 
 /// True when a component of the applied field contains t, or the uniform field is a program's.

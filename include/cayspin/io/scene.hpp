@@ -274,6 +274,13 @@ std::vector<double> numbers_of_sites(Scene const& scene, SiteNumbers const& numb
 /// Is the field evaluated in a pass of its own, for terms that few scenes have?
 bool needs_pass(Scene const& scene);
 
+/// Has a site no spin? By lattice.occupied, or a moment of 0.
+bool has_vacancies(Scene const& scene);
+
+/// Is H linear in the spins, but for the applied field? Not known of a unit-cell file, which may
+/// have biquadratic couplings.
+bool has_linear_field(Scene const& scene);
+
 /// The largest gyromagnetic ratio over moment of a cell's sites, by which noise turns them faster.
 double largest_noise(Scene const& scene);
 

@@ -88,7 +88,7 @@ CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> co
     } else {
       for (std::int32_t x = begin; x < end; x += sites_per_piece) {
         std::int32_t const after = Kokkos::min(x + sites_per_piece, end);
-        local.generator.begin_row(row, x, after, memory.all());
+        local.generator.begin_row({row, rows.level}, x, after, memory.all());
         run_along(local, planes, rows, row, x, after);
       }
     }
@@ -154,6 +154,15 @@ auto prepare_stage(Generator const& generator, Exec const& exec, Spins const& sp
     return prepare_for_rows(generator, exec, spins, t);
   else
     return prepare_term(generator, exec, spins, t);
+}
+
+/// Is t enough for prepare_stage?
+template <class Isotropy, class Generator, class Exec, class Spins>
+bool stages_need_time_alone(Generator const& generator, Exec const& exec, Spins const& spins) {
+  if constexpr (is_host_execution<Exec> && !std::is_same_v<Isotropy, isotropy::Energy>)
+    return rows_need_time_alone(generator, exec, spins);
+  else
+    return needs_time_alone(generator, exec, spins);
 }
 
 template <class Exec, class Kernel>

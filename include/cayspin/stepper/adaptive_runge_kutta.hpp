@@ -116,7 +116,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     evaluations_done_ += stages - 1;
     bool at_once = false;
     if constexpr (detail::is_host_execution<Exec>) {
-      bool const by_time = detail::needs_time_alone(generator, exec, memory_.begin);
+      bool const by_time = detail::stages_need_time_alone<Isotropy>(generator, exec, memory_.begin);
       if (this->path() == Path::sweep && !by_time) this->use(Path::pass);
       if constexpr (Base::Sweeps::possible) {
         if (this->path() == Path::sweep) {
@@ -161,7 +161,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   void with_kernels(Exec const& exec, Generator const& generator, double t, double dt,
                     detail::EndOutputs<Tableau, Real> const& outputs, Run const& run) const {
     auto const at = [&](double c) {
-      return detail::prepare_term(generator, exec, memory_.begin, t + c * dt);
+      return detail::prepare_stage<Isotropy>(generator, exec, memory_.begin, t + c * dt);
     };
     [&]<int... I>(std::integer_sequence<int, I...>) {
       run(first_stage(dt), stage<I + 1>(at(Tableau::c[I + 1]), dt)...,

@@ -47,7 +47,7 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
     if (exchanges()) this->require_other_memory(spins, memory_.end());
     if constexpr (Base::Sweeps::possible && detail::is_host_execution<Exec>) {
       if (this->path() == Path::sweep) {
-        if (detail::needs_time_alone(generator, exec, spins)) {
+        if (detail::stages_need_time_alone<Isotropy>(generator, exec, spins)) {
           sweep(exec, generator, spins, t, dt);
           return update_ghosts(exec, spins);
         }
@@ -148,7 +148,8 @@ class RungeKutta : public detail::StagedStepper<Spins, Tableau, Update, Isotropy
   void sweep(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     [&]<int... Stage>(std::integer_sequence<int, Stage...>) {
       auto const kernel_at = [&]<int S>(std::integral_constant<int, S>) {
-        return kernel<S>(detail::prepare_term(generator, exec, spins, t + Tableau::c[S] * dt), dt);
+        return kernel<S>(
+            detail::prepare_stage<Isotropy>(generator, exec, spins, t + Tableau::c[S] * dt), dt);
       };
       this->sweep_through(exec, spins,
                           std::tuple{kernel_at(std::integral_constant<int, Stage>{})...});

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "sections.hpp"
+
+#include <cayspin/io/refused_pairs.hpp>
+#include <cayspin/io/scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace cayspin::inline v0_1::io {
+namespace {
+
+constexpr std::string_view method_key = "integrator.method",
+                           another_method = "another method, such as \"heun\", \"rkmk4\", \"dp5\"",
+                           isotropy_key = "integrator.isotropy",
+                           no_isotropy = "\"zero\", { constant = sigma }",
+                           control_key = "integrator.energy_control";
+
+bool has_torque(Scene const& scene) { return io::has_torque(scene.field); }
+bool depends_on_time(Scene const& scene) { return io::depends_on_time(scene.field); }
+bool is_nonlinear(Scene const& scene) { return !has_linear_field(scene); }
+bool moves_by_sites(Scene const& scene) {
+  return scene.system.dampings.there() || scene.lattice.frozen.there();
+}
+bool has_dampings(Scene const& scene) { return scene.system.dampings.there(); }
+
+bool all_equal(std::vector<double> const& numbers, double to) {
+  return std::ranges::all_of(numbers, [&](double number) { return number == to; });
+}
+bool turns_by_sites(Scene const& scene) {
+  auto const& ratios = scene.lattice.gyromagnetic;
+  return !ratios.empty() && !all_equal(ratios, ratios[0]);
+}
+bool has_moments(Scene const& scene) {
+  return !all_equal(scene.lattice.moments, 1) || !all_equal(scene.lattice.gyromagnetic, 1);
+}
+
+bool by_two_colours(Scene const& scene) {
+  return scene.integrator.method->neighbors == Neighbors::by_colour;
+}
+bool by_series(Scene const& scene) { return scene.integrator.method->differentiates_field; }
+bool by_analytic(Scene const& scene) { return scene.integrator.isotropy == Isotropy::analytic; }
+bool by_energy(Scene const& scene) {
+  return scene.integrator.isotropy == Isotropy::energy && scene.system.kind == SystemKind::llg;
+}
+bool by_control(Scene const& scene) { return scene.integrator.energy_control; }
+bool until_torque(Scene const& scene) { return scene.integrator.until_torque.has_value(); }
+
+constexpr std::string_view nonlinear = "cubic axes, biquadratic couplings, torques",
+                           own_numbers = "damping or frozen spins of sites",
+                           moments = "moments and gyromagnetic ratios other than 1";
+
+constexpr std::string_view neighbors_alone = "method \"{}\" needs a field of the neighbours alone";
+
+constexpr RefusedPair pairs[] = {
+    {"a program's own nonlocal field", "red_black2, red_black4", neighbors_alone, "field",
+     "no nonlocal field, or another method",
+     [](Scene const& scene) { return bool{scene.field.own.nonlocal}; }, by_two_colours},
+    {"demag", "red_black2, red_black4", neighbors_alone, "field.demag",
+     "no such key, or another method",
+     [](Scene const& scene) { return scene.field.demag.has_value(); }, by_two_colours},
+    {"slab_demag by layers or on the host", "red_black2, red_black4", neighbors_alone,
+     "field.slab_demag", "neither average nor where, or another method",
+     [](Scene const& scene) { return is_nonlocal(scene.field); }, by_two_colours},
+    {"couplings, cubic axes, torques, vacancies, numbers of sites", "red_black2, red_black4",
+     "\"{}\" needs a field of the neighbours alone: it moves spins while their neighbours stay, and "
+     "these terms are evaluated for all spins beforehand",
+     method_key, another_method, needs_pass, by_two_colours},
+    {nonlinear, "series4, series4_paper",
+     "\"{}\" differentiates the field, which cubic axes, biquadratic couplings and torques make "
+     "nonlinear in the spins",
+     method_key, another_method, is_nonlinear, by_series},
+    {own_numbers, "series4, series4_paper",
+     "\"{}\" differentiates the motion, with one damping for all spins", method_key, another_method,
+     moves_by_sites, by_series},
+    {"gyromagnetic ratios that differ", "series4, series4_paper",
+     "\"{}\" differentiates the field, with one applied field for all spins", method_key,
+     another_method, turns_by_sites, by_series},
+    {"a field that depends on t", "series4, series4_paper",
+     "\"{}\" refuses fields that depend on t", method_key,
+     "a method without derivatives, or numbers in field.applied", depends_on_time, by_series},
+    {nonlinear, "isotropy analytic",
+     "\"analytic\" does not go with cubic axes, biquadratic couplings and torques: it needs a field "
+     "that is linear in the spins",
+     isotropy_key, no_isotropy, is_nonlinear, by_analytic},
+    {"gyromagnetic ratios that differ", "isotropy analytic",
+     "\"analytic\" does not go with gyromagnetic ratios that differ", isotropy_key, no_isotropy,
+     turns_by_sites, by_analytic},
+    {"torques", "isotropy energy", "\"energy\" does not go with a current, which does work",
+     isotropy_key, no_isotropy, has_torque, by_energy},
+    {"damping of sites", "isotropy energy", "\"energy\" does not go with damping", isotropy_key,
+     no_isotropy, has_dampings, by_energy},
+    {moments, "isotropy energy",
+     "\"energy\" does not go with moments and gyromagnetic ratios other than 1: the field is not "
+     "the derivative of the energy",
+     isotropy_key, no_isotropy, has_moments, by_energy},
+    {"a field that depends on t", "isotropy energy", "\"energy\" needs a field without t",
+     isotropy_key, "another isotropy", depends_on_time, by_energy},
+    {"torques", "energy_control", "does not go with a current, which does work", control_key,
+     "no such key", has_torque, by_control},
+    {"damping of sites", "energy_control", "does not go with damping", control_key, "no such key",
+     has_dampings, by_control},
+    {moments, "energy_control",
+     "does not go with moments and gyromagnetic ratios other than 1: the field is not the "
+     "derivative of the energy",
+     control_key, "no such key", has_moments, by_control},
+    {"a field that depends on t", "energy_control", "needs a field without t", control_key,
+     "no such key", depends_on_time, by_control},
+    {"torques", "until_torque", "a current moves spins for ever", "integrator.until_torque",
+     "no such key", has_torque, until_torque},
+};
+
+}  // namespace
+
+std::span<RefusedPair const> refused_pairs() { return pairs; }
+
+namespace detail {
+
+void check_pairs(Scene const& scene) {
+  for (auto const& pair : pairs)
+    if (pair.has_terms(scene) && pair.has_other(scene))
+      refuse(scene, pair.key, fmt::format(fmt::runtime(pair.why), scene.integrator.method->word),
+             pair.accepted);
+}
+
+}  // namespace detail
+}  // namespace cayspin::inline v0_1::io
