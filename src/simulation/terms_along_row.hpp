@@ -59,8 +59,8 @@ struct MissingNeighbors {
   }
 };
 
-/// What a stage adds to the terms that are compiled into it. One term has a loop of its own; more
-/// share one that asks for each.
+/// H that a stage adds to the terms that are compiled into it, in scenes without couplings. One
+/// term has a loop of its own; more share one that asks for each.
 template <class Real>
 struct AddedTerms {
   PassTerms<Real> terms;
@@ -70,8 +70,6 @@ struct AddedTerms {
   bool any() const { return count() > 0; }
 
   void along(RowPiece<Real> const& piece) const {
-    if (terms.has_pairs)
-      terms.pairs.evaluate_row(piece.row.row, piece.begin, piece.end, piece.fields);
     if (count() > 1 || scale != 1) return run(Loop{*this, piece.fields}, piece);
     if (missing.exchange.data) return run_alone(missing, piece);
     if (terms.anisotropies > 0) return run_alone(terms.anisotropies_of_sites[0], piece);
@@ -86,8 +84,8 @@ struct AddedTerms {
 
  private:
   int count() const {
-    return int{terms.has_pairs} + int{terms.usual.has_stored} + int{terms.usual.has_layers} +
-           terms.anisotropies + terms.cubics_of_cell + int{missing.exchange.data != nullptr} +
+    return int{terms.usual.has_stored} + int{terms.usual.has_layers} + terms.anisotropies +
+           terms.cubics_of_cell + int{missing.exchange.data != nullptr} +
            int{terms.exchange_of_sites.there()} +
            int{terms.dmi_of_sites.constants.data != nullptr} + int{terms.has_zhang_li} +
            int{terms.has_slonczewski};
@@ -102,7 +100,6 @@ struct AddedTerms {
       using Value = typename Stencil::value_type;
       auto const& terms = added.terms;
       FieldAndEnergy<Value> sum{zero<Value>(), Value(0)};
-      if (terms.has_pairs) sum.field = fields.template load<Value>(i);
       if (terms.has_bonds_of_sites()) {
         if (terms.has_vacancies)
           terms.add_bonds_of_sites(terms.among_spins(stencil), sum);
@@ -145,7 +142,7 @@ struct AddedTerms {
   }
 };
 
-/// The whole H of scenes whose sites have couplings, or moments of their own.
+/// The whole H of scenes with couplings, or several sites in a cell.
 template <class Real>
 struct WholeTerms {
   PassTerms<Real> terms;
