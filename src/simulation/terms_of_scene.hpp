@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include "field_in_pass.hpp"
-
 #include "applied_field.hpp"
 #include "evaluate_in_pass.hpp"
+#include "field_in_pass.hpp"
 #include "ranks.hpp"
 #include "sites_of_cell.hpp"
 #include "space.hpp"
