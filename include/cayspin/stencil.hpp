@@ -103,6 +103,12 @@ KOKKOS_FORCEINLINE_FUNCTION auto previous(AnyStencil const& stencil,
 
 namespace detail {
 
+/// Is it a stencil of a row that a stage goes along, as between its ends?
+template <class Stencil>
+inline constexpr bool is_along_row = false;
+template <class Site, class Real>
+inline constexpr bool is_along_row<Stencil<Site, Real, RowStencil<Real>>> = Site::is_between_ends;
+
 /// m_next - m_previous, the zero vector in place of a missing neighbour. Where none is missing,
 /// from what other terms load, too.
 template <int Axis, class AnyStencil>

@@ -25,8 +25,8 @@ template <class Real>
 FieldOnHost<Real> demagnetization_on_host(io::Demagnetization const& demag, double mu0,
                                           Lattice const& lattice);
 
-/// Of a device's spins; empty for a part of a lattice, and where this build has no transforms for
-/// that device.
+/// The field of a device's spins; empty for a part of a lattice, and where this build has no
+/// transforms for that device.
 template <class Spins>
 FieldInPlace<Spins> demagnetization_in_place(io::Demagnetization const& demag, double mu0,
                                              Lattice const& lattice);

@@ -34,7 +34,7 @@ auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& 
                         .applied = usual.zeeman,
                         .sites = sites_.data(),
                         .cubics = cubics_.data(),
-                        .exchange_of_sites = exchange_of_sites_,
+                        .exchange_of_sites = {},
                         .dmi_of_sites = {},
                         .anisotropies_of_sites = anisotropies_.data(),
                         .anisotropies = static_cast<std::int32_t>(anisotropies_.size()),
@@ -47,6 +47,7 @@ auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& 
                         .has_slonczewski = torques_.strengths.has_value(),
                         .has_vacancies = has_vacancies_,
                         .is_gradient = purpose == FieldFor::energy};
+  if (exchange_of_sites_) terms.exchange_of_sites = exchange_of_sites_->prepared();
   if (dmi_of_sites_) {
     terms.dmi_of_sites.constants = dmi_of_sites_->array();
     std::copy_n(dmi_vectors_, 3, terms.dmi_of_sites.vectors);
@@ -129,8 +130,14 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::along_rows(
         return *now;
       }
       auto now = nothing();
+      bool const lacks_local = terms.has_pairs && terms.has_few() && terms_->sites_are_alike();
+      if (lacks_local) {
+        now.quadratic = terms_->cell_[0].quadratic;
+        now.zeeman.applied = terms.applied_in_field;
+      }
       now.along_rows = {&evaluate_along<WholeTerms<Real>, Real>,
-                        &kept.template emplace<WholeTerms<Real>>(terms), true};
+                        &kept.template emplace<WholeTerms<Real>>(terms, lacks_local), true,
+                        lacks_local};
       return now;
     }
   }

@@ -52,10 +52,10 @@ class FieldInPass {
   /// How sites turn in H, each by its own numbers.
   OwnOfSites<Real> own_of_sites() const;
 
-  /// Of `usual`, what no spin is looked at for.
+  /// The terms of `usual` that look at no spin.
   SceneFieldNow<Real> without_spins(SceneFieldNow<Real> const& usual, FieldFor purpose) const;
 
-  /// Of all spins alike.
+  /// The gyromagnetic ratio, where all spins have the same.
   double gyromagnetic() const;
 
   /// The mean of m weighted by moments, over the sites that have a spin.
@@ -66,7 +66,7 @@ class FieldInPass {
   template <class Exec>
   double norm_defect(Exec const& exec, Spins const& spins) const;
 
-  /// Of each site of a cell: its gyromagnetic ratio over its moment.
+  /// The gyromagnetic ratio over the moment, for each site of a cell.
   std::vector<double> const& noise_of_sites() const;
   /// 0 where a spin is frozen; none where all move.
   std::optional<ScalarField<Real, Memory>> const& moves() const;

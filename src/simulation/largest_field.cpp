@@ -47,7 +47,7 @@ struct Range {
   double magnitude() const { return std::max(-least, largest); }
 };
 
-// Of all sites, by some planes at once: a rank has no room for more than its part.
+// The range over all sites, by some planes at once: a rank has no room for more than its part.
 Range range_of_sites(io::Scene const& scene, io::SiteNumbers const& numbers, std::string_view key) {
   auto const& shape = scene.lattice.shape;
   auto const at_once = io::planes_to_read(shape, sizeof(double));

@@ -6,6 +6,7 @@
 #include <cayspin/field/cubic_anisotropy.hpp>
 #include <cayspin/field/field_with_vacancies.hpp>
 #include <cayspin/field/pair_couplings.hpp>
+#include <cayspin/field/site_dependent_exchange.hpp>
 #include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>
 #include <cayspin/field/slonczewski.hpp>
 #include <cayspin/field/zhang_li.hpp>
@@ -25,63 +26,6 @@ struct CellSite {
 template <class Real>
 using AnisotropyOfSites =
     cayspin::detail::UniaxialAnisotropyOfSites<cayspin::detail::SiteArray<Real, 1>, Vec3<double>>;
-
-/// Exchange whose constant differs from site to site, as SiteDependentExchange.
-template <class Real>
-struct ExchangeOfBonds {
-  /// The constant of the bond to the next site along each axis over the spacing squared; without
-  /// data: none.
-  cayspin::detail::SiteArray<Real, 1> bonds[3];
-
-  KOKKOS_FORCEINLINE_FUNCTION bool there() const {
-    return bonds[0].data || bonds[1].data || bonds[2].data;
-  }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(
-      Stencil const& stencil) const {
-    auto h = zero<typename Stencil::value_type>();
-    if (bonds[0].data) h = along<0>(stencil, h);
-    if (bonds[1].data) h = along<1>(stencil, h);
-    if (bonds[2].data) h = along<2>(stencil, h);
-    return h;
-  }
-  /// Each site carries half of each of its bonds.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_density(
-      Stencil const& stencil) const {
-    typename Stencil::value_type e(0);
-    if (bonds[0].data) e = energy_along<0>(stencil, e);
-    if (bonds[1].data) e = energy_along<1>(stencil, e);
-    if (bonds[2].data) e = energy_along<2>(stencil, e);
-    return e;
-  }
-
- private:
-  template <class Stencil>
-  struct Pair {
-    typename Stencil::value_type before, after;
-    typename Stencil::vector_type back, on;  // to the neighbours
-  };
-  template <int Axis, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Pair<Stencil> pair(Stencil const& stencil) const {
-    auto const& site = stencil.site();
-    auto const after = site.load(bonds[Axis]);
-    return {site.template neighbor<Axis, 0>(bonds[Axis], after), after,
-            stencil.template previous<Axis>() - stencil.center(),
-            stencil.template next<Axis>() - stencil.center()};
-  }
-  template <int Axis, class Stencil, class Vector>
-  KOKKOS_FORCEINLINE_FUNCTION Vector along(Stencil const& stencil, Vector const& h) const {
-    auto const [before, after, back, on] = pair<Axis>(stencil);
-    return multiply_add(after, on, multiply_add(before, back, h));
-  }
-  template <int Axis, class Stencil, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Value energy_along(Stencil const& stencil, Value const& e) const {
-    auto const [before, after, back, on] = pair<Axis>(stencil);
-    return e + Value(0.25) * (after * dot(on, on) + before * dot(back, back));
-  }
-};
 
 /// The constants of a site's bonds to vacancies, over the spacing squared.
 template <class Real>
@@ -109,32 +53,6 @@ struct FindMissing {
   KOKKOS_FORCEINLINE_FUNCTION static Value if_vacant(Value const& moment, Value const& bond) {
     Value const none(0);
     return cayspin::detail::select<Value>(moment == none, bond, none);
-  }
-};
-
-/// Finds its bonds: harmonic means of the constants at both ends.
-template <class Real>
-struct FindBonds {
-  cayspin::detail::SiteArray<Real, 1> constants;
-  cayspin::detail::OutputArray<Real, 1> bonds;
-  int axis;
-  double inverse_square;
-
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    auto const own = site.load(constants);
-    site.store(axis == 0   ? mean(own, site.template neighbor<0, 1>(constants, own))
-               : axis == 1 ? mean(own, site.template neighbor<1, 1>(constants, own))
-                           : mean(own, site.template neighbor<2, 1>(constants, own)),
-               bonds);
-  }
-
- private:
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Value mean(Value const& own, Value const& other) const {
-    Value const sum = own + other, none(0);
-    return as_value<Value>(2 * inverse_square) * (own * other) /
-           cayspin::detail::select<Value>(sum == none, Value(1), sum);
   }
 };
 
@@ -180,7 +98,7 @@ struct FieldAndEnergy {
     field = field + term.field(stencil);
     energy = energy + term.energy_density(stencil);
   }
-  /// Of a term whose H is linear in the spins.
+  /// Adds a term whose H is linear in the spins.
   template <class Term, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION void add_linear(Term const& term, Stencil const& stencil) {
     Vec3<Value> const h = term.field(stencil);
@@ -199,7 +117,7 @@ struct PassTerms {
   Zeeman applied;
   CellSite const* sites;
   CubicAnisotropy const* cubics;
-  ExchangeOfBonds<Real> exchange_of_sites;
+  cayspin::detail::ExchangeOfSites<Real> exchange_of_sites;
   DmiOfSites<Real> dmi_of_sites;  // without data: none
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   std::int32_t anisotropies, cubics_of_cell;
@@ -239,7 +157,7 @@ struct PassTerms {
 
   KOKKOS_FORCEINLINE_FUNCTION bool has_torques() const { return has_zhang_li || has_slonczewski; }
   KOKKOS_FORCEINLINE_FUNCTION bool has_bonds_of_sites() const {
-    return exchange_of_sites.there() || dmi_of_sites.constants.data;
+    return exchange_of_sites.any() || dmi_of_sites.constants.data;
   }
   bool has_local_of_sites() const { return anisotropies > 0 || cubics_of_cell > 0; }
   /// Is there nothing but couplings, axes of the cell's sites, and an applied field? In most scenes
@@ -252,7 +170,7 @@ struct PassTerms {
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void add_bonds_of_sites(Stencil const& stencil,
                                                       FieldAndEnergy<Value>& sum) const {
-    if (exchange_of_sites.there()) sum.add(exchange_of_sites, stencil);
+    if (exchange_of_sites.any()) sum.add(exchange_of_sites, stencil);
     if (dmi_of_sites.constants.data) sum.add_linear(dmi_of_sites, stencil);
   }
   template <class Stencil, class Value>
@@ -278,7 +196,7 @@ struct PassTerms {
     return sites[pairs.site_of_plane(z)];
   }
 
-  /// Of -dE/dm.
+  /// H of a site's moment, where `h` is -dE/dm of all but the applied field.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION static Vec3<Value> seen_by_moment(CellSite const& site,
                                                                 Vec3<double> const& applied,

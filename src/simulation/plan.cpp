@@ -76,7 +76,7 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     memory.work += work_fields_of_dear(scene, variant) * memory.spins;
     memory.field += memory.spins;
   }
-  // Of the search for a direction down, where the torque is small.
+  // The search for a direction down, where the torque is small.
   if (scene.integrator.until_torque && lattice.part == nullptr)
     memory.work += (1 + Minimizer<SpinField<double>>::work_fields) * memory.spins;
   // A rank reads its sites by some planes at once, but OVF whole. The first one writes.
@@ -152,7 +152,7 @@ Plan make_plan(io::Scene const& scene, Precision precision,
                             "remembers steps, between which the noise of a temperature turns the "
                             "spins; accepted: a one-step method, such as \"heun\", \"rkmk4\", "
                             "\"red_black2\"");
-    // Of each component in half a step; two of three move the spin.
+    // The variance of each component in half a step; two of three move the spin.
     double const variance = io::largest_noise(scene) * scene.system.damping *
                             scene.thermal->temperature * integrator.dt;
     plan.noise_turn = 2 * std::sqrt(variance);

@@ -39,7 +39,7 @@ class Ranks {
   virtual int rank() const = 0;
   bool many() const { return count() > 1; }
   bool is_first() const { return rank() == 0; }
-  /// Of those on this machine, this one included.
+  /// How many ranks are on this machine, this one included.
   virtual int on_this_machine() const = 0;
 
   /// Numbers of parts along y and z, of at least `depth` rows or planes each: those asked for as
@@ -51,7 +51,7 @@ class Ranks {
   virtual PartOfRank divide(cayspin::Lattice const& lattice, mpi::Depth const& depth,
                             std::array<int, 2> const& parts) = 0;
 
-  /// Of a lattice with a part for each rank, the planes along z that the first takes at once: those
+  /// How many planes along z of a lattice with a part for each rank the first takes at once: those
   /// of a part.
   std::int64_t planes_at_once(cayspin::Lattice const& lattice) const {
     return std::max<std::int64_t>(1, whole(lattice).shape[2] / count());

@@ -26,7 +26,7 @@ io::CheckpointHeader checkpoint_header(io::Scene const& scene, Precision precisi
 
 /// Does a file say where the sites are? They are on no regular grid.
 bool has_positions(io::Lattice const& lattice);
-/// Of /positions, once in a file; 0 without them.
+/// Bytes of /positions, once in a file; 0 without them.
 std::int64_t position_bytes(io::Lattice const& lattice);
 
 /// With the frames that the scene asks for.

@@ -35,6 +35,7 @@ class QuadraticTerms {
   }
 
   KOKKOS_FORCEINLINE_FUNCTION bool present() const { return form_ != Form::none; }
+  bool operator==(QuadraticTerms const&) const = default;
 
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> add_field(Vec3<Value> const& m,
@@ -56,6 +57,7 @@ class QuadraticTerms {
  private:
   struct Sum {
     double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+    bool operator==(Sum const&) const = default;
 
     void add(double c, io::Triple const& e) {
       xx += c * e[0] * e[0], yy += c * e[1] * e[1], zz += c * e[2] * e[2];
@@ -86,14 +88,15 @@ class QuadraticTerms {
 };
 
 /// H along a piece of a row, by a function that is compiled once for all methods; none where
-/// `evaluate` is null. `is_whole`: there is no other.
+/// `evaluate` is null. `is_whole`: stages add nothing, or, where it lacks_local, axes and the
+/// applied field.
 template <class Real>
 struct FieldAlongRows {
   using Fields = cayspin::detail::RowFields<Real>;
   void (*evaluate)(void const* terms, cayspin::detail::RowOfSpins<Real> const& row,
                    std::int32_t begin, std::int32_t end, Fields const& to) = nullptr;
   void const* terms = nullptr;
-  bool is_whole = false;
+  bool is_whole = false, lacks_local = false;
 };
 
 /// The field of any scene at one instant, for kernels. Which terms are there is asked at run time,
@@ -108,15 +111,38 @@ struct SceneFieldNow {
   bool has_applied, has_layers, has_stored;
   cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
   FieldAlongRows<Real> along_rows = {};
-  cayspin::detail::RowInput<Real> row = {};  // what it found
+
+  // What begin_row was called for.
+  cayspin::detail::RowInput<Real> row = {};  // what was found of H
+  std::ptrdiff_t compiled_sites = 0;         // of packs between the first and the last
+  bool adds_row = false, adds_more = false;
 
   static constexpr int row_fields = 1;
   void begin_row(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
                  std::int32_t end, cayspin::detail::RowFields<Real> const& fields) {
-    if (!along_rows.evaluate) [[likely]]
-      return;
-    along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
+    constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
+    std::ptrdiff_t const last = (spins.row.nx - 1) / lanes * lanes;
+    compiled_sites = along_rows.is_whole ? 0 : std::max<std::ptrdiff_t>(last - lanes, 0);
     row = {fields.data - begin, fields.stride};
+    adds_row = along_rows.evaluate != nullptr;
+    adds_more = has_layers || has_stored || adds_row;
+    if (adds_row) along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
+  }
+  /// H at the packs at the ends of a row, with what begin_row found there.
+  void find_row_ends(cayspin::detail::RowOfSpins<Real> const& spins, std::int32_t begin,
+                     std::int32_t end, cayspin::detail::RowFields<Real> const& fields,
+                     bool turning_alone) const;
+
+  /// After begin_row and find_row_ends, at sites of their row.
+  template <bool TurningAlone, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field_along_row(
+      Stencil const& stencil) const {
+    if (!is_compiled(stencil.site().x())) [[unlikely]]
+      return add_lacking(stencil, stencil.site().load(row));
+    if constexpr (TurningAlone)
+      return add_more(stencil, lattice_terms.add_turning_field(stencil, local_field(stencil)));
+    else
+      return add_more(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
   }
 
   template <class Stencil>
@@ -185,14 +211,32 @@ struct SceneFieldNow {
   }
 
  private:
+  KOKKOS_FORCEINLINE_FUNCTION bool is_compiled(std::ptrdiff_t x) const {
+    constexpr std::ptrdiff_t first = cayspin::detail::host_lanes<Real>;
+    return static_cast<std::size_t>(x - first) < static_cast<std::size_t>(compiled_sites);
+  }
+  // Vectors are handed on without a name: g++ copies those that have one through memory.
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_lacking(Stencil const& stencil, Vector h) const {
+    if (along_rows.lacks_local)
+      h = quadratic.add_field(stencil.center(), h) + zeeman.field(stencil);
+    return h;
+  }
+  template <class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector add_more(Stencil const& stencil, Vector h) const {
+    if (adds_more) [[unlikely]] {
+      if (has_layers) h = h + layers.field(stencil);
+      if (has_stored) h = h + stored.field(stencil);
+      if (adds_row) h = h + stencil.site().load(row);
+    }
+    return h;
+  }
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_demagnetization(Stencil const& stencil, Vector h) const {
     if (has_layers | has_stored) [[unlikely]] {
       if (has_layers) h = h + layers.field(stencil);
       if (has_stored) h = h + stored.field(stencil);
     }
-    if constexpr (requires { stencil.site().load(row); })
-      if (row.data) h = h + stencil.site().load(row);
     return h;
   }
 };
@@ -203,11 +247,12 @@ struct OwnOfSites {
   cayspin::detail::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data
   bool precession = true;
 
+  KOKKOS_FORCEINLINE_FUNCTION bool any() const { return rates.data || dampings.data; }
   /// A, where `h` is H with all terms.
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> of(Site const& site, Vec3<Value> const& m,
                                              Vec3<Value> const& h) const {
-    if (!rates.data && !dampings.data) [[likely]]
+    if (!any()) [[likely]]
       return h;
     auto a = h;
     if (dampings.data) {

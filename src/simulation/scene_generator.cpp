@@ -3,6 +3,7 @@
 
 #include "dear_method.hpp"
 #include "space.hpp"
+#include "terms_along_row.hpp"
 
 #include <cayspin/io/scene.hpp>
 
@@ -11,6 +12,58 @@
 #include <utility>
 
 namespace cayspin::simulation {
+
+namespace {
+
+template <bool TurningAlone, class Real>
+struct StoreField {
+  SceneFieldNow<Real> const& terms;
+  cayspin::detail::RowFields<Real> fields;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Stencil const& stencil, std::ptrdiff_t i) const {
+    auto h = TurningAlone ? terms.turning_field(stencil) : terms.field(stencil);
+    if (terms.along_rows.evaluate) h = h + fields.template load<typename Stencil::value_type>(i);
+    fields.store(h, i);
+  }
+};
+
+template <class Bodies, class Real>
+struct StoreGenerator {
+  Bodies const& bodies;
+  cayspin::detail::RowFields<Real> fields;
+
+  template <class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Stencil const& stencil, std::ptrdiff_t i) const {
+    fields.store(bodies(stencil), i);
+  }
+};
+
+}  // namespace
+
+template <class Real>
+void SceneFieldNow<Real>::find_row_ends(cayspin::detail::RowOfSpins<Real> const& spins,
+                                        std::int32_t begin, std::int32_t end,
+                                        cayspin::detail::RowFields<Real> const& fields,
+                                        bool turning_alone) const {
+  if (along_rows.is_whole) return;
+  RowPiece<Real> const piece{spins, begin, end, fields};
+  if (turning_alone)
+    piece.for_each_at_ends(StoreField<true, Real>{*this, fields});
+  else
+    piece.for_each_at_ends(StoreField<false, Real>{*this, fields});
+}
+
+template <class Spins>
+void SceneGeneratorNow<Spins>::find_row_ends(
+    cayspin::detail::RowOfSpins<typename Spins::value_type> const& row, std::int32_t begin,
+    std::int32_t end, cayspin::detail::RowFields<typename Spins::value_type> const& fields,
+    bool turning_alone) const {
+  if (is_llg) return llg.field().find_row_ends(row, begin, end, fields, turning_alone);
+  using Real = typename Spins::value_type;
+  RowPiece<Real>{row, begin, end, fields}.for_each(
+      StoreGenerator<decltype(bodies), Real>{bodies, fields});
+}
 
 template <class Spins>
 SceneField<Spins> field_of(io::Scene const& scene, Lattice const& lattice, bool has_dear) {
@@ -52,6 +105,11 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
     LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
     SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies, bool is_llg) const {
   SceneGeneratorNow<Spins> now{llg, bodies, is_llg, orthogonal_};
+  if (!is_llg) {
+    auto field = llg.field();
+    field.along_rows = {.is_whole = true};
+    now.llg = LandauLifshitz(field, 0);
+  }
   if (auto const& pass = llg_.field().pass(); pass && !alone_) now.own = pass->own_of_sites();
   return now;
 }
@@ -68,8 +126,7 @@ template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_for_rows(Exec const& exec,
                                                                  Spins const& spins,
                                                                  double t) const {
-  auto const llg = llg_.prepare_for_rows(exec, spins, t);
-  return now(llg, bodies_.prepare(exec, spins, t), is_llg_ && !llg.part().along_rows.is_whole);
+  return now(llg_.prepare_for_rows(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_);
 }
 
 template <class Spins>
@@ -105,6 +162,7 @@ CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, float)
 
 #define CAYSPIN_INSTANTIATE(Space, Real)                                               \
   template class SceneGenerator<SpinField<Real, Space::memory_space>>;                 \
+  template struct SceneGeneratorNow<SpinField<Real, Space::memory_space>>;             \
   template SceneField<SpinField<Real, Space::memory_space>> field_of(io::Scene const&, \
                                                                      Lattice const&, bool);
 CAYSPIN_FOR_EACH_SPACE(CAYSPIN_INSTANTIATE, double)

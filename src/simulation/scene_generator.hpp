@@ -22,38 +22,49 @@ template <class Spins>
 struct SceneGeneratorNow {
   LandauLifshitz<SceneFieldNow<typename Spins::value_type>> llg;
   SceneBodiesNow<typename SceneBodies<Spins>::Many> bodies;
-  bool is_llg, orthogonal;  // is_llg: and stages have terms of H compiled in
+  bool is_llg, orthogonal;
   OwnOfSites<typename Spins::value_type> own = {};
+  bool is_changed = false;  // set by begin_row: A in H is not yet all
 
   static constexpr int row_fields = cayspin::detail::row_fields<decltype(llg)>;
   void begin_row(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
                  std::int32_t begin, std::int32_t end,
                  cayspin::detail::RowFields<typename Spins::value_type> const& fields) {
     llg.begin_row(row, begin, end, fields);
+    is_changed = orthogonal || own.any();
   }
+  /// The A of bodies it finds whole, in place of H.
+  void find_row_ends(cayspin::detail::RowOfSpins<typename Spins::value_type> const& row,
+                     std::int32_t begin, std::int32_t end,
+                     cayspin::detail::RowFields<typename Spins::value_type> const& fields,
+                     bool turning_alone) const;
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    Vec3<Value> const a =
-        own.of(stencil.site(), stencil.center(), is_llg ? llg(stencil) : rare(stencil));
-    return orthogonal ? cayspin::detail::orthogonal_part(a, stencil.center()) : a;
+    if constexpr (cayspin::detail::is_along_row<Stencil>)
+      return changed_along_row<false>(
+          stencil, llg.in_field(stencil, llg.field().template field_along_row<false>(stencil)));
+    else
+      return changed(stencil, is_llg ? llg(stencil) : bodies(stencil));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
       Stencil const& stencil) const {
-    return own.of(stencil.site(), stencil.center(),
-                  is_llg ? llg.turning_part(stencil) : rare(stencil));
+    if constexpr (cayspin::detail::is_along_row<Stencil>) {
+      return changed_along_row<true>(
+          stencil, llg.in_field(stencil, llg.field().template field_along_row<true>(stencil)));
+    } else {
+      return own.of(stencil.site(), stencil.center(),
+                    is_llg ? llg.turning_part(stencil) : bodies(stencil));
+    }
   }
-  /// Of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
+  /// A of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
   /// rigid body is its own.
   template <class Spin, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
                                                        Vec3<Value> const& neighbor_field) const {
-    Vec3<Value> const a = own.of(spin.site(), spin.center(),
-                                 is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin));
-    return orthogonal ? cayspin::detail::orthogonal_part(a, spin.center()) : a;
+    return changed(spin, is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin));
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
@@ -104,14 +115,19 @@ struct SceneGeneratorNow {
   }
 
  private:
-  /// Of bodies, or of an H that begin_row has found whole.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> rare(
-      Stencil const& stencil) const {
-    auto const& field = llg.part();
-    if constexpr (requires { stencil.site().load(field.row); })
-      if (field.along_rows.is_whole) return llg.in_field(stencil, stencil.site().load(field.row));
-    return bodies(stencil);
+  template <bool TurningAlone, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector changed_along_row(Stencil const& stencil, Vector a) const {
+    if (is_changed) [[unlikely]] {
+      a = own.of(stencil.site(), stencil.center(), a);
+      if (!TurningAlone && orthogonal) a = cayspin::detail::orthogonal_part(a, stencil.center());
+    }
+    return a;
+  }
+  /// A by the numbers of sites, and without its part along the spin where that is removed.
+  template <class Spin, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector changed(Spin const& spin, Vector const& a) const {
+    Vector const own_a = own.of(spin.site(), spin.center(), a);
+    return orthogonal ? cayspin::detail::orthogonal_part(own_a, spin.center()) : own_a;
   }
 };
 

@@ -23,7 +23,7 @@ class SceneMinimizer {
 
   explicit SceneMinimizer(Spins const& like) : minimizer_(like) {}
 
-  /// Of reduced numbers, as cayspin::minimize. Throws NumbersFailed for a field that is not finite.
+  /// As cayspin::minimize, in reduced numbers. Throws NumbersFailed for a field that is not finite.
   Minimum minimize(Space const& exec, io::Scene const& scene, SceneField<Spins> const& field,
                    Spins& spins, MinimizeOptions const& options);
 

@@ -76,7 +76,7 @@ class SceneRun {
   std::int64_t steps() const { return number_; }
   double time() const { return reduced_time() * scene_.units.time; }
   std::int64_t evaluations() const { return evaluations_; }  // of the generator over all sites
-  /// Of an adaptive method: steps taken, and those thrown away.
+  /// Steps that an adaptive method took, and those that it threw away.
   std::int64_t own_steps() const { return own_steps_; }
   std::int64_t rejected_steps() const { return rejected_; }
   double step_seconds() const { return step_seconds_; }  // stepping alone

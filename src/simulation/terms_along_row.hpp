@@ -26,10 +26,15 @@ struct RowPiece {
   template <class Visit>
   KOKKOS_FORCEINLINE_FUNCTION void for_each(Visit const visit) const {
     constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
-    std::ptrdiff_t const nx = row.row.nx, from = begin, to = end;
-    std::ptrdiff_t const last = (nx + lanes - 1) / lanes * lanes - lanes;
+    std::ptrdiff_t const from = begin, to = end, last = (row.row.nx - 1) / lanes * lanes;
     along<false>(visit, std::max(from, lanes), std::min(to, last), lanes);
-    along<true>(visit, from > 0 ? last : 0, to, last > 0 ? last : lanes);
+    for_each_at_ends(visit);
+  }
+  template <class Visit>
+  KOKKOS_FORCEINLINE_FUNCTION void for_each_at_ends(Visit const& visit) const {
+    constexpr std::ptrdiff_t lanes = cayspin::detail::host_lanes<Real>;
+    std::ptrdiff_t const last = (row.row.nx - 1) / lanes * lanes;
+    along<true>(visit, begin > 0 ? last : 0, end, last > 0 ? last : lanes);
   }
 
  private:
@@ -75,7 +80,7 @@ struct AddedTerms {
     if (terms.anisotropies > 0) return run_alone(terms.anisotropies_of_sites[0], piece);
     if (terms.cubics_of_cell > 0) return run_alone(terms.cubics[0], piece);
     if (terms.has_vacancies) return run(Loop{*this, piece.fields}, piece);
-    if (terms.exchange_of_sites.there()) return run_alone(terms.exchange_of_sites, piece);
+    if (terms.exchange_of_sites.any()) return run_alone(terms.exchange_of_sites, piece);
     if (terms.dmi_of_sites.constants.data) return run_alone(terms.dmi_of_sites, piece);
     if (terms.has_zhang_li) return run_alone(terms.zhang_li, piece);
     if (terms.has_slonczewski) return run_alone(terms.slonczewski, piece);
@@ -86,9 +91,8 @@ struct AddedTerms {
   int count() const {
     return int{terms.usual.has_stored} + int{terms.usual.has_layers} + terms.anisotropies +
            terms.cubics_of_cell + int{missing.exchange.data != nullptr} +
-           int{terms.exchange_of_sites.there()} +
-           int{terms.dmi_of_sites.constants.data != nullptr} + int{terms.has_zhang_li} +
-           int{terms.has_slonczewski};
+           int{terms.exchange_of_sites.any()} + int{terms.dmi_of_sites.constants.data != nullptr} +
+           int{terms.has_zhang_li} + int{terms.has_slonczewski};
   }
 
   struct Loop {
@@ -146,6 +150,7 @@ struct AddedTerms {
 template <class Real>
 struct WholeTerms {
   PassTerms<Real> terms;
+  bool lacks_local = false;  // couplings alone
 
   struct Loop {
     PassTerms<Real> const& terms;
@@ -175,6 +180,7 @@ struct WholeTerms {
   void along(RowPiece<Real> const& piece) const {
     if (terms.has_pairs)
       terms.pairs.evaluate_row(piece.row.row, piece.begin, piece.end, piece.fields);
+    if (lacks_local) return;
     terms.has_pairs&& terms.has_few() ? run_few(piece) : run(piece);
   }
 

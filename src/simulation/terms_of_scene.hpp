@@ -74,7 +74,14 @@ class FieldInPass<Spins>::Terms {
            });
   }
 
-  /// Of `usual`, what is compiled into stages; none where they load the whole H.
+  /// Has each site of a cell the same axes, and a moment and a gyromagnetic ratio of 1?
+  bool sites_are_alike() const {
+    return std::ranges::all_of(cell_, [&](auto const& site) {
+      return site.gyromagnetic == 1 && site.per_moment == 1 && site.quadratic == cell_[0].quadratic;
+    });
+  }
+
+  /// What is compiled into stages of `usual`; none where they load the whole H.
   std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual) const;
 
  private:
@@ -82,7 +89,6 @@ class FieldInPass<Spins>::Terms {
 
   void add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
                             std::vector<double> moves);
-  void add_bonds(ScalarField<Real, Memory> const& constants);
   void add_vacancies(io::Scene const& scene);
 
   template <class Element>
@@ -103,8 +109,7 @@ class FieldInPass<Spins>::Terms {
   bool has_lattice_terms_ = false, has_pairs_, has_vacancies_, is_affine_;
   std::optional<ScalarField<Real, Memory>> moves_, dampings_, dmi_of_sites_;
   std::optional<ScalarField<Real, Memory>> rates_;  // moves_ over Gilbert's 1 + damping^2
-  ExchangeOfBonds<Real> exchange_of_sites_ = {};
-  std::vector<ScalarField<Real, Memory>> bonds_;
+  std::optional<SiteDependentExchange<Real, Memory>> exchange_of_sites_;
   Vec3<double> dmi_vectors_[3] = {};
   std::vector<ScalarField<Real, Memory>> constants_of_axes_;
   Table<AnisotropyOfSites<Real>> anisotropies_;
@@ -116,7 +121,7 @@ class FieldInPass<Spins>::Terms {
   std::vector<double> noise_of_sites_;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
-  // Of the stages that are being run: those of a sweep are so together.
+  // The terms of the stages that are being run: those of a sweep are so together.
   mutable std::array<std::variant<std::monostate, AddedTerms<Real>, WholeTerms<Real>>,
                      cayspin::detail::SweepPlan::most_stages>
       along_rows_;
@@ -174,7 +179,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
 
   add_numbers_of_sites(scene, box, std::move(moves));
 
-  // Of the energy of a site, to which its round-off is proportional.
+  // The round-off of a site's energy is proportional to this.
   auto const uniform = io::without_numbers_of_sites(scene.field);
   io::for_each_lattice_term(uniform, [&](auto const& term) {
     if (!term) return;
@@ -207,23 +212,6 @@ void FieldInPass<Spins>::Terms::add_vacancies(io::Scene const& scene) {
 }
 
 template <class Spins>
-void FieldInPass<Spins>::Terms::add_bonds(ScalarField<Real, Memory> const& constants) {
-  typename Memory::execution_space const exec;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!lattice_.has_neighbors(axis)) continue;
-    auto const& bonds = bonds_.emplace_back("FieldInPass::bonds", lattice_);
-    double const spacing = lattice_.spacing[static_cast<std::size_t>(axis)];
-    cayspin::detail::for_each_site<Real>(
-        exec, "cayspin::FieldInPass::find_bonds", bonds.layout(),
-        FindBonds<Real>{constants.array(), bonds.output(false), axis, 1 / (spacing * spacing)},
-        bonds.layout().own);
-    cayspin::detail::update_ghosts(exec, lattice_, bonds);
-    exchange_of_sites_.bonds[axis] = bonds.array();
-  }
-  exec.fence("cayspin::FieldInPass: bonds found");
-}
-
-template <class Spins>
 void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io::SiteBox const& box,
                                                      std::vector<double> moves) {
   auto const& field = scene.field;
@@ -238,8 +226,7 @@ void FieldInPass<Spins>::Terms::add_numbers_of_sites(io::Scene const& scene, io:
     double const bonds = field.exchange->energy_magnitude(lattice_);
     auto const constants = read("exchange", field.exchange_factors, "field.exchange", bonds);
     try {
-      SiteDependentExchange<Real, Memory>{constants};
-      add_bonds(constants);
+      exchange_of_sites_.emplace(constants);
     } catch (std::invalid_argument const& error) {
       std::string_view const message = error.what();
       throw io::scene_error(scene, field.exchange_factors.key_or("field.exchange"),

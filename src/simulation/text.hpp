@@ -17,7 +17,7 @@ std::string bytes_text(std::int64_t bytes);
 std::string duration_text(double seconds);
 /// "1 step", "2 steps"
 std::string counted(std::int64_t count, std::string_view what);
-/// Of a lattice as TrajectoryHeader has it: "4 x 3 x 2", or "4 x 3 x 2 cells of 3 sites".
+/// The cells of a lattice as TrajectoryHeader has it: "4 x 3 x 2", or "4 x 3 x 2 cells of 3 sites".
 std::string cells_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites);
 /// The same, or "4 x 3 x 2 sites".
 std::string sites_text(std::array<std::int64_t, 3> const& shape, std::int64_t cell_sites);

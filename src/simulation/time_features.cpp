@@ -54,7 +54,7 @@ std::optional<std::vector<Jump>> find_jumps(TimeSamples& samples, std::int64_t m
     }
   }
   std::ranges::sort(jumps, {}, &Jump::before);
-  // Of several components at once, and two that lie too close to step between them.
+  // Several components jump at once, and two jumps may lie too close to step between them.
   std::vector<Jump> apart;
   for (auto const& jump : jumps)
     if (!apart.empty() && jump.before <= apart.back().after)

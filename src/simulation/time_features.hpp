@@ -52,9 +52,9 @@ struct FeatureSearch {
 /// between jumps until polynomials follow the vectors in each part.
 TimeFeatures find_features(std::span<TimeDependent const> vectors, FeatureSearch const& search);
 
-/// Of a scene's fields and currents up to its end, for adaptive steps that keep to `error`, or for
-/// the scene's equal steps where none is given. Empty where nothing depends on t. Later calls for
-/// the same fields are fast.
+/// The features of a scene's fields and currents up to its end, for adaptive steps that keep to
+/// `error`, or for the scene's equal steps where none is given. Empty where nothing depends on t.
+/// Later calls for the same fields are fast.
 std::shared_ptr<TimeFeatures const> features_of(io::Scene const& scene,
                                                 std::optional<double> error);
 

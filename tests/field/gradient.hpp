@@ -19,7 +19,7 @@ class GradientTest : public ::testing::Test {
   using Spins = typename Backend::Spins;
 
   /// `term`: a field term or EffectiveField. Lengths are not kept: E and H hold for all numbers.
-  /// `precision`: epsilon of the energy, which a field stored in float limits.
+  /// `precision`: epsilon of the energy, which a field or bonds stored in float limit.
   template <class Term>
   static void check(std::string const& what, Lattice const& lattice, Term const& term,
                     ByHand const& by_hand, double t = 0, double precision = epsilon<double>) {

@@ -3,6 +3,9 @@
 #include "../support/coefficients.hpp"
 #include "gradient.hpp"
 
+#include <cayspin/field/field_of_moments.hpp>
+
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -132,7 +135,8 @@ TYPED_TEST(Vacancies, HaveNoFieldAndNoEnergy) {
                      sum -= n[site] * (0.35 * spin.z * spin.z + dot(spin, applied));
                    }
                    return sum;
-                 }});
+                 }},
+                0, epsilon<typename TypeParam::Real>);
   }
 }
 
@@ -145,6 +149,45 @@ TYPED_TEST(Vacancies, WithoutAnyNothingChanges) {
   EXPECT_EQ(evaluated(this->exec, same, spins), evaluated(this->exec, field, spins));
   EXPECT_EQ(energy(this->exec, same, spins).value, energy(this->exec, field, spins).value);
   EXPECT_EQ(energy(this->exec, same, spins).magnitude, energy(this->exec, field, spins).magnitude);
+}
+
+// Of two sublattices that are coupled along x and to each other, one has a moment of 0.
+TYPED_TEST(Vacancies, AMomentOfZeroIsNoSpin) {
+  using Spins = typename TypeParam::Spins;
+  using Memory = typename TypeParam::MemorySpace;
+  using Real = typename TypeParam::Real;
+  auto lattice = Lattice::cubic(19, 2, 4);
+  lattice.cell_sites = 2;
+  Vec3<double> const applied{0.3, -0.2, 0.5};
+  std::vector const moments{2.0, 0.0};
+  FieldOfMoments const field(
+      lattice,
+      EffectiveField(PairCouplings<Memory>(lattice, {Coupling::of({0, 0}, {1, 0, 0}, 0.7),
+                                                     Coupling::of({1, 1}, {1, 0, 0}, 0.4),
+                                                     Coupling::of({0, 1}, {0, 0, 0}, 1.3)}),
+                     ZeemanOfMoments<Memory>(lattice, applied, moments)),
+      moments, {1.5, 0.9});
+  auto m = random_directions(lattice.sites(), 64);
+  for (std::int64_t site = 0; site < lattice.sites(); ++site)
+    if (site / 38 % 2 == 1) std::fill_n(m.begin() + 3 * site, 3, 0.0);
+  auto const spins = spins_of<Spins>(lattice, m);
+  auto const h = evaluated(this->exec, field, spins);
+  m = numbers_of(spins);
+  for (std::int64_t site = 0; site < lattice.sites(); ++site) {
+    SCOPED_TRACE(site);
+    Vec3<double> expected{0, 0, 0};
+    if (site / 38 % 2 == 0) {
+      if (site % 19 > 0) expected = expected + 0.7 * at(m, site - 1);
+      if (site % 19 < 18) expected = expected + 0.7 * at(m, site + 1);
+      expected = (1.5 / 2) * (expected + 2.0 * applied);
+    }
+    expect_near(at(h, site), expected, 16 * epsilon<Real>);
+  }
+  std::vector const none{1.0, -0.5};
+  EXPECT_THROW(FieldOfMoments(lattice, EffectiveField<>(), none), std::invalid_argument);
+  EXPECT_THROW(ZeemanOfMoments<Memory>(lattice, applied, none), std::invalid_argument);
+  EXPECT_THROW(FieldOfMoments(lattice, EffectiveField<>(), moments, {1.0, 0.0}),
+               std::invalid_argument);
 }
 
 TYPED_TEST(Vacancies, MagnetizationOfOccupiedSites) {

@@ -154,8 +154,12 @@ KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
   return (a + shift) - shift;
 }
 
+/// `a` where it is NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
+#if defined(__AVX2__)
+  if constexpr (lanes_of<Value> > 1) return Kokkos::max(b, a);  // the second where one is NaN
+#endif
   return select<Value>(a < b, b, a);
 }
 

@@ -15,6 +15,9 @@
 // where `row` has the spins of the stage and their neighbours. Where the term says
 //   bool rows_need_time_alone(exec, spins)
 // it looks at no other spins, and a sweep need not have them in a field.
+// What a stage is made for may find the packs at the ends of rows by itself, so that the stage's
+// arithmetic is compiled once, for packs between them:
+//   void find_row_ends(row, begin, end, fields, turning_alone) const    after begin_row
 namespace cayspin::inline v0_1::detail {
 
 /// A row, its spins, and those beside it along y and z.
@@ -57,6 +60,12 @@ class RowFieldMemory {
  private:
   alignas(cache_line_bytes) Real memory_[std::size_t{3 * Fields * RowFields<Real>::stride}];
 };
+
+template <class Generator, class Real>
+concept FindsRowEnds =
+    requires(Generator const& generator, RowOfSpins<Real> const& row, RowFields<Real> fields) {
+      generator.find_row_ends(row, std::int32_t{}, std::int32_t{}, fields, true);
+    };
 
 template <class Term>
 inline constexpr int row_fields = 0;

@@ -51,6 +51,7 @@ class SitesOfRow {
   using value_type = Value;
   using scalar_type = scalar_t<Value>;
   static constexpr int lanes = lanes_of<Value>;
+  static constexpr bool is_between_ends = !AtEdge;
 
   KOKKOS_FORCEINLINE_FUNCTION SitesOfRow(Row const& row, std::ptrdiff_t x) : row_(row), x_(x) {}
 

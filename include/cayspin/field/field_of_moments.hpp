@@ -38,19 +38,25 @@ inline void require_positive(char const* who, std::vector<double> const& numbers
     if (!(number > 0) || !std::isfinite(number))
       throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
 }
+/// Moments, of which 0 is that of a site without a spin.
+inline void require_moments(char const* who, std::vector<double> const& moments) {
+  for (double const moment : moments)
+    if (!(moment >= 0) || !std::isfinite(moment))
+      throw std::invalid_argument(std::string(who) +
+                                  ": a moment must be finite and positive, or 0 without a spin");
+}
 
 /// A number for each site of a cell, in memory.
 template <class MemorySpace>
 class CellNumbers {
  public:
-  /// Throws std::invalid_argument unless there is a positive number for each site of a cell.
+  /// Throws std::invalid_argument unless there is a number for each site of a cell.
   CellNumbers(char const* who, Lattice const& lattice, std::vector<double> const& numbers)
       : view_(table_of<MemorySpace>(who, numbers)) {
     require_whole(who, lattice);
     if (static_cast<std::int64_t>(numbers.size()) != lattice.cell_sites)
       throw std::invalid_argument(std::string(who) +
                                   ": there is not one number for each site of a cell");
-    require_positive(who, numbers);
   }
 
   NumbersOfCell numbers() const { return {view_.data(), static_cast<std::int32_t>(view_.size())}; }
@@ -138,7 +144,9 @@ struct AppliedToMoments {
 
 /// The field of spins that have a moment mu and a gyromagnetic ratio g each, by sites of a
 /// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms have to
-/// stand inside; an applied field is a ZeemanOfMoments there. What conserves E without damping
+/// stand inside; an applied field is a ZeemanOfMoments there. A moment of 0 is no spin: H is 0 on
+/// these sites, whose spins are to be zero vectors, by which PairCouplings see none there; lattice
+/// terms do so in a FieldWithVacancies. What conserves E without damping
 /// conserves it here, but H is not the derivative of E: EnergyControl and what else follows an
 /// energy by its derivative refuse it, and take the field inside.
 template <class Field, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
@@ -147,8 +155,8 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
   static constexpr int energy_terms = detail::energy_terms<Field>;
   static constexpr bool is_conservative = false;
 
-  /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a positive number
-  /// for each site of a cell.
+  /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a number for each
+  /// site of a cell, and moments not negative and gyromagnetic ratios positive.
   FieldOfMoments(Lattice const& lattice, Field field, std::vector<double> const& moments,
                  std::vector<double> const& gyromagnetic = {})
       : lattice_(lattice),
@@ -176,11 +184,12 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
     if (!gyromagnetic.empty() && gyromagnetic.size() != moments.size())
       throw std::invalid_argument(
           "cayspin::FieldOfMoments: there is not a gyromagnetic ratio for each moment");
-    detail::require_positive("cayspin::FieldOfMoments", moments);
+    detail::require_moments("cayspin::FieldOfMoments", moments);
     detail::require_positive("cayspin::FieldOfMoments", gyromagnetic);
     auto made = moments;
     for (std::size_t site = 0; site < made.size(); ++site)
-      made[site] = (gyromagnetic.empty() ? 1 : gyromagnetic[site]) / moments[site];
+      made[site] =
+          moments[site] == 0 ? 0 : (gyromagnetic.empty() ? 1 : gyromagnetic[site]) / moments[site];
     return made;
   }
 
@@ -199,12 +208,14 @@ class ZeemanOfMoments : public detail::PreparedOnce {
  public:
   static constexpr bool is_local = true;
 
-  /// Throws std::invalid_argument unless there is a positive moment for each site of a cell, and
-  /// when the applied field is not finite.
+  /// Throws std::invalid_argument unless there is a moment for each site of a cell, none of them
+  /// negative, and when the applied field is not finite.
   ZeemanOfMoments(Lattice const& lattice, Vec3<double> const& applied,
                   std::vector<double> const& moments)
       : applied_(detail::finite(applied, "cayspin::ZeemanOfMoments: the applied field")),
-        moments_("cayspin::ZeemanOfMoments", lattice, moments) {}
+        moments_("cayspin::ZeemanOfMoments", lattice, moments) {
+    detail::require_moments("cayspin::ZeemanOfMoments", moments);
+  }
 
   template <class Exec, class Spins>
   detail::AppliedToMoments prepare(Exec const&, Spins const&, double) const {

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/for_each_site.hpp>
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/optional_members.hpp>
+#include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -13,88 +17,107 @@ namespace cayspin::inline v0_1 {
 
 namespace detail {
 
-/// H_n = sum of A_nq (m_q - m_n) / spacing^2, with 1 / spacing^2 of each axis or 0.
+/// H_n = sum of A_nq (m_q - m_n) / spacing^2, with A_nq / spacing^2 of the bond to the next site
+/// along each axis; without data: none along that axis.
 template <class Real>
 struct ExchangeOfSites {
   static constexpr int degree = 2;  // H is linear in the spins
-  SiteArray<Real, 1> constants;
-  double inverse_square[3];
+  SiteArray<Real, 1> bonds[3] = {};
+
+  KOKKOS_FORCEINLINE_FUNCTION bool any() const {
+    return bonds[0].data || bonds[1].data || bonds[2].data;
+  }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    Value const own = stencil.site().load(constants);
-    auto h = zero<Value>();
-    if (inverse_square[0] != 0) h = differences<0>(stencil, own, h);
-    if (inverse_square[1] != 0) h = differences<1>(stencil, own, h);
-    if (inverse_square[2] != 0) h = differences<2>(stencil, own, h);
+    auto h = zero<ValueOf<Stencil>>();
+    if (bonds[0].data) h = differences<0>(stencil, h);
+    if (bonds[1].data) h = differences<1>(stencil, h);
+    if (bonds[2].data) h = differences<2>(stencil, h);
     return h;
   }
 
   /// Sum of A_nq m_q / spacing^2: H without a multiple of the spin itself.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    Value const own = stencil.site().load(constants);
-    auto h = zero<Value>();
-    if (inverse_square[0] != 0) h = neighbor_sum<0>(stencil, own, h);
-    if (inverse_square[1] != 0) h = neighbor_sum<1>(stencil, own, h);
-    if (inverse_square[2] != 0) h = neighbor_sum<2>(stencil, own, h);
+    auto h = zero<ValueOf<Stencil>>();
+    if (bonds[0].data) h = neighbor_sum<0>(stencil, h);
+    if (bonds[1].data) h = neighbor_sum<1>(stencil, h);
+    if (bonds[2].data) h = neighbor_sum<2>(stencil, h);
     return h;
   }
 
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
 
+  /// Each site carries half of each of its bonds.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    Value const own = stencil.site().load(constants);
-    Value e(0);
-    if (inverse_square[0] != 0) e = bonds<0>(stencil, own, e);
-    if (inverse_square[1] != 0) e = bonds<1>(stencil, own, e);
-    if (inverse_square[2] != 0) e = bonds<2>(stencil, own, e);
+    ValueOf<Stencil> e(0);
+    if (bonds[0].data) e = energies<0>(stencil, e);
+    if (bonds[1].data) e = energies<1>(stencil, e);
+    if (bonds[2].data) e = energies<2>(stencil, e);
     return e;
   }
 
  private:
-  /// The constant of the bond to a neighbour over the spacing squared, times `factor`; the same
-  /// bits from either end.
-  template <int Axis, int Direction, class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Value bond(Site const& site, Value const& own,
-                                         double factor = 1) const {
-    Value const other = site.template neighbor<Axis, Direction>(constants, own);
-    Value const sum = own + other;
-    Value const mean = Value(2) * (own * other) / select<Value>(sum == Value(0), Value(1), sum);
-    return coefficient<Value>(factor * inverse_square[Axis], site) * mean;
+  // The bond to the previous site is that site's bond to the next; past an open end it is of no
+  // matter, as what it multiplies is zero there.
+  template <int Axis, class Site, class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value bond_back(Site const& site, Value const& on) const {
+    return site.template neighbor<Axis, 0>(bonds[Axis], on);
+  }
+
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector differences(Stencil const& stencil, Vector const& sum) const {
+    auto const& site = stencil.site();
+    auto const on = site.load(bonds[Axis]), back = bond_back<Axis>(site, on);
+    auto const to_previous = stencil.template previous<Axis>() - stencil.center();
+    auto const to_next = stencil.template next<Axis>() - stencil.center();
+    return multiply_add(on, to_next, multiply_add(back, to_previous, sum));
+  }
+
+  template <int Axis, class Stencil, class Vector>
+  KOKKOS_FORCEINLINE_FUNCTION Vector neighbor_sum(Stencil const& stencil, Vector const& sum) const {
+    auto const& site = stencil.site();
+    auto const on = site.load(bonds[Axis]), back = bond_back<Axis>(site, on);
+    auto const none = zero<ValueOf<Stencil>>();
+    return multiply_add(on, stencil.template next<Axis>(none),
+                        multiply_add(back, stencil.template previous<Axis>(none), sum));
   }
 
   template <int Axis, class Stencil, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> differences(Stencil const& stencil, Value const& own,
-                                                      Vec3<Value> const& sum) const {
-    auto const back = stencil.template previous<Axis>() - stencil.center();
-    auto const on = stencil.template next<Axis>() - stencil.center();
-    return multiply_add(bond<Axis, 1>(stencil.site(), own), on,
-                        multiply_add(bond<Axis, 0>(stencil.site(), own), back, sum));
+  KOKKOS_FORCEINLINE_FUNCTION Value energies(Stencil const& stencil, Value const& sum) const {
+    auto const& site = stencil.site();
+    auto const on = site.load(bonds[Axis]), back = bond_back<Axis>(site, on);
+    auto const to_previous = stencil.template previous<Axis>() - stencil.center();
+    auto const to_next = stencil.template next<Axis>() - stencil.center();
+    return sum + Value(0.25) * (on * dot(to_next, to_next) + back * dot(to_previous, to_previous));
+  }
+};
+
+/// Finds the constants of the bonds to next sites over the spacing squared.
+template <class Real>
+struct FindBonds {
+  SiteArray<Real, 1> constants;
+  OutputArray<Real, 1> bonds;
+  int axis;
+  double inverse_square;
+
+  template <class Site>
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
+    auto const own = site.load(constants);
+    site.store(axis == 0   ? mean(own, site.template neighbor<0, 1>(constants, own))
+               : axis == 1 ? mean(own, site.template neighbor<1, 1>(constants, own))
+                           : mean(own, site.template neighbor<2, 1>(constants, own)),
+               bonds);
   }
 
-  template <int Axis, class Stencil, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> neighbor_sum(Stencil const& stencil, Value const& own,
-                                                       Vec3<Value> const& sum) const {
-    auto const none = zero<Value>();
-    return multiply_add(bond<Axis, 1>(stencil.site(), own), stencil.template next<Axis>(none),
-                        multiply_add(bond<Axis, 0>(stencil.site(), own),
-                                     stencil.template previous<Axis>(none), sum));
-  }
-
-  // Each site carries half of each of its bonds.
-  template <int Axis, class Stencil, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Value bonds(Stencil const& stencil, Value const& own,
-                                          Value const& sum) const {
-    auto const back = stencil.template previous<Axis>() - stencil.center();
-    auto const on = stencil.template next<Axis>() - stencil.center();
-    return multiply_add(
-        bond<Axis, 1>(stencil.site(), own, 0.25), dot(on, on),
-        multiply_add(bond<Axis, 0>(stencil.site(), own, 0.25), dot(back, back), sum));
+ private:
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION Value mean(Value const& own, Value const& other) const {
+    Value const sum = own + other, none(0);
+    return as_value<Value>(2 * inverse_square) * (own * other) /
+           select<Value>(sum == none, Value(1), sum);
   }
 };
 
@@ -104,14 +127,13 @@ struct ExchangeOfSites {
 /// and q is the harmonic mean A_nq = 2 A_n A_q / (A_n + A_q), that of two half cells in series: it
 /// keeps A dm/dx continuous where A jumps, and a site with A = 0 has no bonds.
 /// H_n = sum over neighbours of A_nq (m_q - m_n) / spacing^2,
-/// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2.
+/// E = sum over bonds of (A_nq / 2) |m_q - m_n|^2 / spacing^2. A_nq / spacing^2 is kept as a Real.
 template <class Real, class MemorySpace>
 class SiteDependentExchange : public detail::PreparedOnce {
-  using Prepared = detail::ExchangeOfSites<Real>;
-
  public:
-  /// Spacings and boundaries are those of the constants' lattice. Throws std::invalid_argument when
-  /// a constant is not finite, or when some are positive and some negative.
+  /// Spacings and boundaries are those of the constants' lattice. The bonds are found here, once:
+  /// of constants that change later make another term. Throws std::invalid_argument when a constant
+  /// is not finite, or when some are positive and some negative.
   explicit SiteDependentExchange(ScalarField<Real, MemorySpace> constants)
       : constants_(std::move(constants)) {
     auto const signs =
@@ -120,6 +142,7 @@ class SiteDependentExchange : public detail::PreparedOnce {
       throw std::invalid_argument(
           "cayspin::SiteDependentExchange: the constants must have one sign, as the harmonic mean "
           "of a positive and a negative one is no bond");
+    find_bonds();
   }
 
   template <class Spins>
@@ -128,17 +151,36 @@ class SiteDependentExchange : public detail::PreparedOnce {
   }
 
   template <class Exec, class Spins>
-  Prepared prepare(Exec const&, Spins const&, double) const {
-    auto const& lattice = constants_.lattice();
-    Prepared prepared{constants_.array(), {0, 0, 0}};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (lattice.shape[axis] > 1)
-        prepared.inverse_square[axis] = 1 / (lattice.spacing[axis] * lattice.spacing[axis]);
+  detail::ExchangeOfSites<Real> prepare(Exec const&, Spins const&, double) const {
+    return prepared();
+  }
+  /// For kernels, of all times alike.
+  detail::ExchangeOfSites<Real> prepared() const {
+    detail::ExchangeOfSites<Real> prepared;
+    for (int axis = 0; axis < 3; ++axis)
+      if (bonds_[axis]) prepared.bonds[axis] = bonds_[axis]->array();
     return prepared;
   }
 
  private:
+  void find_bonds() {
+    auto const& lattice = constants_.lattice();
+    typename MemorySpace::execution_space const exec;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!lattice.has_neighbors(axis)) continue;
+      auto const& bonds = bonds_[axis].emplace("SiteDependentExchange::bonds", lattice);
+      double const spacing = lattice.spacing[static_cast<std::size_t>(axis)];
+      detail::FindBonds<Real> const find{constants_.array(), bonds.output(false), axis,
+                                         1 / (spacing * spacing)};
+      detail::for_each_site<Real>(exec, "cayspin::SiteDependentExchange", bonds.layout(), find,
+                                  bonds.layout().own);
+      detail::update_ghosts(exec, lattice, bonds);
+    }
+    exec.fence("cayspin::SiteDependentExchange: bonds found");
+  }
+
   ScalarField<Real, MemorySpace> constants_;
+  std::optional<ScalarField<Real, MemorySpace>> bonds_[3];
 };
 
 }  // namespace cayspin::inline v0_1

@@ -195,7 +195,7 @@ struct Anisotropy {
   }
 };
 
-/// Of a cubic crystal: E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2), the m along its axes.
+/// Anisotropy of a cubic crystal: E = constant (a^2 b^2 + b^2 c^2 + c^2 a^2), the m along its axes.
 struct CubicAnisotropy {
   double constant = 0;  ///< Kc
   std::array<Triple, 2> axes =

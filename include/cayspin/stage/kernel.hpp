@@ -84,7 +84,7 @@ struct RungeKuttaStage {
   using value_type = Real;
   using RowArrays = StageArrays<Rows<Real>, Tableau::stages>;
   static constexpr int stages = Tableau::stages, stages_after = stages - 1 - StageIndex;
-  static constexpr bool last = Flow::last;
+  static constexpr bool last = Flow::last, turning_alone = needs_turning_alone<Update>;
   /// The stage after this one is at the step's end.
   static constexpr bool arrives = is_first_same_as_last<Tableau> && StageIndex == stages - 2;
 
@@ -156,7 +156,7 @@ struct RungeKuttaStage {
         at_the_end || requires(Isotropy const& sigma, Vector const& m) { sigma(m, m); },
         "This isotropy policy does not go with this stepper: Zero and Constant go with all on "
         "the group, FiniteDifference, Analytic and Connection with LieEuler.");
-    if constexpr (needs_turning_alone<Update>)
+    if constexpr (turning_alone)
       return turning_part(generator, stencil);
     else if constexpr (at_the_end)
       return evaluate(generator, stencil);

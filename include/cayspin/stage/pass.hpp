@@ -50,24 +50,28 @@ CAYSPIN_DETAIL_NOINLINE StagePlanes<Flow, Real> planes_of_fields(
 }
 
 /// Sites begin .. end - 1 of a row, whole packs. Those at the ends of the row have a loop of their
-/// own, so that the others ask nothing.
+/// own, so that the others ask nothing, but where the generator has found them.
 template <class Kernel>
 KOKKOS_FORCEINLINE_FUNCTION void run_along(Kernel const& kernel, PlanesOf<Kernel> const& planes,
                                            typename Kernel::RowArrays const& rows, Row const& row,
                                            std::ptrdiff_t begin, std::ptrdiff_t end) {
   using Real = typename Kernel::value_type;
   constexpr std::ptrdiff_t lanes = host_lanes<Real>;
-  std::ptrdiff_t const last = (row.nx + lanes - 1) / lanes * lanes - lanes;
-  std::ptrdiff_t const first_at_end = begin > 0 ? last : 0, to_last = last > 0 ? last : lanes;
-  std::ptrdiff_t const inner_begin = Kokkos::max(begin, lanes), inner_end = Kokkos::min(end, last);
+  constexpr bool finds_ends = FindsRowEnds<decltype(kernel.generator), Real>;
+  std::ptrdiff_t const last = (row.nx - 1) / lanes * lanes;
+  std::ptrdiff_t const inner_begin = finds_ends ? begin : Kokkos::max(begin, lanes);
+  std::ptrdiff_t const inner_end = finds_ends ? end : Kokkos::min(end, last);
   for (std::ptrdiff_t x = inner_begin; x < inner_end; x += lanes) {
     std::ptrdiff_t const here = opaque(x);
     if (planes.from_memory)
       for_each_input<typename Kernel::Flow>(rows, Prefetch<Real>{here + row.pitch});
     kernel(Site<Pack<Real>, false>(row, here), rows);
   }
-  for (std::ptrdiff_t x = first_at_end; x < end; x += to_last)
-    kernel(Site<Pack<Real>, true>(row, opaque(x)), rows);
+  if constexpr (!finds_ends) {
+    std::ptrdiff_t const first_at_end = begin > 0 ? last : 0, to_last = last > 0 ? last : lanes;
+    for (std::ptrdiff_t x = first_at_end; x < end; x += to_last)
+      kernel(Site<Pack<Real>, true>(row, opaque(x)), rows);
+  }
 }
 
 /// The one compiled body of a stage on host spaces: every caller gets the same bits.
@@ -89,7 +93,11 @@ CAYSPIN_DETAIL_NOINLINE void run_stage(Kernel const& kernel, PlanesOf<Kernel> co
       for (std::int32_t x = begin; x < end; x += sites_per_piece) {
         std::int32_t const after = Kokkos::min(x + sites_per_piece, end);
         local.generator.begin_row({row, rows.level}, x, after, memory.all());
-        run_along(local, planes, rows, row, x, after);
+        if constexpr (FindsRowEnds<decltype(kernel.generator), Real>)
+          kernel.generator.find_row_ends({row, rows.level}, x, after, memory.all(),
+                                         Kernel::turning_alone);
+        // Copies: of what others know the address of, it would load all again for each pack.
+        run_along(local, planes, typename Kernel::RowArrays(rows), Row(row), x, after);
       }
     }
   }

@@ -81,6 +81,7 @@ struct EndStage {
   using value_type = Real;
   using RowArrays = StageArrays<Rows<Real>, Tableau::stages>;
   static constexpr int stages = Tableau::stages, stages_after = 0;
+  static constexpr bool turning_alone = false;
 
   Generator generator;
   Isotropy isotropy;
