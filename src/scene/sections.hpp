@@ -52,8 +52,9 @@ void check_site_numbers(Scene const& scene);
 void require_occupied(Scene const& scene);
 /// Refuses terms that need neighbours along the axes of a lattice in a crystal that has none.
 void check_crystal(Scene const& scene);
-/// Refuses what does not go with a temperature above 0.
+/// Refuses the pairs of refused_pairs.hpp.
 void check_pairs(Scene const& scene);
+/// Refuses what does not go with a temperature above 0.
 void check_thermal(Scene const& scene);
 Output read_output(Table const& root, std::int64_t steps);
 

@@ -15,7 +15,7 @@ struct Scene;
 
 namespace cayspin::simulation {
 
-/// What a field is evaluated for: to turn those spins that do; for itself, zero where a spin is
+/// Purposes of a field: to turn those spins that do; for itself, zero where a spin is
 /// frozen; or as -dE/dm, the same, for an energy that falls.
 enum class FieldFor { generator, itself, energy };
 

@@ -10,6 +10,8 @@
 #include <cayspin/io/field.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 namespace cayspin::simulation {
@@ -112,7 +114,7 @@ struct SceneFieldNow {
   cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
   FieldAlongRows<Real> along_rows = {};
 
-  // What begin_row was called for.
+  // The row that begin_row was called for.
   cayspin::detail::RowInput<Real> row = {};  // what was found of H
   std::ptrdiff_t compiled_sites = 0;         // of packs between the first and the last
   bool adds_row = false, adds_more = false;
@@ -241,7 +243,7 @@ struct SceneFieldNow {
   }
 };
 
-/// What differs from site to site in how spins turn in H.
+/// Numbers of sites that change how spins turn in H.
 template <class Real>
 struct OwnOfSites {
   cayspin::detail::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data

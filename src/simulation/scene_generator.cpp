@@ -103,9 +103,9 @@ SceneGenerator<Spins> SceneGenerator<Spins>::precession_alone() const {
 template <class Spins>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
     LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
-    SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies, bool is_llg) const {
-  SceneGeneratorNow<Spins> now{llg, bodies, is_llg, orthogonal_};
-  if (!is_llg) {
+    SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const {
+  SceneGeneratorNow<Spins> now{llg, bodies, is_llg_, orthogonal_};
+  if (!is_llg_) {  // rows have the A of bodies in place of H
     auto field = llg.field();
     field.along_rows = {.is_whole = true};
     now.llg = LandauLifshitz(field, 0);
@@ -118,7 +118,7 @@ template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare(Exec const& exec, Spins const& spins,
                                                         double t) const {
-  return now(llg_.prepare(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_);
+  return now(llg_.prepare(exec, spins, t), bodies_.prepare(exec, spins, t));
 }
 
 template <class Spins>
@@ -126,21 +126,21 @@ template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_for_rows(Exec const& exec,
                                                                  Spins const& spins,
                                                                  double t) const {
-  return now(llg_.prepare_for_rows(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_);
+  return now(llg_.prepare_for_rows(exec, spins, t), bodies_.prepare(exec, spins, t));
 }
 
 template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_local(Exec const& exec, Spins const& spins,
                                                               double t) const {
-  return now(llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t), is_llg_);
+  return now(llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t));
 }
 
 template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
                                                              double t, double dt) const {
-  return now(llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t), is_llg_);
+  return now(llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t));
 }
 
 #define CAYSPIN_INSTANTIATE(Space, Real)                                        \

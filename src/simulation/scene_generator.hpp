@@ -180,9 +180,9 @@ class SceneGenerator {
   SceneBodies<Spins> bodies_;
   bool alone_ = false;  // without damping
 
-  SceneGeneratorNow<Spins> now(LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
-                               SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies,
-                               bool is_llg) const;
+  SceneGeneratorNow<Spins> now(
+      LandauLifshitz<SceneFieldNow<typename Spins::value_type>> const& llg,
+      SceneBodiesNow<typename SceneBodies<Spins>::Many> const& bodies) const;
 };
 
 /// cayspin::sample, with the magnetization of a scene's own moments, of sites that have a spin.

@@ -52,7 +52,7 @@ struct RowPiece {
   }
 };
 
-/// What exchange lacks of vacancies, which it takes for neighbours: H = A m for each.
+/// Exchange takes vacancies for neighbours; this adds what it lacks: H = A m for each.
 template <class Real>
 struct MissingNeighbors {
   cayspin::detail::SiteArray<Real, 1> exchange;

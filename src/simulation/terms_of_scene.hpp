@@ -81,7 +81,7 @@ class FieldInPass<Spins>::Terms {
     });
   }
 
-  /// What is compiled into stages of `usual`; none where they load the whole H.
+  /// The terms that are compiled into stages, from `usual`; none where they load the whole H.
   std::optional<SceneFieldNow<Real>> in_stages(SceneFieldNow<Real> const& usual) const;
 
  private:

@@ -15,8 +15,8 @@
 // where `row` has the spins of the stage and their neighbours. Where the term says
 //   bool rows_need_time_alone(exec, spins)
 // it looks at no other spins, and a sweep need not have them in a field.
-// What a stage is made for may find the packs at the ends of rows by itself, so that the stage's
-// arithmetic is compiled once, for packs between them:
+// A generator may find the packs at the ends of rows by itself, so that a stage's arithmetic is
+// compiled once, for packs between them:
 //   void find_row_ends(row, begin, end, fields, turning_alone) const    after begin_row
 namespace cayspin::inline v0_1::detail {
 

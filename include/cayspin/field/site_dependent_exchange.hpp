@@ -60,38 +60,39 @@ struct ExchangeOfSites {
   }
 
  private:
+  template <class Stencil>
+  struct BondsOfSite {
+    ValueOf<Stencil> on, back;
+    VectorOf<Stencil> next, previous;  // from the spin to its neighbours
+  };
   // The bond to the previous site is that site's bond to the next; past an open end it is of no
   // matter, as what it multiplies is zero there.
-  template <int Axis, class Site, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Value bond_back(Site const& site, Value const& on) const {
-    return site.template neighbor<Axis, 0>(bonds[Axis], on);
+  template <int Axis, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION BondsOfSite<Stencil> with_differences(Stencil const& stencil) const {
+    auto const on = stencil.site().load(bonds[Axis]);
+    return {on, stencil.site().template neighbor<Axis, 0>(bonds[Axis], on),
+            stencil.template next<Axis>() - stencil.center(),
+            stencil.template previous<Axis>() - stencil.center()};
   }
 
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector differences(Stencil const& stencil, Vector const& sum) const {
-    auto const& site = stencil.site();
-    auto const on = site.load(bonds[Axis]), back = bond_back<Axis>(site, on);
-    auto const to_previous = stencil.template previous<Axis>() - stencil.center();
-    auto const to_next = stencil.template next<Axis>() - stencil.center();
-    return multiply_add(on, to_next, multiply_add(back, to_previous, sum));
+    auto const of = with_differences<Axis>(stencil);
+    return multiply_add(of.on, of.next, multiply_add(of.back, of.previous, sum));
   }
-
   template <int Axis, class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector neighbor_sum(Stencil const& stencil, Vector const& sum) const {
-    auto const& site = stencil.site();
-    auto const on = site.load(bonds[Axis]), back = bond_back<Axis>(site, on);
     auto const none = zero<ValueOf<Stencil>>();
+    auto const on = stencil.site().load(bonds[Axis]);
+    auto const back = stencil.site().template neighbor<Axis, 0>(bonds[Axis], on);
     return multiply_add(on, stencil.template next<Axis>(none),
                         multiply_add(back, stencil.template previous<Axis>(none), sum));
   }
-
   template <int Axis, class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Value energies(Stencil const& stencil, Value const& sum) const {
-    auto const& site = stencil.site();
-    auto const on = site.load(bonds[Axis]), back = bond_back<Axis>(site, on);
-    auto const to_previous = stencil.template previous<Axis>() - stencil.center();
-    auto const to_next = stencil.template next<Axis>() - stencil.center();
-    return sum + Value(0.25) * (on * dot(to_next, to_next) + back * dot(to_previous, to_previous));
+    auto const of = with_differences<Axis>(stencil);
+    return sum +
+           Value(0.25) * (of.on * dot(of.next, of.next) + of.back * dot(of.previous, of.previous));
   }
 };
 

@@ -59,11 +59,20 @@ struct Key {
   bool required = false;
 };
 
+/// The sum of of(axis, spacing) over the axes along which sites have neighbours.
+template <class Lattice, class Of>
+double sum_over_axes(Lattice const& lattice, Of const& of) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lattice.has_neighbors(static_cast<int>(axis))) sum += of(axis, lattice.spacing[axis]);
+  return sum;
+}
+
 /// H = constant Lap(m).
 struct Exchange {
   double constant = 0;
 
-  /// What H is proportional to.
+  /// H is proportional to it.
   double& strength() { return constant; }
 
   static constexpr std::string_view key = "exchange";
@@ -82,12 +91,9 @@ struct Exchange {
   /// The largest sum of |bond energies| of a site: what round-off is proportional to.
   template <class Lattice>
   double energy_magnitude(Lattice const& lattice) const {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      if (lattice.has_neighbors(axis))
-        sum += 2 * (constant < 0 ? -constant : constant) /
-               (lattice.spacing[axis] * lattice.spacing[axis]);
-    return sum;
+    return sum_over_axes(lattice, [&](std::size_t, double spacing) {
+      return 2 * std::abs(constant) / (spacing * spacing);
+    });
   }
   /// The term of the library that kernels evaluate, with neighbor_field.
   template <class Lattice, class Term = cayspin::Exchange>
@@ -118,14 +124,10 @@ struct InterfacialDmi {
   }
   template <class Lattice>
   double energy_magnitude(Lattice const& lattice) const {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      auto const i = static_cast<std::size_t>(axis);
-      double const across = 1 - normal[i] * normal[i];  // |n x e|^2
-      if (lattice.has_neighbors(axis) && across > 0)
-        sum += std::abs(interfacial) * std::sqrt(across) / lattice.spacing[i];
-    }
-    return sum;
+    return sum_over_axes(lattice, [&](std::size_t axis, double spacing) {
+      double const across = 1 - normal[axis] * normal[axis];  // |n x e|^2, but for round-off
+      return across > 0 ? std::abs(interfacial) * std::sqrt(across) / spacing : 0;
+    });
   }
   template <class Lattice, class Term = cayspin::InterfacialDmi>
   Term term(Lattice const& lattice) const {
@@ -152,11 +154,8 @@ struct BulkDmi {
   }
   template <class Lattice>
   double energy_magnitude(Lattice const& lattice) const {
-    double sum = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      if (lattice.has_neighbors(axis))
-        sum += std::abs(constant) / lattice.spacing[static_cast<std::size_t>(axis)];
-    return sum;
+    return sum_over_axes(lattice,
+                         [&](std::size_t, double spacing) { return std::abs(constant) / spacing; });
   }
   template <class Lattice, class Term = cayspin::BulkDmi>
   Term term(Lattice const& lattice) const {
