@@ -171,6 +171,8 @@ concept Stepper =
 /// | `int64 accepted_steps()` | own steps taken so far | required |
 /// | `int64 rejected_steps()` | own steps thrown away so far | required |
 /// | `reset()` | the next step begins at its own t and spins | required |
+/// | `step_towards(exec, generator, spins, t, dt, wanted)` | writes spins at `wanted` only | step |
+/// | `bool has_reached(t, dt)` | has it reached t, where a step of dt ends? | step is called |
 template <class Type>
 concept AdaptiveStepper = Stepper<Type> && detail::counts_evaluations<Type> &&
                           requires(Type& stepper, Type const& constant) {

@@ -82,10 +82,21 @@ concept has_batches =
       stepper.batch(exec, generator, spins, 0.0, 0.0, std::int64_t{1});
     };
 
+/// A stepper that need not write the spins at times where nobody looks.
+template <class Stepper, class Exec, class Generator, class Spins>
+concept has_steps_towards =
+    requires(Stepper& stepper, Exec const& exec, Generator const& generator, Spins& spins) {
+      stepper.step_towards(exec, generator, spins, 0.0, 0.0, 0.0);
+      { stepper.has_reached(0.0, 0.0) } -> std::same_as<bool>;
+    };
+
 template <class Exec, class Observer, class Spins>
 Next observe(Exec const& exec, Observer& observer, Step const& step, Spins const& spins) {
   static_assert(std::is_invocable_v<Observer&, Exec const&, Step const&, Spins const&>,
                 "An observer is called as observer(exec, Step, spins).");
+  static_assert(
+      !requires { observer.due(step); } || requires { std::as_const(observer).due(step); },
+      "An observer's due(Step) must be const.");
   if (!is_due(observer, step)) return Next::proceed;
   using Result = std::invoke_result_t<Observer&, Exec const&, Step const&, Spins const&>;
   if constexpr (std::is_same_v<Result, Next>) {
@@ -136,17 +147,18 @@ class Integration {
   virtual void fence(char const* label) = 0;
   virtual bool is_due(Step const& step) = 0;  // for any observer
   virtual Next observe(Step const& step) = 0;
-  virtual void take_step(Step const& from) = 0;
-  virtual void take_batch(Step const& from, std::int64_t steps) = 0;
+  /// Takes steps towards one that is due, at least one; returns how many. The spins are those at
+  /// its end where that one is reached, and else they may be older.
+  virtual std::int64_t take_steps(Times const& times, std::int64_t number, std::int64_t due) = 0;
 
-  /// Takes several steps at once if it `batches`.
-  Summary run(Times const& times, bool batches) {
+  /// `looks_ahead`: take_steps makes use of a later `due`.
+  Summary run(Times const& times, bool looks_ahead) {
     Summary summary;
     fence("cayspin::integrate: begin");
     Kokkos::Timer clock;
-    for (std::int64_t number = times.first;;) {
+    for (std::int64_t number = times.first, due = number;;) {
       Step const now{number, times.at(number), times.dt, number == times.steps};
-      if (now.last || is_due(now)) {
+      if (number == due && (now.last || is_due(now))) {
         fence("cayspin::integrate: observers");
         summary.step_seconds += clock.seconds();
         bool const stop = observe(now) == Next::stop;
@@ -156,11 +168,8 @@ class Integration {
         }
         clock.reset();
       }
-      std::int64_t const steps = batches ? steps_until_due(times, number) : 1;
-      if (steps > 1)
-        take_batch(now, steps);
-      else
-        take_step(now);
+      due = looks_ahead ? next_due(times, number, due) : number + 1;
+      std::int64_t const steps = take_steps(times, number, due);
       number += steps;
       summary.steps += steps;
     }
@@ -170,13 +179,15 @@ class Integration {
   ~Integration() = default;
 
  private:
-  /// Steps from `number` to the next one that an observer, or the end, waits for; at most 1000, so
-  /// that what an observer asks the world outside is asked again soon.
-  std::int64_t steps_until_due(Times const& times, std::int64_t number) {
-    std::int64_t const most = std::min<std::int64_t>(times.steps - number, 1000);
-    for (std::int64_t steps = 1; steps < most; ++steps)
-      if (is_due({number + steps, times.at(number + steps), times.dt, false})) return steps;
-    return most;
+  /// The step after `number` that an observer, or the end, waits for; at most 1000 steps later, so
+  /// that what an observer asks the world outside is asked again soon. `known`: the last one.
+  std::int64_t next_due(Times const& times, std::int64_t number, std::int64_t known) {
+    bool const is_known = known > number;
+    std::int64_t const last = is_known ? known : std::min(times.steps, number + 1000);
+    std::int64_t const asked = is_known ? std::min(known, number + 2) : last;
+    for (std::int64_t next = number + 1; next < asked; ++next)
+      if (is_due({next, times.at(next), times.dt, false})) return next;
+    return last;
   }
 };
 
@@ -204,12 +215,23 @@ class IntegrationOf final : public Integration {
         observers_);
     return now.stops ? Next::stop : Next::proceed;
   }
-  void take_step(Step const& from) override {
-    stepper_.step(exec_, generator_, spins_, from.time, from.dt);
-  }
-  void take_batch([[maybe_unused]] Step const& from, [[maybe_unused]] std::int64_t steps) override {
-    if constexpr (has_batches<Stepper, Exec, Generator, Spins>)
-      stepper_.batch(exec_, generator_, spins_, from.time, from.dt, steps);
+  std::int64_t take_steps(Times const& times, std::int64_t number, std::int64_t due) override {
+    double const t = times.at(number), dt = times.dt;
+    if constexpr (has_steps_towards<Stepper, Exec, Generator, Spins>) {
+      auto const end = [&](std::int64_t step) { return times.at(step - 1) + dt; };
+      stepper_.step_towards(exec_, generator_, spins_, t, dt, end(due));
+      std::int64_t reached = number + 1;
+      while (reached < due && stepper_.has_reached(end(reached + 1), dt)) ++reached;
+      return reached - number;
+    }
+    if constexpr (has_batches<Stepper, Exec, Generator, Spins>) {
+      if (due > number + 1) {
+        stepper_.batch(exec_, generator_, spins_, t, dt, due - number);
+        return due - number;
+      }
+    }
+    stepper_.step(exec_, generator_, spins_, t, dt);
+    return 1;
   }
 
  private:
@@ -257,12 +279,12 @@ Summary integrate_in_any_memory(Exec const& exec, Stepper& stepper, Generator co
   std::pair<std::int64_t, std::int64_t> own_before;
   if constexpr (AdaptiveStepper<Stepper>)
     own_before = {stepper.accepted_steps(), stepper.rejected_steps()};
-  bool batches = false;
+  bool looks_ahead = has_steps_towards<Stepper, Exec, Generator, Spins>;
   if constexpr (has_batches<Stepper, Exec, Generator, Spins>)
-    batches = stepper.takes_batches(exec, generator, spins);
+    looks_ahead = stepper.takes_batches(exec, generator, spins);
   IntegrationOf<Exec, Stepper, Generator, Spins, std::remove_reference_t<Observers>...> integration(
       exec, stepper, generator, spins, observers...);
-  Summary summary = integration.run(times, batches);
+  Summary summary = integration.run(times, looks_ahead);
   if constexpr (counts_evaluations<Stepper>)
     summary.evaluations = stepper.evaluations_done() - evaluations_before;
   else if (summary.steps > 0)

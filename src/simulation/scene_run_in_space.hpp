@@ -65,11 +65,15 @@ class SceneRunInSpace final
 
   // RunObserver
   bool due(Step const& step) const override {
-    seen_ = step.number;
+    // An adaptive method leaves the spins as they were last due, at most 1000 steps ago.
+    bool const is_adaptive = scene_.integrator.tolerance.has_value();
+    if (!is_adaptive) seen_ = step.number;
     // After the last step there is nothing to end: a yes would be lost.
-    return step.number >= next_look_ || (!step.last && (*interrupt_)());
+    return step.number >= std::min(next_look_, seen_ + most_unseen) ||
+           (!step.last && (*interrupt_)());
   }
   Next operator()(Space const& exec, Step const& step, Spins const& spins) override {
+    seen_ = step.number;
     if (step.number >= next_look_ && judge(exec, step, spins) == Next::stop) return Next::stop;
     if (step.last || !(*interrupt_)()) return Next::proceed;
     ended_ = Advanced::interrupted;
@@ -200,7 +204,8 @@ class SceneRunInSpace final
   Advanced ended_ = Advanced::whole;
   bool continues_ = false;
   std::int64_t looked_ = -1, next_look_ = 0;  // steps of the guard's looks
-  mutable std::int64_t seen_ = 0;             // the step from which the method last set out
+  mutable std::int64_t seen_ = 0;             // the step whose state the spins have, if one fails
+  static constexpr std::int64_t most_unseen = 1000;
 };
 
 }  // namespace cayspin::simulation

@@ -6,6 +6,10 @@
 #include "../support/backends.hpp"
 #include "../support/field_that_jumps.hpp"
 
+#include <cstdint>
+#include <map>
+#include <vector>
+
 using namespace cayspin;
 using namespace cayspin::test;
 
@@ -150,6 +154,68 @@ TYPED_TEST(EveryAdaptive, AskingOftenDoesNotChangeTheSteps) {
   advance(many, slab.natural(), often, 2. / 256, 256);
   EXPECT_EQ(one.evaluations_done(), many.evaluations_done());
   EXPECT_EQ(copy_to_host(seldom), copy_to_host(often));
+}
+
+/// Wants looks at a few steps that it knows beforehand, and now and then at once.
+struct LooksNowAndThen {
+  int calls_to_a_sudden_one;
+  std::map<std::int64_t, std::vector<double>> seen = {};
+  mutable int calls = 0;
+
+  bool due(Step const& step) const {
+    bool const sudden = ++calls % calls_to_a_sudden_one == 0;
+    return sudden || step.number % 17 == 3 || step.number % 40 == 4;
+  }
+  void operator()(Space const&, Step const& step, Spins const& spins) {
+    seen[step.number] = copy_to_host(spins);
+  }
+};
+
+TYPED_TEST(EveryAdaptive, LooksSeeTheBitsOfStepsThatAllDeliver) {
+  std::int64_t const steps = 120;
+  auto const start = random_spins<Spins>(Lattice{.shape = {9, 7, 5}}, 5);
+  LandauLifshitz const generator(
+      EffectiveField(Exchange(start.lattice(), 1), Zeeman{{0.3, 0.1, 1}}), 0.1);
+  for (double const dt : {0.4, 0.04, 0.004})
+    for (Path const path : {Path::pass, Path::sweep}) {
+      SCOPED_TRACE(testing::Message() << dt << (path == Path::pass ? ", pass" : ", sweep"));
+      auto spins = copy_of(start), one_by_one = copy_of(start);
+      TypeParam stepper(spins, {.tolerance = 1e-4}), other(spins, {.tolerance = 1e-4});
+      if constexpr (requires { stepper.use(path); }) {
+        stepper.use(path);
+        other.use(Path::pass);
+      }
+      std::vector<std::vector<double>> states{copy_to_host(one_by_one)};
+      Times const times{0.3, dt, steps};
+      for (std::int64_t step = 0; step < steps; ++step) {
+        other.step(Space(), generator, one_by_one, times.at(step), dt);
+        states.push_back(copy_to_host(one_by_one));
+      }
+      LooksNowAndThen looks{23};
+      auto const summary = integrate(Space(), stepper, generator, spins, times, looks);
+      if constexpr (requires { stepper.path(); }) {
+        EXPECT_EQ(stepper.path(), path);
+      }
+      EXPECT_EQ(summary.steps, steps);
+      EXPECT_EQ(stepper.accepted_steps(), other.accepted_steps());
+      EXPECT_EQ(stepper.evaluations_done(), other.evaluations_done());
+      EXPECT_EQ(copy_to_host(spins), states.back());
+      EXPECT_GT(looks.seen.size(), 8u);
+      for (auto const& [step, state] : looks.seen)
+        EXPECT_EQ(state, states.at(static_cast<std::size_t>(step))) << step;
+    }
+}
+
+TYPED_TEST(EveryAdaptive, AFailureLeavesTheSpinsOfTheLastLook) {
+  auto spins = chain_start();
+  FieldThatJumps const failing{0.5, {1, 0, 1}, {std::nan(""), 0, 1}};
+  LandauLifshitz const generator(EffectiveField(Exchange(spins.lattice(), 1), failing), 0.1);
+  TypeParam stepper(spins, {.tolerance = 1e-4});
+  LooksNowAndThen looks{1000};
+  EXPECT_THROW(integrate(Space(), stepper, generator, spins, {0, 0.05, 20}, looks), StepTooSmall);
+  ASSERT_FALSE(looks.seen.empty());
+  EXPECT_EQ(looks.seen.rbegin()->first, 4);
+  EXPECT_EQ(copy_to_host(spins), looks.seen.rbegin()->second);
 }
 
 StepOptions with_jumps_of(Pulse const& pulse, double tolerance) {

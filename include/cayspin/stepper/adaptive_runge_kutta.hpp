@@ -71,13 +71,20 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
   /// the lattice given at construction, dt is negative or options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    step_towards(exec, generator, spins, t, dt, t + dt);
+  }
+
+  /// As `step`, towards a later time at which the spins are wanted: until the own steps reach that,
+  /// `spins` stays as it was. Throws as `step` does.
+  template <class Exec, class Generator>
+  void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
+                    double wanted) {
     auto const region = this->begin_step(exec, spins);
-    double const asked = t + dt;
     go_on_to(
         t, dt,
         [&](double from) { begin(exec, generator, is_running() ? memory_.end : spins, from, dt); },
-        [&] { take_step(exec, generator, asked); });
-    deliver(exec, spins, asked);
+        [&] { take_step(exec, generator, wanted); });
+    if (has_reached(wanted, dt)) deliver(exec, spins, wanted);
   }
 
  private:
@@ -99,20 +106,21 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     begin_time_ = t;
   }
 
-  /// The next own step, from the end of the last one, towards a time that is asked for.
+  /// The next own step, from the end of the last one, towards a time at which spins are wanted.
   template <class Exec, class Generator>
-  void take_step(Exec const& exec, Generator const& generator, double asked) {
+  void take_step(Exec const& exec, Generator const& generator, double wanted) {
     memory_.exchange_begin_and_end();
     double const begin_time = end_time_;
     take_own_step(
-        [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, asked)}; });
+        [&](double t, double dt) { return Try{try_step(exec, generator, t, dt, wanted)}; });
     begin_time_ = begin_time;
     detail::update_ghosts(exec, this->lattice_, memory_.end, memory_.last);
   }
 
   /// The error of a step: an angle.
   template <class Exec, class Generator>
-  double try_step(Exec const& exec, Generator const& generator, double t, double dt, double asked) {
+  double try_step(Exec const& exec, Generator const& generator, double t, double dt,
+                  double wanted) {
     evaluations_done_ += stages - 1;
     bool at_once = false;
     if constexpr (detail::is_host_execution<Exec>) {
@@ -120,7 +128,7 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
       if (this->path() == Path::sweep && !by_time) this->use(Path::pass);
       if constexpr (Base::Sweeps::possible) {
         if (this->path() == Path::sweep) {
-          sweep(exec, generator, t, dt, ends_beyond(asked, t + dt, dt));
+          sweep(exec, generator, t, dt, ends_beyond(wanted, t + dt, dt));
           return error(exec);
         }
       }
@@ -131,8 +139,8 @@ class AdaptiveRungeKutta : public detail::AdaptiveStages<Spins, Embedded, Update
     return error(exec);
   }
 
-  /// Does such a step end later than asked? Then the spins asked for are made of its increments.
-  static bool ends_beyond(double asked, double end, double dt) { return end - asked > 1e-9 * dt; }
+  /// Does such a step end later? Then the spins that are wanted are made of its increments.
+  static bool ends_beyond(double wanted, double end, double dt) { return end - wanted > 1e-9 * dt; }
 
   template <class Exec>
   double error(Exec const& exec) const {

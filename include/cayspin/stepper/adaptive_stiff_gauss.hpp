@@ -65,12 +65,20 @@ class AdaptiveStiffGauss2 : public StiffGauss<Spins, 2>, public detail::OwnSteps
   /// does, when dt is negative, or when options.end is before t + dt.
   template <class Exec, class Generator>
   void step(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
+    step_towards(exec, generator, spins, t, dt, t + dt);
+  }
+
+  /// As `step`, towards a later time at which the spins are wanted: until the own steps reach that,
+  /// `spins` stays as it was. Throws as `step` does.
+  template <class Exec, class Generator>
+  void step_towards(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt,
+                    double wanted) {
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, now_);
     go_on_to(
         t, dt, [&](double from) { begin(exec, generator, is_running() ? now_ : spins, from, dt); },
         [&] { take_step(exec, generator); });
-    deliver(exec, spins, t + dt);
+    if (has_reached(wanted, dt)) deliver(exec, spins, wanted);
   }
 
  private:

@@ -16,7 +16,8 @@ namespace cayspin::inline v0_1 {
 
 /// Thrown when an adaptive step would have to be shorter than min_dt or than the resolution of t.
 /// The numbers are not finite, or the field is not smooth. The spins are those before the step,
-/// and the next step begins a run from them.
+/// under integrate() those that observers were due to see last or later ones, and the next step
+/// begins a run from them.
 class StepTooSmall : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -125,6 +126,8 @@ class OwnSteps {
   double next_dt() const { return next_dt_; }
   /// Forgets the run so far: the next step begins at its own t and spins.
   void reset() { running_ = false; }
+  /// Have the own steps reached t, the end of a step of dt?
+  bool has_reached(double t, double dt) const { return end_time_ >= t - slack(dt); }
 
  protected:
   /// How a try of a step went. Its error is an angle.
@@ -146,13 +149,13 @@ class OwnSteps {
   /// What they throw ends the run: the next step begins at its own t and spins.
   template <class Begin, class TakeStep>
   void go_on_to(double t, double dt, Begin const& begin, TakeStep const& take_step) {
-    double const asked = t + dt, slack = 1e-9 * std::abs(dt);
-    if (!(dt >= 0) || !(asked <= options_.end + slack))
+    double const asked = t + dt;
+    if (!(dt >= 0) || !(asked <= options_.end + slack(dt)))
       throw std::invalid_argument(
           region_ + "::step: dt must not be negative, nor t + dt beyond the end of the options");
     try {
       if (!running_) begin(bounds_.after_jump(t));
-      while (end_time_ < asked - slack) {
+      while (!has_reached(asked, dt)) {
         if (double const after = bounds_.after_jump(end_time_); after > end_time_) begin(after);
         take_step();
       }
@@ -213,6 +216,8 @@ class OwnSteps {
   double end_time_ = 0, dt_ = 0, next_dt_ = 0;  // the last own step ends there
 
  private:
+  static double slack(double dt) { return 1e-9 * std::abs(dt); }
+
   StepBounds bounds_;
   [[noreturn]] void give_up(double t, double dt) const {
     throw StepTooSmall(region_ + "::step: from t = " + to_text(t) +
