@@ -8,7 +8,6 @@
 #include <cayspin/crystal.hpp>
 #include <cayspin/evaluate.hpp>
 #include <cayspin/exchange_memory.hpp>
-#include <cayspin/field/biquadratic.hpp>
 #include <cayspin/field/bulk_dmi.hpp>
 #include <cayspin/field/cubic_anisotropy.hpp>
 #include <cayspin/field/dear.hpp>

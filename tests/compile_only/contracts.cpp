@@ -30,8 +30,9 @@ inline constexpr bool are_terms = (FieldTerm<Terms, Spins<Real>> && ...);
 template <class Real>
 inline constexpr bool terms_of_cayspin =
     are_terms<Real, Exchange, UniaxialAnisotropy, Zeeman, TimeDependentZeeman<Rotating>, SlabDemag,
-              CubicAnisotropy, InterfacialDmi, BulkDmi, Biquadratic, ZhangLi, Slonczewski,
-              LayerAveragedSlabDemag<Kokkos::HostSpace>, HostField<Spins<Real>, SlabDemagOnHost>,
+              CubicAnisotropy, InterfacialDmi, BulkDmi, ZhangLi, Slonczewski,
+              PairCouplings<Kokkos::HostSpace>, LayerAveragedSlabDemag<Kokkos::HostSpace>,
+              HostField<Spins<Real>, SlabDemagOnHost>,
               SiteDependentExchange<Real, Kokkos::HostSpace>,
               SiteDependentUniaxialAnisotropy<Scalars<Real>, Vec3<double>>, EffectiveField<>,
               EffectiveField<Exchange, Zeeman>,

@@ -130,7 +130,6 @@ TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
         {"Exchange: the constant", [&] { Exchange(lattice, bad); }},
         {"InterfacialDmi: the constant", [&] { InterfacialDmi(lattice, bad); }},
         {"BulkDmi: the constant", [&] { BulkDmi(lattice, bad); }},
-        {"Biquadratic: the constant", [&] { Biquadratic(lattice, bad); }},
         {"ZhangLi: the velocity",
          [&] {
            ZhangLi(lattice, Vec3<double>{0, bad, 0});

@@ -30,12 +30,6 @@ TYPED_TEST(Terms, DzyaloshinskiiMoriya) {
   }
 }
 
-TYPED_TEST(Terms, Biquadratic) {
-  for (auto const& lattice : lattices)
-    this->check("biquadratic", lattice, EffectiveField(Biquadratic(lattice, -0.6)),
-                biquadratic_by_hand(lattice, -0.6));
-}
-
 TYPED_TEST(Terms, CubicAnisotropy) {
   auto const& lattice = lattices[0];
   this->check("any axes", lattice, CubicAnisotropy(1.3, {1, 2, 2}, {2, 1, -2}),

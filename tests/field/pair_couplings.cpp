@@ -203,7 +203,8 @@ TYPED_TEST(Pairs, ThatCannotBe) {
   using Term = PairCouplings<typename TypeParam::MemorySpace>;
   auto const lattice = Crystal::bcc().lattice({2, 2, 2});
   for (auto const& bond : {Coupling::of({0, 2}, {0, 0, 0}, 1), Coupling::of({1, 1}, {0, 0, 0}, 1),
-                           Coupling::of({0, 1}, {0, 0, 0}, std::nan(""))})
+                           Coupling::of({0, 1}, {0, 0, 0}, std::nan("")),
+                           Coupling{{0, 1}, {0, 0, 0}, {}, std::nan("")}})
     EXPECT_THROW(Term(lattice, {bond}), std::invalid_argument);
   EXPECT_THROW(Term(Lattice::chain(0, 1, Boundary::periodic), {Coupling::of({0, 0}, {1, 0, 0}, 1)}),
                std::invalid_argument);

@@ -103,17 +103,6 @@ inline ByHand dmi_by_hand(Lattice const& lattice,
       });
 }
 
-inline ByHand biquadratic_by_hand(Lattice const& lattice, double constant) {
-  return each_bond(
-      bonds(lattice),
-      [=](auto const&, auto const& m, auto const& other, double) {
-        return 2 * constant * dot(m, other) * other;
-      },
-      [=](auto const&, auto const& a, auto const& b) {
-        return -constant * std::pow(dot(a, b), 2);
-      });
-}
-
 inline ByHand cubic_by_hand(double k, Vec3<double> const& axis1, Vec3<double> const& axis2) {
   Vec3<double> const e[3] = {unit(axis1), unit(axis2), cross(unit(axis1), unit(axis2))};
   return each_site(

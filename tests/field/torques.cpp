@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Torques as fields: what they make of the Landau-Lifshitz equation, motions in closed form, and
 // the chirality of bulk DMI.
+#include "../support/biquadratic_bonds.hpp"
 #include "gradient.hpp"
 
 #include <numbers>
@@ -149,7 +150,7 @@ TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
   CubicAnisotropy const cubic(1.3, {1, 2, 2}, {2, 1, -2});
   Slonczewski const local(0.6, -0.7, {1, 2, 3});
   EffectiveField const in_parts(exchange, dmi, cubic, local);
-  EffectiveField const all(exchange, dmi, cubic, local, Biquadratic(lattice, 0.5),
+  EffectiveField const all(exchange, dmi, cubic, local, BiquadraticBonds{0.5},
                            ZhangLi(lattice, {0.7, -0.4, 0.3}, 0.5));
   expect_same(in_parts, RedBlack4<Spins>(like));
   expect_same(all, RedBlack4<Spins>(like));

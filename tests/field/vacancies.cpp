@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Vacant sites: no field, no energy, no motion, and to their neighbours as an open end.
+#include "../support/biquadratic_bonds.hpp"
 #include "../support/coefficients.hpp"
 #include "gradient.hpp"
 
@@ -22,7 +23,7 @@ auto every_term(Lattice const& lattice) {
 /// Those without a derivative among them.
 auto bonds_and_torques(Lattice const& lattice) {
   return EffectiveField(
-      Biquadratic(lattice, 0.6), BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),
+      BiquadraticBonds{0.6}, BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),
       CubicAnisotropy(0.7, {1, 2, 2}, {2, 1, -2}), Slonczewski(0.2, 0.1, {1, 0, 1}));
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/biquadratic_bonds.hpp"
 #include "members.hpp"
 
 #include <cayspin/crystal.hpp>
@@ -106,7 +107,7 @@ void for_each_term(Setting<Real> const& on, Visit const& visit) {
     return field;
   };
   visit("Exchange", Exchange(lattice, number()));
-  visit("Biquadratic", Biquadratic(lattice, number()));
+  visit("BiquadraticBonds", BiquadraticBonds{number()});
   visit("BulkDmi", BulkDmi(lattice, number()));
   visit("InterfacialDmi", InterfacialDmi(lattice, number()));
   visit("SiteDependentExchange", SiteDependentExchange(numbers(1)));

@@ -15,6 +15,8 @@ struct NoField {
   void operator()(Spins const&, Spins const&, double) const {}
 };
 
+std::vector<Coupling> const one_bond{Coupling::of({0, 0}, {1, 0, 0}, 1)};
+
 /// Every look at the energy of a term or generator.
 template <class Source>
 std::vector<WrongCall> sums_of(Source const& source, Spins const& spins) {
@@ -64,7 +66,7 @@ TEST(WrongCallsOfSums, SpinsOfOthers) {
       refuses("Exchange", Exchange(own, 1));
       refuses("InterfacialDmi", InterfacialDmi(own, 1));
       refuses("BulkDmi", BulkDmi(own, 1));
-      refuses("Biquadratic", Biquadratic(own, 1));
+      refuses("PairCouplings", PairCouplings<Kokkos::HostSpace>(own, one_bond));
       refuses("ZhangLi", ZhangLi(own, {1, 1, 1}));
       refuses("LayerAveragedSlabDemag", LayerAveragedSlabDemag<Kokkos::HostSpace>(own, 1));
       refuses("HostField", HostField(Spins("like", own), NoField()));
@@ -267,7 +269,7 @@ TEST(WrongCallsOfLattices, NoneThatCannotBe) {
         {"Exchange", [&] { Exchange(lattice, 1); }},
         {"InterfacialDmi", [&] { InterfacialDmi(lattice, 1); }},
         {"BulkDmi", [&] { BulkDmi(lattice, 1); }},
-        {"Biquadratic", [&] { Biquadratic(lattice, 1); }},
+        {"PairCouplings", [&] { PairCouplings<Kokkos::HostSpace>(lattice, one_bond); }},
         {"ZhangLi",
          [&] {
            ZhangLi(lattice, Vec3<double>{1, 0, 0});
