@@ -250,7 +250,7 @@ inline void refused() {
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
     LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
-    FieldOfMoments const of_moments(Lattice::chain(3), layers, std::vector<double>{1});
+    FieldOfMoments const of_moments(layers, CellMoments(Lattice::chain(3), {1}));
     FieldWithVacancies const field(of_moments, occupation);
   }
 #endif
@@ -289,8 +289,8 @@ inline void refused() {
 #if MISTAKE(42)  // energy_control_of_moments
   // This needs a field that is the derivative of an energy, without terms that
   {
-    FieldOfMoments const of_moments(Lattice::chain(3), Exchange(Lattice::chain(3), 1),
-                                    std::vector<double>{2});
+    FieldOfMoments const of_moments(Exchange(Lattice::chain(3), 1),
+                                    CellMoments(Lattice::chain(3), {2}));
     EnergyControl const control{LandauLifshitz(of_moments, 0), spins};
   }
 #endif

@@ -232,8 +232,7 @@ TYPED_TEST(Magnons, OfAFerrimagnet) {
   std::vector<double> const moments{1.5, 0.7}, g{1.1, 0.8};
   EffectiveField<PairCouplings<Memory>> const terms{
       PairCouplings<Memory>(lattice, bcc_bonds(-0.6))};
-  FieldOfMoments<EffectiveField<PairCouplings<Memory>>, Memory> const field(lattice, terms, moments,
-                                                                            g);
+  FieldOfMoments const field(terms, CellMoments<Memory>(lattice, moments, g));
   Vec3<double> const m[2] = {normalized(Vec3<double>{0.3, -0.5, 0.8}, "a test's vector"),
                              normalized(Vec3<double>{0.4, 0.1, -0.7}, "a test's vector")};
   Vec3<double> const L = (moments[0] / g[0]) * m[0] + (moments[1] / g[1]) * m[1];

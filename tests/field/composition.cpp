@@ -93,8 +93,9 @@ TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
 TYPED_TEST(Fields, WhatTermsRefuse) {
   using Memory = typename TypeParam::MemorySpace;
   using Layers = LayerAveragedSlabDemag<Memory>;
-  using Moments = FieldOfMoments<EffectiveField<>, Memory>;
-  double const nan = std::numeric_limits<double>::quiet_NaN();
+  using Moments = CellMoments<Memory>;
+  double const nan = std::numeric_limits<double>::quiet_NaN(),
+               infinity = std::numeric_limits<double>::infinity();
   auto const lattice = Lattice::chain(4);
   EXPECT_THROW(UniaxialAnisotropy(1, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(UniaxialAnisotropy(1, {0, nan, 0}), std::invalid_argument);
@@ -108,9 +109,13 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(SlabDemagOnHost({1, 1, 0}, 1, true), std::invalid_argument);
   EXPECT_THROW(Layers(lattice, 3), std::invalid_argument);
   EXPECT_THROW(Layers(lattice, -1), std::invalid_argument);
-  EXPECT_THROW(Moments(lattice, {}, {-1}), std::invalid_argument);
-  EXPECT_THROW(Moments(lattice, {}, {1}, {-1}), std::invalid_argument);
-  EXPECT_THROW(Moments(lattice, {}, {-1}, {-1}), std::invalid_argument);
+  EXPECT_THROW(Moments(lattice, {}), std::invalid_argument);
+  EXPECT_THROW(Moments(lattice, {1}, {1, 1}), std::invalid_argument);
+  for (double const bad : {-1.0, nan, infinity}) {
+    EXPECT_THROW(Moments(lattice, {bad}), std::invalid_argument);
+    EXPECT_THROW(Moments(lattice, {1}, {bad}), std::invalid_argument);
+  }
+  EXPECT_THROW(Moments(lattice, {-1}, {-1}), std::invalid_argument);
 }
 
 TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
@@ -144,7 +149,7 @@ TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
         {"LayerAveragedSlabDemag: the strength", [&] { Layers(lattice, 1, bad); }},
         {"ZeemanOfMoments: the applied field",
          [&] {
-           ZeemanOfMoments<Memory>(lattice, Vec3<double>{0, bad, 0}, {1});
+           ZeemanOfMoments(Vec3<double>{0, bad, 0}, CellMoments<Memory>(lattice, {1}));
          }},
     };
     for (Zeeman const zeeman : {Zeeman{{bad, 0, 1}}, Zeeman{{0, bad, 1}}, Zeeman{{1, 0, bad}}}) {

@@ -160,14 +160,13 @@ TYPED_TEST(Vacancies, AMomentOfZeroIsNoSpin) {
   auto lattice = Lattice::cubic(19, 2, 4);
   lattice.cell_sites = 2;
   Vec3<double> const applied{0.3, -0.2, 0.5};
-  std::vector const moments{2.0, 0.0};
+  CellMoments<Memory> const moments(lattice, {2, 0}, {1.5, 0.9});
   FieldOfMoments const field(
-      lattice,
       EffectiveField(PairCouplings<Memory>(lattice, {Coupling::of({0, 0}, {1, 0, 0}, 0.7),
                                                      Coupling::of({1, 1}, {1, 0, 0}, 0.4),
                                                      Coupling::of({0, 1}, {0, 0, 0}, 1.3)}),
-                     ZeemanOfMoments<Memory>(lattice, applied, moments)),
-      moments, {1.5, 0.9});
+                     ZeemanOfMoments(applied, moments)),
+      moments);
   auto m = random_directions(lattice.sites(), 64);
   for (std::int64_t site = 0; site < lattice.sites(); ++site)
     if (site / 38 % 2 == 1) std::fill_n(m.begin() + 3 * site, 3, 0.0);
@@ -184,11 +183,8 @@ TYPED_TEST(Vacancies, AMomentOfZeroIsNoSpin) {
     }
     expect_near(at(h, site), expected, 16 * epsilon<Real>);
   }
-  std::vector const none{1.0, -0.5};
-  EXPECT_THROW(FieldOfMoments(lattice, EffectiveField<>(), none), std::invalid_argument);
-  EXPECT_THROW(ZeemanOfMoments<Memory>(lattice, applied, none), std::invalid_argument);
-  EXPECT_THROW(FieldOfMoments(lattice, EffectiveField<>(), moments, {1.0, 0.0}),
-               std::invalid_argument);
+  EXPECT_THROW(CellMoments<Memory>(lattice, {1, -0.5}), std::invalid_argument);
+  EXPECT_THROW(CellMoments<Memory>(lattice, {2, 0}, {1, 0}), std::invalid_argument);
 }
 
 TYPED_TEST(Vacancies, MagnetizationOfOccupiedSites) {

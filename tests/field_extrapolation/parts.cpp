@@ -75,8 +75,7 @@ TEST(LocalPart, AndNeighborFieldMakeUpTheWhole) {
   EffectiveField const sites(axes, SiteDependentExchange(constants), Zeeman{{0, 1, 0}});
   expect_parts("coefficients of each site", LandauLifshitz(sites, constants));
   expect_parts("vacancies", LandauLifshitz(FieldWithVacancies(sites, occupation), 0.3));
-  FieldOfMoments<std::remove_const_t<decltype(sites)>, Spins::memory_space> const of_moments(
-      block, sites, {2});
+  FieldOfMoments const of_moments(sites, CellMoments<Spins::memory_space>(block, {2}));
   expect_parts("moments", LandauLifshitz(of_moments, 0.3));
   expect_parts("local", LandauLifshitz(EffectiveField(axes, applied), 0.3), false);
   expect_parts("exchange alone", LandauLifshitz(Exchange(block, 0.7), 0.3));

@@ -225,6 +225,7 @@ template <class Real>
 auto library_field(Numbers const& n) {
   auto const& lattice = n.lattice;
   auto const occupation = field_of_sites<Real>(lattice, n.occupied, 1);
+  CellMoments<Memory> const moments(lattice, {n.moment}, {n.gyromagnetic});
   EffectiveField const inside(
       Exchange(lattice, n.exchange),
       SiteDependentExchange<Real, Memory>(field_of_sites<Real>(lattice, n.exchange_of_sites, 0)),
@@ -232,12 +233,10 @@ auto library_field(Numbers const& n) {
       UniaxialAnisotropy(n.constant[0], n.axis[0]), UniaxialAnisotropy(n.constant[1], n.axis[1]),
       SiteDependentUniaxialAnisotropy(field_of_sites<Real>(lattice, n.constant_of_sites, 0),
                                       n.axis_of_sites),
-      CubicAnisotropy(n.cubic, {1, 0, 0}, {0, 1, 0}),
-      ZeemanOfMoments<Memory>(lattice, n.applied, {n.moment}));
-  FieldOfMoments const of_moments(lattice,
-                                  EffectiveField(FieldWithVacancies(inside, occupation),
+      CubicAnisotropy(n.cubic, {1, 0, 0}, {0, 1, 0}), ZeemanOfMoments(n.applied, moments));
+  FieldOfMoments const of_moments(EffectiveField(FieldWithVacancies(inside, occupation),
                                                  PairCouplings<Memory>(lattice, n.couplings)),
-                                  std::vector{n.moment}, std::vector{n.gyromagnetic});
+                                  moments);
   EffectiveField const torques(ZhangLi(lattice, n.velocity, n.nonadiabaticity),
                                Slonczewski(n.damping_like, n.field_like, {0, 0.6, 0.8}));
   return EffectiveField(of_moments, FieldWithVacancies(torques, occupation));

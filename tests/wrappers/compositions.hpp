@@ -153,8 +153,8 @@ void for_each_wrapper(Setting<Real> const& on, std::string const& name, Term con
     of_moments.push_back(on.factor(site) *
                          (factors.empty() ? 1 : factors[static_cast<std::size_t>(site)]));
   auto const moments = [&](auto const& inside) {
-    return FieldOfMoments<std::remove_cvref_t<decltype(inside)>, Kokkos::HostSpace>(
-        on.lattice, inside, on.moments, on.gyromagnetic);
+    return FieldOfMoments(inside,
+                          CellMoments<Kokkos::HostSpace>(on.lattice, on.moments, on.gyromagnetic));
   };
   visit("FieldOfMoments(" + name + ")", moments(term), of_moments, true);
   EffectiveField const sum(UniaxialAnisotropy(0.5, {1, 2, 3}), term);

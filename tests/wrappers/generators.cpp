@@ -103,8 +103,7 @@ TYPED_TEST(WrappedGenerators, HaveTheFieldOfTheirTerms) {
         lattice, {Coupling::of({0, 1}, {1, 0, 0}, 0.75), {{0, 0}, {0, 1, 0}, {}, 0.5}});
     UniaxialAnisotropy const axis(0.75, {1, 2, 3});
     auto const moments = [&](auto const& inside) {
-      return FieldOfMoments<std::remove_cvref_t<decltype(inside)>, Host>(
-          lattice, inside, on.moments, on.gyromagnetic);
+      return FieldOfMoments(inside, CellMoments<Host>(lattice, on.moments, on.gyromagnetic));
     };
     this->expect_generator("pairs", EffectiveField(pairs, axis), on);
     this->expect_generator("named pairs", EffectiveField(axis, Named(pairs)), on);

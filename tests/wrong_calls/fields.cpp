@@ -76,6 +76,9 @@ TEST(WrongCallsOfSums, SpinsOfOthers) {
       refuses("SiteDependentUniaxialAnisotropy",
               SiteDependentUniaxialAnisotropy(1, Vectors(Spins("axes", own))));
       refuses("FieldWithVacancies", FieldWithVacancies(EffectiveField(Zeeman()), numbers));
+      CellMoments<Kokkos::HostSpace> const moments(own, {1});
+      refuses("FieldOfMoments", FieldOfMoments(EffectiveField(Zeeman()), moments));
+      refuses("ZeemanOfMoments", ZeemanOfMoments({0, 0, 1}, moments));
       generator_refuses("Exchange", generator_on(own));
       LandauLifshitz const damped(EffectiveField{Zeeman()}, numbers);
       generator_refuses("LandauLifshitz", damped);

@@ -33,38 +33,6 @@ struct NumbersOfCell {
   }
 };
 
-inline void require_positive(char const* who, std::vector<double> const& numbers) {
-  for (double const number : numbers)
-    if (!(number > 0) || !std::isfinite(number))
-      throw std::invalid_argument(std::string(who) + ": the numbers must be positive and finite");
-}
-/// Moments, of which 0 is that of a site without a spin.
-inline void require_moments(char const* who, std::vector<double> const& moments) {
-  for (double const moment : moments)
-    if (!(moment >= 0) || !std::isfinite(moment))
-      throw std::invalid_argument(std::string(who) +
-                                  ": a moment must be finite and positive, or 0 without a spin");
-}
-
-/// A number for each site of a cell, in memory.
-template <class MemorySpace>
-class CellNumbers {
- public:
-  /// Throws std::invalid_argument unless there is a number for each site of a cell.
-  CellNumbers(char const* who, Lattice const& lattice, std::vector<double> const& numbers)
-      : view_(table_of<MemorySpace>(who, numbers)) {
-    require_whole(who, lattice);
-    if (static_cast<std::int64_t>(numbers.size()) != lattice.cell_sites)
-      throw std::invalid_argument(std::string(who) +
-                                  ": there is not one number for each site of a cell");
-  }
-
-  NumbersOfCell numbers() const { return {view_.data(), static_cast<std::int32_t>(view_.size())}; }
-
- private:
-  Kokkos::View<double*, MemorySpace> view_;
-};
-
 /// What FieldOfMoments is at one time.
 template <class Field>
 class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Field> {
@@ -142,36 +110,88 @@ struct AppliedToMoments {
 
 }  // namespace detail
 
+/// The moment mu and the gyromagnetic ratio g of each site of a crystal's cell. A moment of 0 is no
+/// spin.
+template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+class CellMoments {
+ public:
+  /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a finite number
+  /// for each site of a cell, moments not negative and gyromagnetic ratios positive.
+  CellMoments(Lattice const& lattice, std::vector<double> const& moments,
+              std::vector<double> const& gyromagnetic = {})
+      : lattice_(lattice),
+        factors_(detail::table_of<MemorySpace>("cayspin::CellMoments::factors",
+                                               checked_factors(lattice, moments, gyromagnetic))),
+        moments_(detail::table_of<MemorySpace>("cayspin::CellMoments::moments", moments)) {}
+
+  Lattice const& lattice() const { return lattice_; }
+
+  // For kernels.
+  detail::NumbersOfCell moments() const { return numbers(moments_); }
+  /// g / mu, and 0 without a spin.
+  detail::NumbersOfCell factors() const { return numbers(factors_); }
+
+ private:
+  using Table = Kokkos::View<double*, MemorySpace>;
+
+  static detail::NumbersOfCell numbers(Table const& table) {
+    return {table.data(), static_cast<std::int32_t>(table.size())};
+  }
+
+  static std::vector<double> checked_factors(Lattice const& lattice,
+                                             std::vector<double> const& moments,
+                                             std::vector<double> const& gyromagnetic) {
+    detail::require_whole("cayspin::CellMoments", lattice);
+    auto const sites = static_cast<std::size_t>(lattice.cell_sites);
+    require(moments.size() == sites, "there is not one moment for each site of a cell");
+    require(gyromagnetic.empty() || gyromagnetic.size() == sites,
+            "there is not one gyromagnetic ratio for each site of a cell");
+    std::vector<double> made;
+    for (std::size_t site = 0; site < sites; ++site) {
+      double const moment = moments[site], ratio = gyromagnetic.empty() ? 1 : gyromagnetic[site];
+      require(moment >= 0 && std::isfinite(moment),
+              "a moment must be finite and positive, or 0 without a spin");
+      require(ratio > 0 && std::isfinite(ratio),
+              "a gyromagnetic ratio must be finite and positive");
+      made.push_back(moment == 0 ? 0 : ratio / moment);
+    }
+    return made;
+  }
+  static void require(bool holds, char const* what) {
+    if (!holds) throw std::invalid_argument(std::string("cayspin::CellMoments: ") + what);
+  }
+
+  Lattice lattice_;
+  Table factors_, moments_;
+};
+
+CellMoments(Lattice, std::vector<double>, std::vector<double> = {}) -> CellMoments<>;
+
 /// The field of spins that have a moment mu and a gyromagnetic ratio g each, by sites of a
 /// crystal's cell: H = -(g / mu) dE/dm with the energies E of the terms inside. All terms have to
-/// stand inside; an applied field is a ZeemanOfMoments there. A moment of 0 is no spin: H is 0 on
-/// these sites, whose spins are to be zero vectors, by which PairCouplings see none there; lattice
-/// terms do so in a FieldWithVacancies. What conserves E without damping
-/// conserves it here, but H is not the derivative of E: EnergyControl and what else follows an
-/// energy by its derivative refuse it, and take the field inside.
-template <class Field, class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+/// stand inside; an applied field is a ZeemanOfMoments there. Without a spin H is 0; the spins of
+/// such sites are to be zero vectors, by which PairCouplings see none there; lattice terms do so in
+/// a FieldWithVacancies. What conserves E without damping conserves it here, but H is not the
+/// derivative of E: EnergyControl and what else follows an energy by its derivative refuse it, and
+/// take the field inside.
+template <class Field, class MemorySpace>
 class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Field> {
  public:
   static constexpr int energy_terms = detail::energy_terms<Field>;
   static constexpr bool is_conservative = false;
 
-  /// `gyromagnetic`: none are all 1. Throws std::invalid_argument unless both are a number for each
-  /// site of a cell, and moments not negative and gyromagnetic ratios positive.
-  FieldOfMoments(Lattice const& lattice, Field field, std::vector<double> const& moments,
-                 std::vector<double> const& gyromagnetic = {})
-      : lattice_(lattice),
-        field_(std::move(field)),
-        factors_("cayspin::FieldOfMoments", lattice, factors(moments, gyromagnetic)) {}
+  FieldOfMoments(Field field, CellMoments<MemorySpace> moments)
+      : field_(std::move(field)), moments_(std::move(moments)) {}
 
   template <class Spins>
   void check_spins(Spins const& spins) const {
-    require_lattice("cayspin::FieldOfMoments", lattice_, spins.lattice());
+    require_lattice("cayspin::FieldOfMoments", moments_.lattice(), spins.lattice());
   }
   // For Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     using Prepared = decltype(make(field_));
-    return detail::FieldTimesNumbers<Prepared>(make(field_), factors_.numbers());
+    return detail::FieldTimesNumbers<Prepared>(make(field_), moments_.factors());
   }
   template <class Test>
   bool all_parts(Test const& test) const {
@@ -179,54 +199,33 @@ class FieldOfMoments : public Forwarding<FieldOfMoments<Field, MemorySpace>, Fie
   }
 
  private:
-  static std::vector<double> factors(std::vector<double> const& moments,
-                                     std::vector<double> const& gyromagnetic) {
-    if (!gyromagnetic.empty() && gyromagnetic.size() != moments.size())
-      throw std::invalid_argument(
-          "cayspin::FieldOfMoments: there is not a gyromagnetic ratio for each moment");
-    detail::require_moments("cayspin::FieldOfMoments", moments);
-    detail::require_positive("cayspin::FieldOfMoments", gyromagnetic);
-    auto made = moments;
-    for (std::size_t site = 0; site < made.size(); ++site)
-      made[site] =
-          moments[site] == 0 ? 0 : (gyromagnetic.empty() ? 1 : gyromagnetic[site]) / moments[site];
-    return made;
-  }
-
-  Lattice lattice_;
   Field field_;
-  detail::CellNumbers<MemorySpace> factors_;
+  CellMoments<MemorySpace> moments_;
 };
 
-template <class Field>
-FieldOfMoments(Lattice, Field, std::vector<double>, std::vector<double> = {})
-    -> FieldOfMoments<Field>;
-
 /// A uniform applied field on the moments of a crystal's sites: E = -mu m.H, in a FieldOfMoments.
-template <class MemorySpace = Kokkos::DefaultExecutionSpace::memory_space>
+template <class MemorySpace>
 class ZeemanOfMoments : public detail::PreparedOnce {
  public:
   static constexpr bool is_local = true;
 
-  /// Throws std::invalid_argument unless there is a moment for each site of a cell, none of them
-  /// negative, and when the applied field is not finite.
-  ZeemanOfMoments(Lattice const& lattice, Vec3<double> const& applied,
-                  std::vector<double> const& moments)
+  /// Throws std::invalid_argument when the applied field is not finite.
+  ZeemanOfMoments(Vec3<double> const& applied, CellMoments<MemorySpace> moments)
       : applied_(detail::finite(applied, "cayspin::ZeemanOfMoments: the applied field")),
-        moments_("cayspin::ZeemanOfMoments", lattice, moments) {
-    detail::require_moments("cayspin::ZeemanOfMoments", moments);
-  }
+        moments_(std::move(moments)) {}
 
+  template <class Spins>
+  void check_spins(Spins const& spins) const {
+    require_lattice("cayspin::ZeemanOfMoments", moments_.lattice(), spins.lattice());
+  }
   template <class Exec, class Spins>
   detail::AppliedToMoments prepare(Exec const&, Spins const&, double) const {
-    return {applied_, moments_.numbers()};
+    return {applied_, moments_.moments()};
   }
 
  private:
   Vec3<double> applied_;
-  detail::CellNumbers<MemorySpace> moments_;
+  CellMoments<MemorySpace> moments_;
 };
-
-ZeemanOfMoments(Lattice, Vec3<double>, std::vector<double>) -> ZeemanOfMoments<>;
 
 }  // namespace cayspin::inline v0_1
