@@ -13,7 +13,7 @@ mpi=(mpich libmpich-dev)
 # The pages as a site. Its theme comes from the package index: Debian's furo has no dark colours.
 docs=(doxygen python3-sphinx python3-myst-parser sphinx-basic-ng python3-bs4)
 tests=("${mpi[@]}" "${docs[@]}" libgtest-dev nlohmann-json3-dev valgrind clang libclang-rt-14-dev libomp-dev pkg-config
-  python3-yaml python3-jinja2 python3-nbclient python3-ipykernel python3-xarray chromium chromium-driver
+  python3-nbclient python3-ipykernel python3-xarray chromium chromium-driver
   python3-selenium zsh)
 bench=(libbenchmark-dev)
 everything=("${core[@]}" "${io[@]}" "${program[@]}" "${python[@]}" "${tests[@]}" "${bench[@]}") # but drawing
