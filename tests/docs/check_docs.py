@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-"""Checks the pages of the project: links, lines, sentences, words, named files and commands.
+"""Checks what the pages say of the project: links, named files and commands; and their lines.
 
-Usage: check_docs.py [ROOT]             the pages: README, CHANGELOG, CONTRIBUTING and docs/
-       check_docs.py --sources [ROOT]   retired words in comments and texts of the sources
-Prints a table of counts; on each fault one line FILE:LINE, and the exit status is 1.
+Usage: check_docs.py [ROOT]              the pages: README, CHANGELOG, CONTRIBUTING and docs/
+       check_docs.py --sources [ROOT]    files and commands in comments and texts of the sources
+       check_docs.py --sentences [ROOT]  lists the long sentences of the pages, which are no faults
+Prints one line FILE:LINE on each fault; the exit status is then 1.
 """
 import glob
 import json
@@ -12,15 +13,15 @@ import os
 import re
 import sys
 
-from page import INLINE_CODE, Page, length
-from retired_words import retired_words
+from page import Page, length
 from source_texts import source_texts
 
-LINE_LIMIT = 100
-SENTENCE_LIMIT, LONG_SHARE = 30, 0.03
-SOURCE_FOLDERS = ["include", "src", "bench", "examples", "python", "cmake", "paper", "demo"]
+LINE_LIMIT, SENTENCE_LIMIT = 100, 25
+SOURCE_FOLDERS = ["include", "src", "bench", "examples", "python", "cmake", "paper", "demo", "scenes"]
+WRITTEN_BY_RUNS = ("build", ".deps", "reproduction")
 NAMED_PATH = re.compile(r"(?:\.\./)*[\w.*+-]+(?:/[\w.*+-]+)+/?|[\w.-]+\.(?:md|cff|json)")
-BOOTSTRAP = re.compile(r"bash cmake/bootstrap\.sh (\S+)(?:.*?--preset ([\w-]+))?")
+PATH_IN_TEXT = re.compile(r"(?<![\w./$}{-])\w+(?:/[\w.-]*\w)+(?![\w{*])")
+BOOTSTRAP = re.compile(r"bash cmake/bootstrap\.sh (\w[\w-]*)(?:.*?--preset ([\w-]+))?")
 
 
 def read(root, path):
@@ -68,20 +69,16 @@ def long_sentences(pages):
                                           f"{' '.join(sentence.split()[:8])} ...")
 
 
-def page_words(pages):
-    for page in pages:
-        for number, line in page.of_kind("prose", "table", "heading"):
-            for word, instead in retired_words(INLINE_CODE.sub("", line)):
-                yield page.path, number, f'"{word}": write "{instead}"'
-
-
 def holds_anything(pattern):
     return any(os.path.isfile(path) or os.listdir(path) for path in glob.glob(pattern))
 
 
+def folders_of(root):
+    return {name for name in os.listdir(root) if os.path.isdir(os.path.join(root, name))}
+
+
 def missing_files(root, pages):
-    folders = {name for name in os.listdir(root) if os.path.isdir(os.path.join(root, name))}
-    folders |= {"include", "src", "tests", "docs", "paper"}
+    folders = folders_of(root)
     for page in pages:
         for number, code in page.inline_code():
             if not NAMED_PATH.fullmatch(code):
@@ -89,26 +86,33 @@ def missing_files(root, pages):
             first = code.split("/")[0]
             if code.startswith("cayspin/"):
                 code = "include/" + code
-            elif "/" in code and (first not in folders or first in ("build", ".deps", "reproduction")):
+            elif "/" in code and (first not in folders or first in WRITTEN_BY_RUNS):
                 continue
             beside = os.path.join(root, os.path.dirname(page.path), code)
             if not holds_anything(os.path.join(root, code)) and not holds_anything(beside):
                 yield page.path, number, f"`{code}` is not in the repository"
 
 
-def wrong_commands(root, pages):
+def missing_files_of_sources(root, sources):
+    folders = folders_of(root) - {*WRITTEN_BY_RUNS}
+    for path, number, line in sources:
+        for name in PATH_IN_TEXT.findall(line):
+            if name.split("/")[0] in folders and not os.path.exists(os.path.join(root, name)):
+                yield path, number, f"{name} is not in the repository"
+
+
+def wrong_commands(root, lines):
+    """Of `lines`, each (file, line number, line)."""
     usage = re.search(r"bootstrap\.sh ([\w-]+(?:\|[\w-]+)+)", read(root, "cmake/bootstrap.sh"))
     verbs = set(usage.group(1).split("|"))
     presets = {preset["name"]
                for preset in json.loads(read(root, "CMakePresets.json"))["configurePresets"]}
-    for page in pages:
-        for number, line in enumerate(page.lines, 1):
-            for verb, preset in BOOTSTRAP.findall(line):
-                verb = verb.strip("`,.;:)")
-                if verb.lower() == verb and verb not in verbs:
-                    yield page.path, number, f"bootstrap.sh has no verb {verb}"
-                if preset.lower() == preset and preset and preset not in presets:
-                    yield page.path, number, f"there is no preset {preset}"
+    for path, number, line in lines:
+        for verb, preset in BOOTSTRAP.findall(line):
+            if verb.lower() == verb and verb not in verbs:
+                yield path, number, f"bootstrap.sh has no verb {verb}"
+            if preset.lower() == preset and preset and preset not in presets:
+                yield path, number, f"there is no preset {preset}"
 
 
 def other_first_program(root, pages):
@@ -124,60 +128,40 @@ def other_first_program(root, pages):
                 yield page.path, 1, f"the first program is not that of {example}"
 
 
-def counts(page):
-    sentences = page.sentences()
-    every = page.words("prose", "heading", "table", "link definition")
-    return [every, page.words("prose"), len(page.lines), len(sentences),
-            sum(1 for _, sentence in sentences if length(sentence) > SENTENCE_LIMIT),
-            sum(1 for _ in long_lines([page]))]
-
-
-def check_pages(root, show=print):
-    """All faults, as (file, line, sentence). Shows the table of counts."""
+def check_pages(root):
+    """All faults of the pages, as (file, line, sentence)."""
     pages = pages_of(root)
-    rows = [(page.path, counts(page)) for page in pages]
-    total = [sum(column) for column in zip(*(row for _, row in rows))]
-    show(f"{'page':40} {'words':>7} {'prose':>7} {'lines':>7} {'sentences':>10} "
-         f"{'over 30':>8} {'over 100':>9}")
-    for path, row in rows + [("all", total)]:
-        show(f"{path:40} {row[0]:7} {row[1]:7} {row[2]:7} {row[3]:10} {row[4]:8} {row[5]:9}")
-
-    faults = [*wrong_links(root, pages), *long_lines(pages), *page_words(pages),
-              *missing_files(root, pages), *wrong_commands(root, pages),
-              *other_first_program(root, pages)]
-    guide = [row for path, row in rows if path == "README.md" or path.startswith("docs" + os.sep)]
-    words = sum(row[0] for row in guide)
-    show(f"README and docs: {words} words; sentences over "
-         f"{SENTENCE_LIMIT} words: {total[4] / max(total[3], 1):.1%} of at most {LONG_SHARE:.0%}")
-    if total[4] > LONG_SHARE * total[3]:
-        faults += long_sentences(pages)
-    return faults
+    lines = [(page.path, number, line)
+             for page in pages for number, line in enumerate(page.lines, 1)]
+    return [*wrong_links(root, pages), *long_lines(pages), *missing_files(root, pages),
+            *wrong_commands(root, lines), *other_first_program(root, pages)]
 
 
 def check_sources(root):
-    """Retired words in the sources' comments and texts, as (file, line, sentence)."""
-    faults = []
-    for folder in SOURCE_FOLDERS:
-        for path in sorted(glob.glob(os.path.join(root, folder, "**", "*"), recursive=True)):
-            for number, text in source_texts(path):
-                faults += [(os.path.relpath(path, root), number, f'"{word}": write "{instead}"')
-                           for word, instead in retired_words(text)]
-    return faults
+    """All faults of the sources' comments and texts, as (file, line, sentence)."""
+    paths = [path for folder in SOURCE_FOLDERS
+             for path in sorted(glob.glob(os.path.join(root, folder, "**", "*"), recursive=True))]
+    lines = [(os.path.relpath(path, root), number, line)
+             for path in paths for number, line in source_texts(path)]
+    return [*missing_files_of_sources(root, lines), *wrong_commands(root, lines)]
 
 
 def main(arguments):
-    sources = "--sources" in arguments
-    rest = [argument for argument in arguments if argument != "--sources"]
-    if len(rest) > 1 or any(argument.startswith("-") for argument in rest):
+    options = [argument for argument in arguments if argument.startswith("-")]
+    rest = [argument for argument in arguments if argument not in options]
+    if len(rest) > 1 or len(options) > 1 or {*options} - {"--sources", "--sentences"}:
         print(__doc__, file=sys.stderr)
         return 2
     here = os.path.dirname(os.path.abspath(__file__))
     root = rest[0] if rest else os.path.join(here, "..", "..")
-    faults = check_sources(root) if sources else check_pages(root)
-    for path, number, sentence in faults:
+    if "--sentences" in options:
+        found, name = list(long_sentences(pages_of(root))), "long sentences"
+    else:
+        found, name = check_sources(root) if options else check_pages(root), "faults"
+    for path, number, sentence in found:
         print(f"{path}:{number}: {sentence}")
-    print(f"{len(faults)} faults" if faults else "no faults")
-    return 1 if faults else 0
+    print(f"{len(found) or 'no'} {name}")
+    return 1 if found and name == "faults" else 0
 
 
 if __name__ == "__main__":

@@ -18,15 +18,14 @@ class Page:
         self.path = path
         self.lines = text.split("\n")
         self.kinds = []
-        self.languages = []  # of the fence a line is in
         self._classify()
 
     def _classify(self):
-        fence, language = None, ""
+        fence = None
         for line in self.lines:
             mark = FENCE.match(line)
             if fence is None and mark:
-                fence, language, kind = mark.group(1), mark.group(2), "code"
+                fence, kind = mark.group(1), "code"
             elif fence is not None:
                 kind = "code"
                 if mark and mark.group(1).startswith(fence) and not mark.group(2):
@@ -44,18 +43,12 @@ class Page:
             else:
                 kind = "prose"
             self.kinds.append(kind)
-            self.languages.append(language if kind == "code" else "")
 
     def of_kind(self, *kinds):
         """(number, line) of each line of these kinds."""
         return [(number, line)
                 for number, (line, kind) in enumerate(zip(self.lines, self.kinds), 1)
                 if kind in kinds]
-
-    def words(self, *kinds):
-        """What stands between blanks and holds a letter, in lines of these kinds."""
-        return sum(1 for _, line in self.of_kind(*kinds)
-                   for word in line.split() if re.search(r"[A-Za-z]", word))
 
     def links(self):
         """(line number, is an image, target) of every link outside of code."""

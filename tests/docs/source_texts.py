@@ -10,7 +10,7 @@ HASH_LIKE = re.compile(
     r'(?P<doc>"""(?:.|\n)*?""")|(?P<text>"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')|'
     r"(?P<line>(?<!\S)#[^\n]*)")
 SYNTAX = {".hpp": C_LIKE, ".cpp": C_LIKE, ".h": C_LIKE, ".in": HASH_LIKE, ".py": HASH_LIKE,
-          ".sh": HASH_LIKE, ".cmake": HASH_LIKE, ".txt": HASH_LIKE}
+          ".sh": HASH_LIKE, ".cmake": HASH_LIKE, ".txt": HASH_LIKE, ".toml": HASH_LIKE}
 
 
 def source_texts(path):
