@@ -144,7 +144,6 @@ int main(int argc, char** argv) {
   runs.run<CommutatorFree4<Spins>>("commutator-free 4");
   runs.run<CommutatorFree4<Spins, isotropy::Constant>>("commutator-free 4, sigma = 6",
                                                        neighbor_sum);
-  runs.run<FieldExtrapolation4<Spins>>("field extrapolation 4");
   runs.run<RedBlack2<Spins>>("red-black 2");
   runs.run<RedBlack4<Spins>>("red-black 4");
   runs.run<Rkmk<Spins, tableau::Tsitouras5>>("order 5");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
@@ -79,12 +78,13 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `Vec3<Value> linear_field(stencil)` | the linear part of an affine H | by the degree |
 /// | `Vec3<Value> field_rate(m, rates)` | dH/dt at m along the rates | linear_field(rates) |
 /// | `static bool is_local` | H is of the spin itself and t alone | false |
-/// | `Vec3<Value> neighbor_field(stencil)` | H of the other spins | field, 0 if local |
+/// | `Vec3<Value> neighbor_field(stencil)` | H of the other spins | H has no parts; 0 if local |
 /// | `Vec3<Value> local_field(spin)` | the rest of H | 0, field if local |
 /// | `bool local_field_varies()` | does the rest change with the spin? | true, unless degree = 1 |
 ///
 /// Steppers ask for linear_field, field_rate and degree where they need derivatives
-/// (isotropy::Analytic and Series4), and for the local part where they split the field.
+/// (isotropy::Analytic and Series4). RedBlack asks for the two parts of H. Where a term has none it
+/// evaluates the whole field for each iterate of a spin.
 /// Multiples of the spin itself may be left out of neighbor_field and local_field.
 /// Conditions on values are select(condition, yes, no). No `if` works: on the host a value is a
 /// pack of several sites.
@@ -96,7 +96,6 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `check_spins(spins)` | throws for other spins and wrong numbers | takes any spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
 /// | `auto prepare_rate(exec, rates, t, dt)` | the same for dH/dt | prepare |
-/// | `auto prepare_local(exec, spins, t)` | the local part, from no spin | prepare, if local |
 /// | `static bool depends_on_time` | H changes with t, not by what is prepared | false |
 /// | `bool is_stationary(exec, spins)` | prepared once for all t and spins | true without prepare |
 /// | `bool needs_time_alone(exec, spins)` | t is enough to prepare | one of the two above |
@@ -122,9 +121,7 @@ concept FieldTerm = requires {
 /// | `bool is_orthogonal()` | A has no part along m | false |
 /// | `auto bare()` | the same with that part | itself |
 /// | `Vec3<Value> rate(m, rates)` | A' at m along the rates | isotropy::Analytic refuses it |
-/// | `static bool is_local` | A is of the spin itself and t alone | false |
-/// | `Vec3<Value> neighbor_field(stencil)` | H of the other spins | 0 |
-/// | `Vec3<Value> generator_at(spin, h)` | A in that field | field extrapolation refuses it |
+/// | `static bool is_local` | A is of the spin itself alone, linearly: for Series4 | false |
 /// | `Vec3<Value> series_source(stencil)` | what Series4 differentiates | Series4 refuses it |
 /// | `Vec3<Value> linear_series_source(stencil)` | its linear part | the same |
 /// | `Vec3<Value> derivative<K>(m, source)` | the K-th time derivative of A | the same |

@@ -7,7 +7,7 @@
 
 // Field terms and generators as the library calls them: each function calls the member of its name
 // or, where there is none, does what the tables of concepts.hpp say. field/local_part.hpp has those
-// of the local part.
+// of a field in two parts.
 namespace cayspin::inline v0_1::detail {
 
 template <class Term, class Stencil>
@@ -166,7 +166,8 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil 
 template <class Term>
 inline constexpr bool depends_on_time = requires { requires Term::depends_on_time; };
 
-/// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A.
+/// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A, and
+/// linearly.
 template <class Term>
 inline constexpr bool is_local = requires { requires Term::is_local; };
 

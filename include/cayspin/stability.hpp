@@ -233,7 +233,6 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
 /// a-priori bound that is never above the linear limit. 0 when every dt amplifies, infinity when
 /// none does.
 /// Throws std::invalid_argument for a bound or a damping that is negative or not finite.
-/// A stepper that is no Runge-Kutta method has a function of its own, of the first three arguments.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
 template <class Stepper, class Precession = bool>
 double largest_stable_step(double field_bound, double damping, Precession precession = true,
@@ -244,26 +243,22 @@ double largest_stable_step(double field_bound, double damping, Precession preces
       "bool, and sigma.");
   detail::check_bound(field_bound, damping);
   detail::finite(sigma, "cayspin::largest_stable_step: sigma");
-  if constexpr (requires { Stepper::largest_stable_step(field_bound, damping, precession); }) {
-    return Stepper::largest_stable_step(field_bound, damping, precession);
-  } else {
-    double limit = std::numeric_limits<double>::infinity();
-    detail::Complex const rate(-damping, precession ? 1 : 0);
-    if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
-    limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
-    double const scan_end = limit;
-    // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
-    int const modes = sigma == 0 ? 1 : 400;
-    for (int mode = modes; mode >= 1; --mode) {
-      auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;
-      limit = detail::first_amplifying_step(
-          [&](double dt, bool clearly) {
-            return detail::amplifies<Stepper>(of_mode, dt, sigma, clearly);
-          },
-          1 / std::abs(of_mode), limit, sigma == 0 ? 0.05 : 1e-3);
-    }
-    return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
+  double limit = std::numeric_limits<double>::infinity();
+  detail::Complex const rate(-damping, precession ? 1 : 0);
+  if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
+  limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
+  double const scan_end = limit;
+  // Without sigma the limit is y/s, so the stiffest mode decides; with it any mode may.
+  int const modes = sigma == 0 ? 1 : 400;
+  for (int mode = modes; mode >= 1; --mode) {
+    auto const of_mode = field_bound * (static_cast<double>(mode) / modes) * rate;
+    limit = detail::first_amplifying_step(
+        [&](double dt, bool clearly) {
+          return detail::amplifies<Stepper>(of_mode, dt, sigma, clearly);
+        },
+        1 / std::abs(of_mode), limit, sigma == 0 ? 0.05 : 1e-3);
   }
+  return limit < scan_end ? limit : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace cayspin::inline v0_1

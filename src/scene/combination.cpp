@@ -135,7 +135,7 @@ void check_integrator(Scene const& scene) {
                exponential ? "is made of exact exponentials" : "belongs to Cayley coordinates"),
            exponential ? "\"exponential\"" : "\"cayley\"");
   }
-  if (method.neighbors == Neighbors::by_colour) check_two_colours(scene);
+  if (method.by_colour) check_two_colours(scene);
   if (integrator.generator == Generator::tangent) return check_tangent(scene);
   check_isotropy(scene);
 }

@@ -37,9 +37,7 @@ bool has_moments(Scene const& scene) {
   return !all_equal(scene.lattice.moments, 1) || !all_equal(scene.lattice.gyromagnetic, 1);
 }
 
-bool by_two_colours(Scene const& scene) {
-  return scene.integrator.method->neighbors == Neighbors::by_colour;
-}
+bool by_two_colours(Scene const& scene) { return scene.integrator.method->by_colour; }
 bool by_series(Scene const& scene) { return scene.integrator.method->differentiates_field; }
 bool by_analytic(Scene const& scene) { return scene.integrator.isotropy == Isotropy::analytic; }
 bool by_energy(Scene const& scene) {

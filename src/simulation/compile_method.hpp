@@ -27,8 +27,7 @@ inline constexpr io::Method const& method_at = std::get<Number>(method_list);
 template <class Family, class Spins, class Own>
 struct BoundedStepper {
   using type = Own;
-  static constexpr bool exists = requires { typename Own::tableau_type; } ||
-                                 requires { Own::largest_stable_step(1.0, 1.0, true); };
+  static constexpr bool exists = requires { typename Own::tableau_type; };
 };
 template <class Family, class Spins, class Own>
   requires requires { typename Family::template StableAs<Spins>; }
@@ -117,7 +116,7 @@ class Compiled {
   static decltype(auto) generator(Generator const& of_the_scene) {
     if constexpr (Key.of_rigid_bodies)
       return of_the_scene.rigid_bodies();
-    else if constexpr (method_at<Number>.neighbors == io::Neighbors::by_colour)
+    else if constexpr (method_at<Number>.by_colour)
       return of_the_scene.landau_lifshitz();
     else
       return (of_the_scene);

@@ -95,8 +95,11 @@ SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::evaluate_with(
                               .field = terms_->field_.output(false),
                               .energies = terms_->energies_.output(false)};
   if (terms_->moves_ && purpose != FieldFor::generator) kernel.moves = terms_->moves_->array();
-  auto now = adds_applied ? without_spins(usual, purpose) : nothing();
-  if (adds_applied) kernel.terms.applied_in_field = {0, 0, 0};
+  auto now = nothing();
+  if (adds_applied) {
+    now.zeeman.applied = gyromagnetic() * usual.zeeman.applied;
+    kernel.terms.applied_in_field = {0, 0, 0};
+  }
   cayspin::detail::for_each_site<Real>(exec, "cayspin::FieldInPass", spins.layout(), kernel,
                                        spins.layout().own);
   now.stored = {terms_->field_.array(), -0.5};
@@ -151,14 +154,6 @@ OwnOfSites<typename Spins::value_type> FieldInPass<Spins>::own_of_sites() const 
   if (terms_->rates_) own.rates = terms_->rates_->array();
   if (terms_->dampings_) own.dampings = terms_->dampings_->array();
   return own;
-}
-
-template <class Spins>
-SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::without_spins(
-    SceneFieldNow<Real> const& usual, FieldFor purpose) const {
-  auto now = nothing();
-  if (terms_->adds_applied(purpose)) now.zeeman.applied = gyromagnetic() * usual.zeeman.applied;
-  return now;
 }
 
 template <class Spins>

@@ -52,9 +52,6 @@ class FieldInPass {
   /// How sites turn in H, each by its own numbers.
   OwnOfSites<Real> own_of_sites() const;
 
-  /// The terms of `usual` that look at no spin.
-  SceneFieldNow<Real> without_spins(SceneFieldNow<Real> const& usual, FieldFor purpose) const;
-
   /// The gyromagnetic ratio, where all spins have the same.
   double gyromagnetic() const;
 

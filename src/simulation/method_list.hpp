@@ -50,10 +50,6 @@ template <class Spins, int Order>
 class StiffGauss;
 template <class Spins>
 class AdaptiveStiffGauss2;
-template <class Spins, bool Estimates>
-class FieldExtrapolation3;
-template <class Spins, bool Estimates>
-class FieldExtrapolation4;
 template <class Spins, int Order>
 class RedBlack;
 template <class Spins, class Isotropy, class Series>
@@ -97,11 +93,6 @@ template <template <class, int> class Of, int Order>
 struct OfOrder {
   template <class Spins, class, class>
   using Stepper = Of<Spins, Order>;
-};
-template <template <class, bool> class Of>
-struct WithoutEstimates {
-  template <class Spins, class, class>
-  using Stepper = Of<Spins, false>;
 };
 
 /// A tableau in space, with which spins leave the sphere unless each step is projected to it.
@@ -161,7 +152,6 @@ using enum io::Isotropy;
 using enum io::Rotation;
 using enum io::Generator;
 using enum io::SystemKind;
-using enum io::Neighbors;
 using enum io::Trial;
 
 inline constexpr io::SetOf<io::Rotation> both_rotations{cayley, exponential};
@@ -266,20 +256,16 @@ inline constexpr auto method_list = [] {
                                           .evaluations = 4,
                                           .rotations = {exponential},
                                           .trials = {plain, sigma}}),
-      row<WithoutEstimates<FieldExtrapolation3>>(
-          {.word = "fx3", .order = 3, .evaluations = 1, .neighbors = predicted, .trials = {plain}}),
-      row<WithoutEstimates<FieldExtrapolation4>>(
-          {.word = "fx4", .order = 4, .evaluations = 1, .neighbors = predicted, .trials = {plain}}),
       row<OfOrder<RedBlack, 2>>({.word = "red_black2",
                                  .order = 2,
                                  .evaluations = 1,
-                                 .neighbors = by_colour,
+                                 .by_colour = true,
                                  .generators = {standard},
                                  .trials = {plain}}),
       row<OfOrder<RedBlack, 4>>({.word = "red_black4",
                                  .order = 4,
                                  .evaluations = 5,
-                                 .neighbors = by_colour,
+                                 .by_colour = true,
                                  .generators = {standard},
                                  .trials = {plain}}),
       row<AdaptiveGroup<tableau::Tsitouras5>>({.word = "tsit5",

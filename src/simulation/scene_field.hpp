@@ -7,9 +7,9 @@
 #include "whole_field.hpp"
 
 #include <cayspin/field/dear.hpp>
-#include <cayspin/field/local_part.hpp>
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/io/field.hpp>
+#include <cayspin/optional_members.hpp>
 
 #include <optional>
 #include <type_traits>
@@ -64,12 +64,6 @@ class SceneField {
     auto const now = usual_terms(exec, spins, t);
     return pass_ ? pass_->along_rows(exec, now, spins, t, purpose_) : now;
   }
-  /// Looks at no spin: without the terms that do.
-  template <class Exec>
-  SceneFieldNow<Real> prepare_local(Exec const&, Spins const&, double t) const {
-    auto const now = without_others(t);
-    return pass_ ? pass_->without_spins(now, purpose_) : now;
-  }
 
   template <class Exec, class Any>
   bool is_stationary(Exec const& exec, Any const& spins) const {
@@ -100,18 +94,12 @@ class SceneField {
  private:
   template <class Exec>
   SceneFieldNow<Real> usual_terms(Exec const& exec, Spins const& spins, double t) const {
-    auto now = without_others(t);
-    now.has_layers = layers_.has_value();
-    now.has_stored = stored_ || dear_;
+    SceneFieldNow<Real> now{lattice_terms_,      quadratic_,      {}, {}, {}, applied_.present(),
+                            layers_.has_value(), stored_ || dear_};
+    if (now.has_applied) now.zeeman = {applied_(t)};
     if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
-    return now;
-  }
-  SceneFieldNow<Real> without_others(double t) const {
-    SceneFieldNow<Real> now{lattice_terms_,     quadratic_, {},   {}, {},
-                            applied_.present(), false,      false};
-    if (now.has_applied) now.zeeman = {applied_(t)};
     return now;
   }
 

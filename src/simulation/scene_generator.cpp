@@ -131,13 +131,6 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_for_rows(Exec const& exe
 
 template <class Spins>
 template <class Exec>
-SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_local(Exec const& exec, Spins const& spins,
-                                                              double t) const {
-  return now(llg_.prepare_local(exec, spins, t), bodies_.prepare(exec, spins, t));
-}
-
-template <class Spins>
-template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
                                                              double t, double dt) const {
   return now(llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t));
@@ -149,9 +142,6 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, S
       Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
   template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
   SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_for_rows(       \
-      Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
-  template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
-  SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_local(          \
       Space const&, SpinField<Real, Space::memory_space> const&, double) const; \
   template SceneGeneratorNow<SpinField<Real, Space::memory_space>>              \
   SceneGenerator<SpinField<Real, Space::memory_space>>::prepare_rate(           \

@@ -59,19 +59,6 @@ struct SceneGeneratorNow {
                     is_llg ? llg.turning_part(stencil) : bodies(stencil));
     }
   }
-  /// A of what prepare_local returned, in the neighbour field of what prepare returned. The A of a
-  /// rigid body is its own.
-  template <class Spin, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
-                                                       Vec3<Value> const& neighbor_field) const {
-    return changed(spin, is_llg ? llg.generator_at(spin, neighbor_field) : bodies(spin));
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    return is_llg ? llg.neighbor_field(stencil) : zero<Value>();
-  }
 
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
@@ -168,8 +155,6 @@ class SceneGenerator {
   SceneGeneratorNow<Spins> prepare(Exec const& exec, Spins const& spins, double t) const;
   template <class Exec>
   SceneGeneratorNow<Spins> prepare_for_rows(Exec const& exec, Spins const& spins, double t) const;
-  template <class Exec>
-  SceneGeneratorNow<Spins> prepare_local(Exec const& exec, Spins const& spins, double t) const;
   template <class Exec>
   SceneGeneratorNow<Spins> prepare_rate(Exec const& exec, Spins const& rates, double t,
                                         double dt) const;

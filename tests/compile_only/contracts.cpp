@@ -78,7 +78,7 @@ static_assert(!detail::is_conservative<ZhangLi> &&
 using F64 = Spins<double>;
 using Adaptive = AdaptiveRkmk<F64, tableau::DormandPrince5>;
 static_assert(Stepper<Rkmk4<F64>> && Stepper<LieEuler<F64>> && Stepper<LieHeun<F64>> &&
-              Stepper<RedBlack4<F64>> && Stepper<FieldExtrapolation3<F64>> &&
+              Stepper<RedBlack4<F64>> && Stepper<LieAdamsBashforth2<F64>> &&
               Stepper<Series4<F64>> && Stepper<ImplicitMidpoint<F64>> && Stepper<Adaptive>);
 static_assert(AdaptiveStepper<Adaptive> && !AdaptiveStepper<ImplicitMidpoint<F64>> &&
               !AdaptiveStepper<Rkmk4<F64>>);

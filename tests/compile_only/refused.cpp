@@ -161,10 +161,6 @@ inline void refused() {
   LieEuler(spins, isotropy::Analytic())
       .step(exec, LandauLifshitz(EffectiveField(Term()), 0.1), spins, 0, 0.1);
 #endif
-#if MISTAKE(20)  // extrapolated_generator_without_a_field
-  // Field extrapolation needs a generator that is made of a field
-  FieldExtrapolation3(spins).step(exec, WholeGenerator(), spins, 0, 0.1);
-#endif
 #if MISTAKE(21)  // red_black_of_another_equation
   // RedBlack moves spins by the Landau-Lifshitz equation: its generator is a
   RedBlack2(spins).step(exec, orthogonal(spin_chain), spins, 0, 0.1);
@@ -272,10 +268,6 @@ inline void refused() {
 #if MISTAKE(39)  // sigma_in_place_of_precession
   // largest_stable_step takes the field bound, the damping, the precession
   largest_stable_step<Rkmk4<Spins>>(1, 0.1, 0.5);
-#endif
-#if MISTAKE(40)  // options_of_errors_that_are_not_estimated
-  // FieldExtrapolationOptions are those of a method that estimates its errors
-  FieldExtrapolation3(spins, {.restart_angle = 0.2});
 #endif
 #if MISTAKE(41)  // stop_after_the_noise_of_the_next_step
   // ThermalNoise's before_steps.. and between_steps.. come after every observer

@@ -16,9 +16,6 @@ struct Integrator : MethodChoice {
   bool of_rigid_bodies = false;
   bool relaxes = false;  // to a state of rest, by no method
 
-  /// Neighbours count as they were, or as they are predicted, while a spin moves.
-  bool takes_neighbors_apart() const { return method->neighbors != io::Neighbors::of_the_stage; }
-
   /// The method with its isotropy, and with its chart.
   std::string name() const;
   /// Generator and rotation, where the method takes some.

@@ -93,8 +93,8 @@ Section lattices() {
   Section section{"Lattices",
                   R"(
 Uniform spins with exchange 1 in a field of 1, damping 0.1, dt 1e-3. Exact: each spin is where
-one alone is, to 8 epsilon. fx and red_black are bounded. A lattice that does not fit is refused
-with what it needs and what there is.)",
+one alone is, to 8 epsilon. red_black is bounded. A lattice that does not fit is refused with
+what it needs and what there is.)",
                   {exact, refused},
                   {exact, refused}};
   using Shape = std::array<std::int64_t, 3>;

@@ -71,7 +71,7 @@ bool Table::is_kept(Run const& run) const {
   auto const& promised = run.integrator->method->keeps_length ? section_.kept : section_.broken;
   if (run.outcome.fate == Fate::detected && run.outcome.step > run.situation->detected_by)
     return false;
-  if (run.situation->against == Against::one_spin && run.integrator->takes_neighbors_apart() &&
+  if (run.situation->against == Against::one_spin && run.integrator->method->by_colour &&
       run.outcome.fate == Fate::bounded)
     return true;
   return std::ranges::find(promised, run.outcome.fate) != promised.end();

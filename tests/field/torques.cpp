@@ -154,8 +154,6 @@ TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
                            ZhangLi(lattice, {0.7, -0.4, 0.3}, 0.5));
   expect_same(in_parts, RedBlack4<Spins>(like));
   expect_same(all, RedBlack4<Spins>(like));
-  expect_same(in_parts, FieldExtrapolation4<Spins>(like));
-  expect_same(all, FieldExtrapolation4<Spins>(like));
   expect_same(EffectiveField(exchange, dmi, local), Series4<Spins>(like));
 }
 

@@ -181,7 +181,7 @@ slonczewski = { damping_like = "0.1*t", field_like = 0.2, polarization = [0, 1, 
 TEST_F(CrystalsOnRanks, StepByEveryKindOfMethod) {
   for (std::string const method :
        {"euler\"\nisotropy = \"finite_difference", "ab2", "rkmk4\"\ncompensated = true #", "rkmk8",
-        "fx4", "implicit_midpoint", "projected_rk5"}) {
+        "implicit_midpoint", "projected_rk5"}) {
     SCOPED_TRACE(method);
     auto const integrator = fmt::format("method = \"{}\"\ndt = 0.02", method);
     // rkmk8 has 13 stages: its parts have as many rows.

@@ -28,9 +28,7 @@ struct MethodChoice {
   }
 
   // Others take a tolerance, or another lattice and field: adaptive_methods.cpp, red_black.cpp.
-  bool is_tried_here() const {
-    return method.has_equal_steps() && method.neighbors != io::Neighbors::by_colour;
-  }
+  bool is_tried_here() const { return method.has_equal_steps() && !method.by_colour; }
   bool has_meaning(io::SystemKind kind) const {
     bool const needs_cayley =
         isotropy == io::Isotropy::energy || generator == io::Generator::tangent;
@@ -38,12 +36,6 @@ struct MethodChoice {
     if (generator == io::Generator::tangent && isotropy != io::Isotropy::zero) return false;
     return is_tried_here() && method.takes(rotation) && method.takes(generator) &&
            method.takes(isotropy, kind);
-  }
-
-  // Of one body alone there is nothing to extrapolate: fx3 has the order of its first steps.
-  double order(io::SystemKind kind) const {
-    bool const extrapolates = method.neighbors == io::Neighbors::predicted;
-    return extrapolates && kind == io::SystemKind::rigid_body ? 4 : method.order;
   }
 };
 
@@ -86,8 +78,8 @@ class AllMethods : public ProgramTest {
       if (fine <= floor) coarse = error("0.5"), fine = error("0.25");
       EXPECT_GT(fine, floor) << name;
       // Terms of higher orders show in long steps.
-      EXPECT_GT(std::log2(coarse / fine), choice.order(kind) - 0.4) << name;
-      EXPECT_LT(std::log2(coarse / fine), choice.order(kind) + above) << name;
+      EXPECT_GT(std::log2(coarse / fine), choice.method.order - 0.4) << name;
+      EXPECT_LT(std::log2(coarse / fine), choice.method.order + above) << name;
       if (choice.isotropy != io::Isotropy::energy) return;
       auto const energies = read_dataset("out.h5", "/energy").values;
       EXPECT_NEAR(energies.back(), energies.front(), energy_tolerance) << name;

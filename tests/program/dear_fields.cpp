@@ -90,7 +90,7 @@ TEST_F(DearFields, AreTraded) {
        {"rkmk4", "rkmk4, dear, 1 substep", "rkmk4 tangent, dear, 4 substeps",
         "projected_rk4, dear, 2 substeps", "tsit5"})
     EXPECT_TRUE(ladders.contains(name)) << name;
-  for (std::string const name : {"tsit5, dear, 2 substeps", "fx4, dear, 2 substeps"})
+  for (std::string const name : {"tsit5, dear, 2 substeps", "ab2, dear, 2 substeps"})
     EXPECT_FALSE(ladders.contains(name)) << name;
   for (std::int64_t const substeps : {1, 2}) {
     auto const& rungs = ladders.at("rkmk4, dear, " + std::to_string(substeps) +

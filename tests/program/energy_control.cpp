@@ -21,7 +21,7 @@ struct ControlledEnergy : ProgramTest {
 };
 
 TEST_F(ControlledEnergy, DriftsThirtyTimesLess) {
-  for (std::string const method : {"rkmk4", "cf4", "fx4", "projected_rk4"})
+  for (std::string const method : {"rkmk4", "cf4", "projected_rk4"})
     EXPECT_LT(drift("method='" + method + "',energy_control=true"),
               drift("method='" + method + "'") / 30)
         << method;

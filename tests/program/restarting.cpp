@@ -131,7 +131,7 @@ TEST_F(Restarting, NamesWhatElseDiffers) {
 
 // What a method remembers of another motion would be wrong: the energy that it holds, for example.
 TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
-  for (std::string const method : {"ab2", "fx4", "dp5"}) {
+  for (std::string const method : {"ab2", "dp5"}) {
     SCOPED_TRACE(method);
     Arguments same = set("integrator.method='" + method + "'", "field.applied=[0.3,-0.2,0.1]");
     if (method == "dp5") same = joined(same, set("integrator.tolerance=1e-6"));
@@ -151,7 +151,6 @@ TEST_F(Restarting, ForgetsTheStepsOfAnotherMotion) {
 /// What makes a run remember more than its spins.
 std::vector<Arguments> const memories{
     set("integrator.method='ab2'"),
-    set("integrator.method='fx4'"),
     {"--set", "integrator.compensated=true", "--precision", "single"},
     set("integrator.energy_control=true", "system.damping=0"),
     set("integrator.until_torque=1e-9"),

@@ -162,8 +162,6 @@ TEST_F(Rests, DISABLED_FromManyStartsByAllMethods) {
                                    "stiff2",
                                    "stiff4",
                                    "cf4",
-                                   "fx3",
-                                   "fx4",
                                    "red_black2",
                                    "red_black4",
                                    "tsit5",

@@ -29,7 +29,7 @@ TEST_F(SiScene, MovesAsTheReducedSceneToTheBit) {
   sigma.si += "\nisotropy = { constant = 3e11 }";
   sigma.reduced += text("\nisotropy = { constant = ", u.rate(3e11), " }");
   for (auto const& [si, reduced] :
-       {method("method = \"rkmk4\"", 1e-13), method("method = \"fx4\"", 1e-13), adaptive, sigma})
+       {method("method = \"rkmk4\"", 1e-13), method("method = \"ab2\"", 1e-13), adaptive, sigma})
     for (std::string const precision : {"double", "single"}) {
       Arguments const arguments{"--precision", precision, "--overwrite"};
       auto const h = text("[", u.applied(0.02), ", ", u.applied(-0.3), ", ", u.applied(0.1), "]");

@@ -135,8 +135,6 @@ TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
   std::string const remembers = "integrator.method: remembers steps";
   for (auto const& [arguments, part] : std::vector<std::pair<Arguments, std::string>>{
            {{"check", scene, "--set", "integrator.method='ab2'"}, remembers},
-           {{"check", scene, "--set", "integrator.method='fx3'"}, remembers},
-           {{"check", scene, "--set", "integrator.method='fx4'"}, remembers},
            {joined({"check", scene}, set("integrator.method='euler'",
                                          "integrator.isotropy='finite_difference_backward'")),
             remembers},

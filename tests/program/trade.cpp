@@ -83,7 +83,7 @@ TEST_F(Trading, ItsErrorsFallAndItsFrontIsAFront) {
     for (auto const& rung : rungs)
       if (rung["front"].get<bool>()) front.emplace_back(rung["error"], rung["seconds"]);
   }
-  for (char const* name : {"rkmk4", "rkmk4 tangent", "cf4", "fx4", "red_black4", "tsit5 tangent",
+  for (char const* name : {"rkmk4", "rkmk4 tangent", "cf4", "ab2", "red_black4", "tsit5 tangent",
                            "projected_rk4", "projected_dp5", "rkmk4, single"})
     EXPECT_TRUE(names.contains(name)) << name;
   for (auto const& [error, seconds] : front)

@@ -36,7 +36,6 @@ integrator.generator = 'tangent'; integrator.rotation = 'exponential' | : | acce
 integrator.method = 'cf4'; integrator.rotation = 'cayley' | : | accepted: "exponential"
 integrator = {method='cf4',generator='tangent',dt=0.1,end=1.0} | .generator:
   | accepted: "default", "orthogonal"
-integrator.method = 'fx4'; integrator.isotropy = {constant=1} | : | accepted: "zero"
 integrator.method = 'red_black2'; lattice = {shape=[7],boundary='periodic'} | .shape:
   | does not close on itself over the 7 sites of the periodic x
 integrator.method = 'red_black4'; lattice.boundary = 'open';

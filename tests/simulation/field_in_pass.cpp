@@ -54,10 +54,7 @@ steps = 40
       }
       try {
         auto const in_pass = scene_of(fmt::format(plain, "moments = [1]", method->word, more));
-        // Some move each spin in its own anisotropy, and extrapolate the rest.
-        bool const extrapolates = method->word.starts_with("fx");
-        double const allowed =
-            extrapolates ? 1e-4 : (method->adaptive ? 1e4 : 1e3) * epsilon(precision);
+        double const allowed = (method->adaptive ? 1e4 : 1e3) * epsilon(precision);
         EXPECT_LT(largest_distance(end_of(*usual, precision), end_of(in_pass, precision)), allowed);
         auto const energy =
             SceneRun::open(in_pass, {.precision = precision})->sample().energy.value;

@@ -49,11 +49,6 @@ void for_each_stepper(Visit const& visit) {
   visit(
       "Series4", [](Field const& like) { return Series4(like); }, Takes{.time = false});
   visit(
-      "FieldExtrapolation3", [](Field const& like) { return FieldExtrapolation3(like); }, Takes());
-  visit(
-      "FieldExtrapolation4, estimating",
-      [](Field const& like) { return FieldExtrapolation4<Field, true>(like); }, Takes());
-  visit(
       "RedBlack4", [](Field const& like) { return RedBlack4(like); },
       Takes{.nonlocal = false, .counts_fields = false});
   visit(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Landau-Lifshitz generators around wrapped terms: A from H alone, and steps of methods that ask
-// for rows, for the local part and for derivatives beside those of a method that asks for A alone.
+// Landau-Lifshitz generators around wrapped terms: A from H alone, and a step of a method that asks
+// for rows.
 #include "compositions.hpp"
 
 #include <cayspin/evaluate.hpp>
@@ -38,7 +38,7 @@ class WrappedGenerators : public ::testing::Test {
     }
     expect_evaluated(is, generator, a, spins, on.t);
     expect_evaluated(is, orthogonal(generator), with_orthogonal, spins, on.t);
-    expect_steps(is, generator, a, on);
+    expect_step(is, generator, a, on);
   }
 
  private:
@@ -47,25 +47,19 @@ class WrappedGenerators : public ::testing::Test {
                         Field const& spins, double t) {
     Host const exec;
     auto const prepared = detail::prepare_term(generator, exec, spins, t);
-    auto const local = detail::prepare_local(generator, exec, spins, t);
     auto const m = numbers_of(spins);
-    Vectors found, turning, from_parts;
+    Vectors found, turning;
     for_each_stencil(spins, [&](auto const& stencil) {
       found.push_back(in_double(detail::evaluate(prepared, stencil)));
       turning.push_back(in_double(detail::turning_part(prepared, stencil)));
-      using Site = std::remove_cvref_t<decltype(stencil.site())>;
-      detail::SpinAlone<Site> const alone(stencil.site(), stencil.center());
-      from_parts.push_back(in_double(
-          detail::generator_at(local, alone, detail::neighbor_field_of(prepared, stencil))));
     });
     is.expect_same(found, expected, "operator()");
     is.expect_turns(turning, expected, m, "turning_part");
-    is.expect_turns(from_parts, expected, m, "generator_at");
   }
 
   template <class Generator>
-  void expect_steps(Members const& is, Generator const& generator, Vectors const& a,
-                    Setting<Real> const& on) {
+  void expect_step(Members const& is, Generator const& generator, Vectors const& a,
+                   Setting<Real> const& on) {
     Host const exec;
     // A step asks for the field along rows.
     double const dt = 0.25;
@@ -78,17 +72,6 @@ class WrappedGenerators : public ::testing::Test {
       expected.push_back(Cayley::rotate(dt * a[i], at(on.m, site)));
     }
     is.expect_same(found, expected, "a step of LieEuler");
-
-    // Field extrapolation asks for both parts. It is of order 3.
-    double const short_dt = 1. / 128;
-    auto extrapolated = on.field(on.m), whole = on.field(on.m);
-    FieldExtrapolation3 by_parts(extrapolated);
-    Rkmk4 by_whole(whole);
-    for (int n = 0; n < 16; ++n) {
-      by_parts.step(exec, generator, extrapolated, on.t + n * short_dt, short_dt);
-      by_whole.step(exec, generator, whole, on.t + n * short_dt, short_dt);
-    }
-    EXPECT_LT(largest_distance(extrapolated, whole), 2e-3) << is.what();
   }
 };
 TYPED_TEST_SUITE(WrappedGenerators, Precisions, PrecisionName);

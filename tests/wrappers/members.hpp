@@ -74,11 +74,13 @@ void for_each_stencil(Field const& spins, Visit const& visit) {
     }
 }
 
+template <class Real>
+using ScalarStencil = Stencil<detail::Site<Real>, Real>;
+
 inline Vec3<double> const added_to{0.25, -0.5, 1};
 
-/// `local`: what prepare_local returned.
-template <class Prepared, class Local, class Field>
-[[gnu::noinline]] Said said(Prepared const& prepared, Local const& local, Field const& spins) {
+template <class Prepared, class Field>
+[[gnu::noinline]] Said said(Prepared const& prepared, Field const& spins) {
   using Real = typename Field::value_type;
   Said all;
   for_each_stencil(spins, [&](auto const& stencil) {
@@ -87,13 +89,15 @@ template <class Prepared, class Local, class Field>
     all.added.push_back(in_double(detail::add_field(prepared, stencil, h)));
     all.turning.push_back(in_double(detail::turning_field(prepared, stencil)));
     all.added_turning.push_back(in_double(detail::add_turning_field(prepared, stencil, h)));
-    all.neighbor.push_back(in_double(detail::neighbor_field(prepared, stencil)));
-    using Site = std::remove_cvref_t<decltype(stencil.site())>;
-    auto const m = stencil.center();
-    detail::SpinAlone<Site> const alone(stencil.site(), m);
-    all.local.push_back(in_double(detail::local_field(local, alone)));
-    detail::SpinAlone<Site> const other(stencil.site(), {m.y, m.z, m.x});
-    all.other_local.push_back(in_double(detail::local_field(local, other)));
+    if constexpr (detail::comes_in_parts<Prepared, ScalarStencil<Real>>) {
+      all.neighbor.push_back(in_double(detail::neighbor_field(prepared, stencil)));
+      using Site = std::remove_cvref_t<decltype(stencil.site())>;
+      auto const m = stencil.center();
+      detail::SpinAlone<Site> const alone(stencil.site(), m);
+      all.local.push_back(in_double(detail::local_field(prepared, alone)));
+      detail::SpinAlone<Site> const other(stencil.site(), {m.y, m.z, m.x});
+      all.other_local.push_back(in_double(detail::local_field(prepared, other)));
+    }
     all.energy.push_back(double(prepared.energy_density(stencil)));
     all.magnitude.push_back(double(detail::energy_magnitude(prepared, stencil)));
     Real of_terms[std::size_t{detail::energy_terms<Prepared> + 1}] = {};
@@ -105,9 +109,6 @@ template <class Prepared, class Local, class Field>
   });
   return all;
 }
-
-template <class Real>
-using ScalarStencil = Stencil<detail::Site<Real>, Real>;
 
 /// H at every site, and nothing else.
 template <class Term, class Field>
@@ -213,10 +214,9 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
     return detail::prepare_term(term, exec, of, t);
   };
   auto const prepared = prepare(spins, on.t);
-  auto const local = detail::prepare_local(term, exec, others, on.t);  // from no spin
   using Prepared = std::remove_const_t<decltype(prepared)>;
   using Stencil = ScalarStencil<Real>;
-  Said const here = said(prepared, local, spins);
+  Said const here = said(prepared, spins);
   Vectors const field = field_of(term, spins, on.t);
   is.expect_same(here.field, field, "field");
 
@@ -227,8 +227,9 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   is.expect_turns(here.added_turning, with_added, m, "add_turning_field");
 
   // In two parts, of which the neighbour field is that of no spin itself.
-  is.expect_turns(here.neighbor - (-1.0 * here.local), field, m, "neighbor_field and local_field");
   if constexpr (detail::comes_in_parts<Prepared, Stencil>) {
+    is.expect_turns(here.neighbor - (-1.0 * here.local), field, m,
+                    "neighbor_field and local_field");
     std::int64_t const sites = on.lattice.sites();
     for (std::int64_t site = on.seed % 2; site < sites; site += 3) {
       auto turned = m;
@@ -237,17 +238,17 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
             on.others[static_cast<std::size_t>(3 * site + c)];
       auto const there = on.field(turned);
       auto const i = static_cast<std::size_t>(site);
-      auto const neighbor = said(prepare(there, on.t), local, there).neighbor;
+      auto const neighbor = said(prepare(there, on.t), there).neighbor;
       EXPECT_LE(length(neighbor[i] - here.neighbor[i]), is.bound())
           << is.what() << ": neighbor_field of the spin itself";
     }
-    if (!detail::local_field_varies(local))
+    if (!detail::local_field_varies(prepared))
       is.expect_same(here.other_local, here.local, "local_field_varies");
   }
 
   // At which times and spins it may be used.
   Vectors const later = field_of(term, others, on.t + 0.3);
-  Said const of_others = said(prepared, local, others);
+  Said const of_others = said(prepared, others);
   if (detail::is_stationary(term, exec, spins))
     is.expect_same(of_others.field, later, "is_stationary");
   if (detail::needs_time_alone(term, exec, spins))

@@ -26,7 +26,6 @@ void for_each_stepper(Visit const& visit) {
   visit("Compensated", [](Spins const& like) { return Compensated<LieHeun<Spins>>(like); });
   visit("ImplicitMidpoint", [](Spins const& like) { return ImplicitMidpoint(like); });
   visit("Series4", [](Spins const& like) { return Series4(like); });
-  visit("FieldExtrapolation3", [](Spins const& like) { return FieldExtrapolation3(like); });
   visit("RedBlack2", [](Spins const& like) { return RedBlack2(like); });
   visit("AdaptiveRkmk", [](Spins const& like) {
     return AdaptiveRkmk<Spins, tableau::BogackiShampine3>(like, {.tolerance = 1e-4});

@@ -10,7 +10,6 @@
 #include <concepts>
 #include <cstdint>
 #include <string>
-#include <type_traits>
 
 namespace cayspin::inline v0_1::detail {
 
@@ -26,22 +25,12 @@ std::int32_t pack_count(RowLayout const& layout) {
   return (layout.nx + host_lanes<Real> - 1) / host_lanes<Real>;
 }
 
-/// Can the functor be called with two sites? Two independent sites keep the processor busy when
-/// each of them is a long chain of dependent operations.
-template <class Functor>
-inline constexpr bool takes_pairs = requires { requires Functor::takes_pairs; };
-
-/// Calls functor(site) for packs begin .. end - 1 of a row, or functor(site, next site).
+/// Calls functor(site) for packs begin .. end - 1 of a row.
 template <class Value, class Functor>
 KOKKOS_FORCEINLINE_FUNCTION void for_each_pack(Row const& row, std::int32_t begin, std::int32_t end,
                                                Functor&& functor) {
   constexpr std::int32_t lanes = lanes_of<Value>;
-  std::int32_t pack = begin;
-  if constexpr (takes_pairs<std::remove_cvref_t<Functor>>) {
-    for (; pack + 1 < end; pack += 2)
-      functor(Site<Value>(row, pack * lanes), Site<Value>(row, (pack + 1) * lanes));
-  }
-  for (; pack < end; ++pack) functor(Site<Value>(row, pack * lanes));
+  for (std::int32_t pack = begin; pack < end; ++pack) functor(Site<Value>(row, pack * lanes));
 }
 
 /// Rows y_begin .. y_end - 1 of plane z, packs pack_begin .. pack_end - 1 of each.

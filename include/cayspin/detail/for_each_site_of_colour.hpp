@@ -24,6 +24,11 @@ template <class Value, bool AtEdge>
 using PackOfColour =
     std::conditional_t<lanes_of<Value> == 1, Site<Value>, ColourSite<Value, AtEdge>>;
 
+/// Can the functor be called with two sites? Two independent sites keep the processor busy when
+/// each of them is a long chain of dependent operations.
+template <class Functor>
+inline constexpr bool takes_pairs = requires { requires Functor::takes_pairs; };
+
 /// The host loop. A functor that takes pairs is called with two packs, which may lie in different
 /// rows. A single pack that is left over is passed twice.
 template <class Real, class Functor>

@@ -6,7 +6,6 @@
 #include <cayspin/field/field_of_sites.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/host_field.hpp>
-#include <cayspin/field/local_part.hpp>
 #include <cayspin/field/multirate_weights.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>

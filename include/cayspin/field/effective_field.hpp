@@ -9,7 +9,6 @@
 #include <cayspin/stencil.hpp>
 
 #include <cstdint>
-#include <type_traits>
 #include <utility>
 
 namespace cayspin::inline v0_1 {
@@ -70,7 +69,7 @@ class EffectiveField<First, Rest...>
     rest_.begin_row(row, begin, end, fields.after(detail::row_fields<First>));
   }
 
-  // For Forwarding. What prepare_local returns has no terms without a local part.
+  // For Forwarding.
   template <class Make>
   auto with_parts(Make const& make) const {
     return join(make(first_), rest_.with_parts(make));
@@ -110,7 +109,7 @@ class EffectiveField<First, Rest...>
       return detail::neighbor_field(first_, stencil) + detail::neighbor_field(rest_, stencil);
   }
 
-  /// H of what prepare_local returned.
+  /// The rest of H.
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
     if constexpr (sizeof...(Rest) == 0)
@@ -174,10 +173,7 @@ class EffectiveField<First, Rest...>
 
   template <class Prepared, class... Others>
   static auto join(Prepared first, EffectiveField<Others...> rest) {
-    if constexpr (std::is_same_v<Prepared, detail::NoField>)
-      return rest;
-    else
-      return EffectiveField<Prepared, Others...>::from(std::move(first), std::move(rest));
+    return EffectiveField<Prepared, Others...>::from(std::move(first), std::move(rest));
   }
   static EffectiveField from(First first, EffectiveField<Rest...> rest) {
     EffectiveField joined(std::move(first), std::move(rest));

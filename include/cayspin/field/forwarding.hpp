@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/pack.hpp>
 #include <cayspin/detail/row_fields.hpp>
-#include <cayspin/field/local_part.hpp>
 #include <cayspin/optional_members.hpp>
-#include <cayspin/stencil.hpp>
 
 #include <type_traits>
 #include <utility>
@@ -33,8 +30,8 @@ struct PrepareForRows {
 ///   auto with_parts(make) const    the same, for kernels, around make(part) of each part
 ///   bool all_parts(test) const     test(part) holds for every part
 /// Members that Derived has itself come first. What with_parts returns need not have the members
-/// for field extrapolation (neighbor_field) and for rows (begin_row): without them the field is
-/// not split, and evaluated spin by spin.
+/// for RedBlack (neighbor_field) and for rows (begin_row): without them the field is not split, and
+/// evaluated spin by spin.
 template <class Derived, class... Parts>
 class Forwarding {
  public:
@@ -67,17 +64,6 @@ class Forwarding {
   auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
     return derived().with_parts(
         [&](auto const& part) { return detail::prepare_rate(part, exec, rates, t, dt); });
-  }
-  template <class Exec, class Spins>
-  auto prepare_local(Exec const& exec, Spins const& spins, double t) const {
-    using Whole = decltype(derived().prepare(exec, spins, t));
-    using Real = typename Spins::value_type;
-    using Stencil = cayspin::Stencil<detail::Site<detail::Pack<Real>>, Real>;
-    if constexpr (detail::has_field<Whole, Stencil> && !detail::says_its_parts<Whole, Stencil>)
-      return detail::NoField{};
-    else
-      return derived().with_parts(
-          [&](auto const& part) { return detail::prepare_local(part, exec, spins, t); });
   }
   template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {

@@ -5,7 +5,7 @@
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/forwarding.hpp>
-#include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cmath>
@@ -25,7 +25,7 @@ template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
  public:
-  static constexpr bool is_local = false;  // it has a generator_at
+  static constexpr bool is_local = false;  // A is not linear in the spin
 
   /// Throws std::invalid_argument when damping is negative or not finite.
   LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
@@ -91,19 +91,6 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> in_field(
       Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
     return generator(stencil.site(), stencil.center(), h);
-  }
-
-  /// H from other spins, of which generator_at makes A at a spin that has moved on since.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
-    return detail::neighbor_field(field_, stencil);
-  }
-  template <class Spin, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
-                                                       Vec3<Value> const& neighbor_field) const {
-    return generator(spin.site(), spin.center(),
-                     neighbor_field + detail::local_field(field_, spin));
   }
 
   /// A' at a spin m along the rates X, less damping X x H, which is normal to X and to what sigma

@@ -4,7 +4,7 @@
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/forwarding.hpp>
-#include <cayspin/field/local_part.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <cstddef>
@@ -82,19 +82,6 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
       Stencil const& stencil) const {
     return detail::turning_part(generator_, stencil);
-  }
-
-  // Of generators made of a field.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
-    return detail::neighbor_field_of(generator_, stencil);
-  }
-  template <class Spin, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator_at(Spin const& spin,
-                                                       Vec3<Value> const& neighbor_field) const {
-    return detail::orthogonal_part(detail::generator_at(generator_, spin, neighbor_field),
-                                   spin.center());
   }
 
   /// The generator whose part along the spin was removed.

@@ -9,13 +9,6 @@
 
 namespace cayspin::inline v0_1::io {
 
-/// What a method takes for the field of a spin's neighbours while the spin moves.
-enum class Neighbors {
-  of_the_stage,  ///< where the stage has them
-  predicted,     ///< from the fields of earlier steps
-  by_colour      ///< at rest: the lattice is coloured like a checkerboard
-};
-
 /// A way in which `cayspin trade` tries a method.
 enum class Trial { plain, in_chart, sigma, single_precision, compensated_single_precision };
 
@@ -30,11 +23,11 @@ struct Method {
   bool compensated = false;           ///< takes integrator.compensated
   bool stiff = false;                 ///< takes steps that exchange does not limit
   bool differentiates_field = false;  ///< refuses fields that depend on t
-  Neighbors neighbors = Neighbors::of_the_stage;
-  SetOf<Rotation> rotations{};       ///< none: a baseline
-  SetOf<Generator> generators{};     ///< none: a baseline
-  SetOf<Isotropy> isotropies{};      ///< but for energy
-  SetOf<SystemKind> energy_kinds{};  ///< that take the isotropy energy
+  bool by_colour = false;             ///< moves the spins of one colour of a checkerboard at a time
+  SetOf<Rotation> rotations{};        ///< none: a baseline
+  SetOf<Generator> generators{};      ///< none: a baseline
+  SetOf<Isotropy> isotropies{};       ///< but for energy
+  SetOf<SystemKind> energy_kinds{};   ///< that take the isotropy energy
   SetOf<Trial> trials{};
 
   /// Outside the Lie group: takes neither generator, isotropy nor rotation.

@@ -10,22 +10,6 @@
 
 namespace cayspin::inline v0_1::detail {
 
-/// The weights at time x of the polynomial through Count fields at times `nodes`.
-template <std::size_t Count>
-std::array<double, Count> interpolation_weights(std::array<double, Count> const& nodes, double x) {
-  std::array<double, Count> weights;
-  for (std::size_t i = 0; i < Count; ++i) {
-    double above = 1, below = 1;
-    for (std::size_t j = 0; j < Count; ++j) {
-      if (j == i) continue;
-      above *= x - nodes[j];
-      below *= nodes[i] - nodes[j];
-    }
-    weights[i] = above / below;
-  }
-  return weights;
-}
-
 /// The last Count fields of a run, a ring, and the steps between them.
 template <class Field, std::size_t Count>
 class FieldHistory {
@@ -35,7 +19,6 @@ class FieldHistory {
   }
 
   std::size_t known() const { return known_; }
-  bool is_full() const { return known_ == Count; }
   void forget() { known_ = 0; }
 
   /// The field `back` steps before the last one that was stored.
@@ -51,8 +34,6 @@ class FieldHistory {
     steps_[0] = dt;
   }
 
-  /// The step from the last field that was stored.
-  double last_step() const { return steps_[0]; }
   /// May a step of dt follow it? It may grow by a factor of 2 at most.
   bool is_followed_by(double dt) const { return 0 < dt / steps_[0] && dt / steps_[0] <= 2; }
 
@@ -66,15 +47,13 @@ class FieldHistory {
     }
   }
 
-  /// Times of the state after `skipped` steps before the last one, as 0, and of the Nodes - 1
-  /// fields before it, with steps of `unit`.
-  template <std::size_t Nodes>
-  std::array<double, Nodes> times(std::size_t skipped, double unit) const {
-    static_assert(Nodes <= Count + 1);
-    std::array<double, Nodes> times{};
+  /// Times of the state after the last step, as 0, and of the Count - 1 fields before it, with
+  /// steps of `unit`.
+  std::array<double, Count> times(double unit) const {
+    std::array<double, Count> times{};
     double sum = 0;
-    for (std::size_t j = 1; j < Nodes; ++j) {
-      sum += steps_[skipped + j - 1];
+    for (std::size_t j = 1; j < Count; ++j) {
+      sum += steps_[j - 1];
       times[j] = -sum / unit;
     }
     return times;

@@ -154,7 +154,7 @@ class Multirate : public detail::StepperBase<typename Stepper::spins_type> {
   void go_on(Exec const& exec, Generator const& generator, Spins& spins, double t, double dt) {
     past_.remember(dt);
     // At first the value at the end is missing: nodes and values begin with the second.
-    auto nodes = past_.template times<past_fields>(0, dt);
+    auto nodes = past_.times(dt);
     std::array<Spins, past_fields> values;
     std::size_t known = std::min(past_.known(), past_fields - 1);
     for (std::size_t i = 0; i <= known; ++i) {

@@ -4,10 +4,10 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/unrolled.hpp>
-#include <cayspin/field/local_part.hpp>
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/isotropy/energy.hpp>
 #include <cayspin/isotropy/policies.hpp>
+#include <cayspin/optional_members.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
