@@ -154,7 +154,6 @@ void register_order_4() {
   add<Order4, Orthogonal<Default>>("RKMK4, orthogonal", 57);
   add<Rkmk4<Spins, isotropy::Zero, Exponential>>("RKMK4, exponential", 57);
   add<StereographicRungeKutta<Spins, tableau::Classical4>>("RKMK4, tangent", 39);
-  add<EnergyProjection<Order4>>("RKMK4, projected to its energy", 0);
   add<Series4<Spins>>("RKMK4, series", 0);
   add<Order4, Bodies>("RKMK4 of bodies", 57);
   add<Rkmk4<Spins, isotropy::Energy>, Bodies>("RKMK4 of bodies, dcor", 57);

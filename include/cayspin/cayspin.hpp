@@ -49,7 +49,6 @@
 #include <cayspin/stepper/adaptive_runge_kutta.hpp>
 #include <cayspin/stepper/adaptive_stiff_gauss.hpp>
 #include <cayspin/stepper/corrected_euler.hpp>
-#include <cayspin/stepper/energy_projection.hpp>
 #include <cayspin/stepper/implicit.hpp>
 #include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/multirate.hpp>

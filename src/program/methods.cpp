@@ -14,8 +14,7 @@ std::string method(Variant const& variant) {
 
 std::string isotropies(Variant const& variant) {
   if (variant.method->is_baseline()) return "-";
-  if (variant.isotropy == io::Isotropy::energy)
-    return variant.of_rigid_bodies ? "energy (rigid_body)" : "energy (llg)";
+  if (variant.isotropy == io::Isotropy::energy) return "energy (rigid_body)";
   bool const constant = variant.isotropy == io::Isotropy::zero && !variant.in_chart &&
                         variant.method->takes(io::Isotropy::constant, io::SystemKind::llg);
   return std::string(io::to_string(variant.isotropy)) + (constant ? ", constant" : "");

@@ -58,20 +58,19 @@ void check_compensation(Scene const& scene) {
 void check_isotropy(Scene const& scene) {
   auto const& [system, integrator] = std::tie(scene.system, scene.integrator);
   constexpr std::string_view key = "integrator.isotropy";
+  bool const is_energy = integrator.isotropy == Isotropy::energy;
+  if (is_energy && system.kind != SystemKind::rigid_body)
+    refuse(scene, key, "\"energy\" corrects steps of kind = \"rigid_body\" alone",
+           accepted_isotropies(integrator, system.kind));
   if (!integrator.method->takes(integrator.isotropy, system.kind))
     refuse(scene, key,
            fmt::format("\"{}\" does not go with method \"{}\" and kind = \"{}\"",
                        to_string(integrator.isotropy), integrator.method->word,
                        to_string(system.kind)),
            accepted_isotropies(integrator, system.kind));
-  if (integrator.isotropy != Isotropy::energy) return;
-  if (integrator.rotation != Rotation::cayley)
+  if (is_energy && integrator.rotation != Rotation::cayley)
     refuse(scene, "integrator.rotation", "isotropy \"energy\" belongs to Cayley coordinates",
            "\"cayley\"");
-  if (system.kind == SystemKind::rigid_body) return;
-  if (system.damping != 0 || !system.precession)
-    refuse(scene, key, "\"energy\" needs a system that conserves its energy",
-           "damping = 0 with precession, or another isotropy");
 }
 
 // Colours of a checkerboard that closes on itself.

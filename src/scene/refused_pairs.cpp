@@ -40,9 +40,6 @@ bool has_moments(Scene const& scene) {
 bool by_two_colours(Scene const& scene) { return scene.integrator.method->by_colour; }
 bool by_series(Scene const& scene) { return scene.integrator.method->differentiates_field; }
 bool by_analytic(Scene const& scene) { return scene.integrator.isotropy == Isotropy::analytic; }
-bool by_energy(Scene const& scene) {
-  return scene.integrator.isotropy == Isotropy::energy && scene.system.kind == SystemKind::llg;
-}
 bool by_control(Scene const& scene) { return scene.integrator.energy_control; }
 bool until_torque(Scene const& scene) { return scene.integrator.until_torque.has_value(); }
 
@@ -86,16 +83,6 @@ constexpr RefusedPair pairs[] = {
     {"gyromagnetic ratios that differ", "isotropy analytic",
      "\"analytic\" does not go with gyromagnetic ratios that differ", isotropy_key, no_isotropy,
      turns_by_sites, by_analytic},
-    {"torques", "isotropy energy", "\"energy\" does not go with a current, which does work",
-     isotropy_key, no_isotropy, has_torque, by_energy},
-    {"damping of sites", "isotropy energy", "\"energy\" does not go with damping", isotropy_key,
-     no_isotropy, has_dampings, by_energy},
-    {moments, "isotropy energy",
-     "\"energy\" does not go with moments and gyromagnetic ratios other than 1: the field is not "
-     "the derivative of the energy",
-     isotropy_key, no_isotropy, has_moments, by_energy},
-    {"a field that depends on t", "isotropy energy", "\"energy\" needs a field without t",
-     isotropy_key, "another isotropy", depends_on_time, by_energy},
     {"torques", "energy_control", "does not go with a current, which does work", control_key,
      "no such key", has_torque, by_control},
     {"damping of sites", "energy_control", "does not go with damping", control_key, "no such key",

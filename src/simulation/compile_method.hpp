@@ -42,9 +42,6 @@ class Compiled {
   using Family = typename std::tuple_element_t<Number, decltype(method_list)>::family;
   using HostSpins = SpinField<double, Kokkos::DefaultHostExecutionSpace::memory_space>;
 
-  static constexpr bool projects_to_energy =
-      Key.isotropy == io::Isotropy::energy && !Key.of_rigid_bodies;
-
   static constexpr auto isotropy(MethodOptions const& options) {
     using enum io::Isotropy;
     if constexpr (Key.isotropy == analytic)
@@ -53,7 +50,7 @@ class Compiled {
       return isotropy::FiniteDifference{options.cap};
     else if constexpr (Key.isotropy == finite_difference_backward)
       return isotropy::FiniteDifferenceBackward{options.cap};
-    else if constexpr (Key.isotropy == energy && Key.of_rigid_bodies)
+    else if constexpr (Key.isotropy == energy)
       return isotropy::Energy{};
     else
       return SceneIsotropy{options.sigma};
@@ -67,7 +64,7 @@ class Compiled {
     else
       return std::type_identity<typename Family::template Stepper<Spins, Isotropy, Rotation>>{};
   }
-  /// Neither compensated nor projected: what a bound on dt is known of.
+  /// Not compensated: what a bound on dt is known of.
   template <class Spins, class Rotation>
   using Plain = typename decltype(plain_stepper<Spins, Rotation>())::type;
 
@@ -76,8 +73,6 @@ class Compiled {
     using Of = Plain<Spins, Rotation>;
     if constexpr (Key.compensated)
       return std::type_identity<Compensated<Of>>{};
-    else if constexpr (projects_to_energy)
-      return std::type_identity<EnergyProjection<Of>>{};
     else
       return std::type_identity<Of>{};
   }
@@ -105,8 +100,6 @@ class Compiled {
       return Of(like, options.steps, isotropy(options));
     else if constexpr (std::is_constructible_v<Of, Spins, StepOptions>)
       return Of(like, options.steps);
-    else if constexpr (projects_to_energy)
-      return Of(like, Plain<Spins, Cayley>(like));
     else if constexpr (std::is_constructible_v<Of, Spins, Isotropy>)
       return Of(like, isotropy(options));
     else
@@ -224,16 +217,15 @@ std::vector<Variant> compile_method() {
   std::vector<Variant> all;
   if constexpr (!method.automatic) {
     auto const add = [&]<VariantKey Key>() { all.push_back(Compiled<Number, Key>::variant()); };
-    constexpr auto has = [](io::Isotropy isotropy, io::SystemKind kind = io::SystemKind::llg) {
-      return method.takes(isotropy, kind);
+    constexpr auto has = [](io::Isotropy isotropy) {
+      return method.takes(isotropy, io::SystemKind::llg);
     };
     add.template operator()<VariantKey{}>();
     if constexpr (method.compensated) add.template operator()<VariantKey{.compensated = true}>();
     if constexpr (requires { Family::distinguishes_rigid_bodies; })
       add.template operator()<VariantKey{.of_rigid_bodies = true}>();
-    if constexpr (has(energy, io::SystemKind::rigid_body))
+    if constexpr (method.corrects_energy)
       add.template operator()<VariantKey{.isotropy = energy, .of_rigid_bodies = true}>();
-    if constexpr (has(energy)) add.template operator()<VariantKey{.isotropy = energy}>();
     if constexpr (has(analytic)) add.template operator()<VariantKey{.isotropy = analytic}>();
     if constexpr (has(finite_difference))
       add.template operator()<VariantKey{.isotropy = finite_difference}>();

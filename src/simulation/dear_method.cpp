@@ -98,7 +98,6 @@ class DearMethod final : public OpenMethod {
 bool takes_dear_fields(io::Integrator const& integrator, Variant const& variant) {
   auto const& method = *integrator.method;
   bool const sees_each_stage = method.differentiates_field ||
-                               integrator.isotropy == io::Isotropy::energy ||
                                integrator.isotropy == io::Isotropy::analytic ||
                                integrator.isotropy == io::Isotropy::finite_difference;
   return method.has_equal_steps() && !variant.remembers && variant.evaluations && !sees_each_stage;

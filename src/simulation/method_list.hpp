@@ -151,7 +151,6 @@ namespace sets {
 using enum io::Isotropy;
 using enum io::Rotation;
 using enum io::Generator;
-using enum io::SystemKind;
 using enum io::Trial;
 
 inline constexpr io::SetOf<io::Rotation> both_rotations{cayley, exponential};
@@ -203,21 +202,20 @@ inline constexpr auto method_list = [] {
           {.word = "euler",
            .rotations = both_rotations,
            .isotropies = {zero, constant, analytic, finite_difference, finite_difference_backward},
-           .energy_kinds = {llg},
            .trials = {plain}}),
       row<WithRotation<ImplicitLieEuler>>({.word = "implicit_euler",
                                            .order = 1,
                                            .rotations = both_rotations,
                                            .isotropies = {zero, constant, analytic}}),
       row<GroupBy<LieHeun, tableau::Heun>>({.word = "heun",
+                                            .corrects_energy = true,
                                             .rotations = both_rotations,
-                                            .energy_kinds = {llg, rigid_body},
                                             .trials = {plain, in_chart, single_precision}}),
       row<GroupBy<Rkmk4, tableau::Classical4>>(
           {.word = "rkmk4",
            .compensated = true,
+           .corrects_energy = true,
            .rotations = both_rotations,
-           .energy_kinds = {llg, rigid_body},
            .trials = {plain, in_chart, sigma, single_precision, compensated_single_precision}}),
       row<WithIsotropy<Rkmk4AsPrinted>>({.word = "rkmk4_as_printed", .order = 3, .evaluations = 4}),
       row<Group<tableau::Oscillatory64>>({.word = "rkmk64", .trials = {plain, in_chart}}),
@@ -231,13 +229,13 @@ inline constexpr auto method_list = [] {
                                                   .order = 4,
                                                   .evaluations = 4,
                                                   .differentiates_field = true,
-                                                  .energy_kinds = {rigid_body},
+                                                  .corrects_energy = true,
                                                   .trials = {plain}}),
       row<Series<cayspin::detail::PaperSeries>>({.word = "series4_paper",
                                                  .order = 4,
                                                  .evaluations = 4,
                                                  .differentiates_field = true,
-                                                 .energy_kinds = {rigid_body}}),
+                                                 .corrects_energy = true}),
       row<WithRotation<LieAdamsBashforth2>>({.word = "ab2",
                                              .order = 2,
                                              .evaluations = 1,

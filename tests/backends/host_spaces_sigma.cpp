@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The same bits on Serial and on the threaded space: steppers that remember, iterate, differentiate
-// and project, and one that changes sites in place while others are read.
+// The same bits on Serial and on the threaded space: steppers that remember, iterate and
+// differentiate, and one that changes sites in place while others are read.
 #include "equal_bits.hpp"
 
 using namespace cayspin;
@@ -19,11 +19,6 @@ struct ByNewton : ImplicitMidpoint<Field> {
   explicit ByNewton(Field const& like) : ImplicitMidpoint<Field>(like, {8, 2, 30}) {}
 };
 
-template <class Field>
-struct Projected : EnergyProjection<LieHeun<Field>> {
-  explicit Projected(Field const& like) : Projected::EnergyProjection(like, LieHeun(like)) {}
-};
-
 TYPED_TEST(HostSpacesOfSigma, StepAlike) {
   using Field = typename TestFixture::Field;
   expect_same_on_host_spaces<LieEuler<Field, Analytic>, LieEuler<Field, FiniteDifferenceBackward>,
@@ -31,13 +26,6 @@ TYPED_TEST(HostSpacesOfSigma, StepAlike) {
                              StereographicRungeKutta<Field, tableau::Kutta3>,
                              ImplicitLieEuler<Field, Analytic>, ByNewton<Field>, Series4<Field>>(
       natural);
-}
-
-TYPED_TEST(HostSpacesOfSigma, EnergyProjection) {
-  expect_same_on_host_spaces<Projected<typename TestFixture::Field>>([](Slab slab) {
-    slab.damping = 0;
-    return slab.natural();
-  });
 }
 
 // On lattices that have a checkerboard.

@@ -237,10 +237,6 @@ inline void refused() {
   // This needs a field that is the derivative of an energy, without terms that
   { EnergyControl const control{orthogonal(torque), spins}; }
 #endif
-#if MISTAKE(36)  // energy_projection_under_a_torque
-  // This needs a field that is the derivative of an energy, without terms that
-  EnergyProjection(spins, LieEuler(spins)).step(exec, torque, spins, 0, 0.1);
-#endif
 #if MISTAKE(37)  // layers_of_moments_with_vacancies
   // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
   {

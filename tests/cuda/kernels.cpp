@@ -32,10 +32,10 @@ struct Steppers {
       Rkmk<S, tableau::Kutta3>, Rkmk4<S>, Compensated<Rkmk4<S>>,
       Rkmk4<S, isotropy::Zero, Exponential>, Rkmk4AsPrinted<S>,
       StereographicRungeKutta<S, tableau::Heun>, StereographicRungeKutta<S, tableau::Classical4>,
-      Series4<S>, Series4Paper<S>, EnergyProjection<LieHeun<S>>, ImplicitLieEuler<S>,
-      ImplicitLieEuler<S, isotropy::Analytic>, ImplicitMidpoint<S>, ClassicalEuler<S>,
-      ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>, ProjectedHeun<S>, ProjectedRk4<S>,
-      ProjectedRungeKutta<S, tableau::Oscillatory74>, RedBlack2<S>, StiffGauss2<S>, StiffGauss4<S>>
+      Series4<S>, Series4Paper<S>, ImplicitLieEuler<S>, ImplicitLieEuler<S, isotropy::Analytic>,
+      ImplicitMidpoint<S>, ClassicalEuler<S>, ClassicalHeun<S>, ClassicalRk4<S>, ProjectedEuler<S>,
+      ProjectedHeun<S>, ProjectedRk4<S>, ProjectedRungeKutta<S, tableau::Oscillatory74>,
+      RedBlack2<S>, StiffGauss2<S>, StiffGauss4<S>>
       of_spins;
   std::tuple<LieHeun<S, isotropy::Energy>, Rkmk4<S, isotropy::Energy>, Series4<S, isotropy::Energy>,
              Series4Paper<S, isotropy::Energy>>

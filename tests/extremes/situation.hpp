@@ -27,7 +27,6 @@ struct Setting {
   double field = 1, damping = 0, dt = 1. / 128;  // a power of two, as no precision rounds it
   std::int64_t steps = 6;
   std::array<std::int64_t, 3> shape{1, 1, 1};
-  bool asks_for_damping = false;  // of methods that conserve the energy too
   bool along_field = false;
   double switched_on_at = 0;               // > 0: the field is 0 before
   double start_length = 1;                 // of the first spin, after the program's own normalising

@@ -68,7 +68,7 @@ One spin in a field of 1. At damping 1e-12 a method may add more energy than the
                   {bounded, warned, refused, detected},
                   {drifts, warned}};
   for (char const* damping : {"0", "1e-12", "1e12"})
-    section.add(damping, {.damping = std::stod(damping), .asks_for_damping = true});
+    section.add(damping, {.damping = std::stod(damping)});
   return section;
 }
 

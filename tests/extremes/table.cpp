@@ -49,8 +49,7 @@ to the output, and every run to the promise above its table.
 
 Runs take six steps of 1/128 unless the table says otherwise. Two words are for double and single
 precision. Brackets hold generators and rotations where not all behave alike. Constant sigmas
-behave as zero does. Methods that conserve the energy run without damping, unless the table is
-about damping.
+behave as zero does.
 
 A program of your own has neither the warnings nor the guard. Where a table says warned or
 detected, call `largest_stable_step` before the run, and `energy` and `norm_defect` during it.

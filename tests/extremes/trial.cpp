@@ -186,8 +186,6 @@ Outcome try_out(Integrator const& integrator, Situation const& situation, Precis
   if (integrator.relaxes) return try_to_relax(integrator, situation, precision);
   bool const in_double = precision == Precision::double_precision;
   auto setting = in_double ? situation.in_double : situation.in_single;
-  bool const conserves = integrator.isotropy == io::Isotropy::energy;
-  if (conserves && !setting.asks_for_damping) setting.damping = 0;
   try {
     auto const scene = scene_of(integrator, setting);
     auto const plan = make_plan(scene, precision);

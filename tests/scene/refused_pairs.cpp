@@ -58,7 +58,6 @@ std::vector<std::pair<std::string, Overrides>> terms() {
 std::vector<std::pair<std::string, Overrides>> methods_and_keys() {
   std::vector<std::pair<std::string, Overrides>> all{
       {"isotropy analytic", {"integrator.method='euler'", "integrator.isotropy='analytic'"}},
-      {"isotropy energy", {"integrator.isotropy='energy'"}},
       {"sigma", {"integrator.isotropy={constant=0.3}"}},
       {"tangent", {"integrator.generator='tangent'"}},
       {"orthogonal", {"integrator.generator='orthogonal'"}},

@@ -11,19 +11,15 @@ TEST(WrongCombination, OfSpins) {
   expect_refused(llg_scene, R"(
 field.slab_demag = {normal=[1,0,0],where='host',dear=true};
  integrator = {method='auto',error=1e-3,end=1,substeps=2} | .substeps: | "auto" chooses the substeps
-integrator.isotropy = 'analytic' | : | accepted: "zero", { constant = sigma }, "energy"
+integrator.isotropy = 'analytic' | : | accepted: "zero", { constant = sigma }
 integrator.method = 'implicit_euler'; integrator.isotropy = 'finite_difference' | :
   | accepted: "zero", { constant = sigma }, "analytic"
 integrator.method = 'implicit_midpoint'; integrator.isotropy = {constant=1} | : | accepted: "zero"
 integrator.method = 'series4'; integrator.isotropy = {constant=1} | : | accepted: "zero"
-integrator.method = 'ab2'; integrator.isotropy = 'energy' | :
+integrator.isotropy = 'energy' | : "energy" corrects steps of kind = "rigid_body" alone
   | accepted: "zero", { constant = sigma }
-integrator.isotropy = 'energy' | : | damping = 0
-system.damping = 0.0; system.precession = false; integrator.isotropy = 'energy' | :
-  | conserves its energy
-system.damping = 0.0; integrator.isotropy = 'energy' | : | without t
-integrator.isotropy = 'energy'; system.damping = 0.0; field.applied = [0,0,1];
- integrator.rotation = 'exponential' | : | belongs to Cayley coordinates
+integrator.method = 'series4'; integrator.isotropy = 'energy' | :
+ "energy" corrects steps of kind = "rigid_body" alone | accepted: "zero"
 integrator.method = 'series4' | : | fields that depend on t
 integrator.method = 'series4_paper'; field.applied = [0,0,1]; integrator.rotation = 'exponential'
   | : | belongs to Cayley coordinates
@@ -58,8 +54,6 @@ integrator.method = 'euler'; integrator.compensated = true | :
   | accepted: "rkmk4", "rkmk5", "projected_rk4", "projected_rk5"
 integrator.method = 'rkmk4'; integrator.compensated = true; integrator.rotation = 'exponential' | :
   | accepted: "cayley"
-system.damping = 0.0; field.applied = [0,0,1]; integrator.method = 'rkmk4';
- integrator.compensated = true; integrator.isotropy = 'energy' | : | does not go with compensated
 integrator.isotropy_cap = 2.0 | : | belongs to isotropy
 integrator.method = 'euler'; integrator.isotropy = 'finite_difference';
  integrator.isotropy_cap = -1.0 | : | a number > 0
@@ -69,6 +63,10 @@ integrator.method = 'euler'; integrator.isotropy = 'finite_difference';
 TEST(WrongCombination, OfRigidBodies) {
   expect_refused(body_scene, R"(
 integrator.method = 'euler'; integrator.isotropy = 'energy' | : | kind = "rigid_body"
+integrator.method = 'ab2'; integrator.isotropy = 'energy' | :
+  | accepted: "zero", { constant = sigma }
+integrator.method = 'rkmk4'; integrator.compensated = true; integrator.isotropy = 'energy' | :
+  | does not go with compensated
 integrator.method = 'red_black2' | : | moves spins of a lattice
 integrator.isotropy = 'energy'; integrator.rotation = 'exponential' | :
   | belongs to Cayley coordinates

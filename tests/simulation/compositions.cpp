@@ -302,7 +302,7 @@ void expect_same(unsigned seed, std::map<std::string, int>& refused) {
   };
   static constexpr std::string_view options[] = {"isotropy = { constant = 0.3 }",
                                                  "isotropy = 'analytic'",
-                                                 "isotropy = 'energy'",
+                                                 "isotropy = 'finite_difference_backward'",
                                                  "generator = 'tangent'",
                                                  "generator = 'orthogonal'",
                                                  "rotation = 'exponential'",

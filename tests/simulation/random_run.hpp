@@ -46,7 +46,7 @@ class RandomRun {
   std::string scene(Variant const& variant) {
     bool const bodies = variant.of_rigid_bodies ||
                         (variant.isotropy == io::Isotropy::zero && !variant.in_chart && one_in(8));
-    auto text = bodies ? rigid_bodies() : lattice_and_field(variant);
+    auto text = bodies ? rigid_bodies() : lattice_and_field();
     text += fmt::format("[initial]\nrandom = {{ seed = {} }}\n", 1 + below(1000));
     text += fmt::format("[integrator]\n{}\n", integrator(variant, bodies));
     return text;
@@ -59,8 +59,8 @@ class RandomRun {
         1 + below(20));
   }
 
-  std::string lattice_and_field(Variant const& variant) {
-    conserves_ = variant.isotropy == io::Isotropy::energy || one_in(3);
+  std::string lattice_and_field() {
+    conserves_ = one_in(3);
     static constexpr char const* shapes[] = {"[13]", "[8, 6]", "[4, 6, 4]", "[1, 9]", "[34, 2]"};
     static constexpr char const* boundaries[] = {"\"open\"", "\"periodic\""};
     auto text = fmt::format("[system]\nkind = \"llg\"\ndamping = {}\n",

@@ -53,11 +53,10 @@ bool holds(Variant const& variant, KindOfField const& field, Precision precision
   for (auto& c : keys)
     if (c == ',') c = '\n';
   auto const text = fmt::format(
-      "[system]\nkind = 'llg'\ndamping = {}\n[lattice]\nshape = [{}, {}, {}]\nboundary = '{}'\n"
+      "[system]\nkind = 'llg'\ndamping = 0.1\n[lattice]\nshape = [{}, {}, {}]\nboundary = '{}'\n"
       "[field]\nexchange = 1.0\n{}[initial]\nrandom = {{ seed = {} }}\n"
       "[integrator]\n{}\ndt = 0.02\nsteps = {}\n{}",
-      variant.isotropy == io::Isotropy::energy ? "0.0" : "0.1", nx, ny,
-      least_planes(precision, nx * ny), random.one_in(2) ? "open" : "periodic", field.keys,
+      nx, ny, least_planes(precision, nx * ny), random.one_in(2) ? "open" : "periodic", field.keys,
       1 + random.below(1000), keys, steps, variant.method->adaptive ? "tolerance = 1e-4\n" : "");
   std::optional<io::Scene> scene;
   try {

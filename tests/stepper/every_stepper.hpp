@@ -12,7 +12,7 @@ namespace cayspin::test {
 
 /// What a stepper takes beside Landau-Lifshitz with local terms.
 struct Takes {
-  bool time = true, nonlocal = true, damping = true, counts_fields = true;
+  bool nonlocal = true, counts_fields = true;
 };
 
 /// Calls visit(name, make, takes) for one stepper of each kind: make(like) is a new one.
@@ -47,7 +47,7 @@ void for_each_stepper(Visit const& visit) {
   visit(
       "ImplicitMidpoint", [](Field const& like) { return ImplicitMidpoint(like); }, Takes());
   visit(
-      "Series4", [](Field const& like) { return Series4(like); }, Takes{.time = false});
+      "Series4", [](Field const& like) { return Series4(like); }, Takes());
   visit(
       "RedBlack4", [](Field const& like) { return RedBlack4(like); },
       Takes{.nonlocal = false, .counts_fields = false});
@@ -57,9 +57,6 @@ void for_each_stepper(Visit const& visit) {
         return AdaptiveRkmk<Field, tableau::BogackiShampine3>(like, {.tolerance = 1e-4});
       },
       Takes());
-  visit(
-      "EnergyProjection", [](Field const& like) { return EnergyProjection(like, LieEuler(like)); },
-      Takes{.time = false, .damping = false, .counts_fields = false});
   visit(
       "StiffGauss2", [](Field const& like) { return StiffGauss2(like); }, Takes());
   visit(

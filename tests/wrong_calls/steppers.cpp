@@ -30,8 +30,6 @@ void for_each_stepper(Visit const& visit) {
   visit("AdaptiveRkmk", [](Spins const& like) {
     return AdaptiveRkmk<Spins, tableau::BogackiShampine3>(like, {.tolerance = 1e-4});
   });
-  visit("EnergyProjection",
-        [](Spins const& like) { return EnergyProjection(like, LieEuler(like)); });
   visit("Rkmk4AsPrinted", [](Spins const& like) { return Rkmk4AsPrinted<Spins>(like); });
 #endif
 }

@@ -23,11 +23,11 @@ struct Method {
   bool compensated = false;           ///< takes integrator.compensated
   bool stiff = false;                 ///< takes steps that exchange does not limit
   bool differentiates_field = false;  ///< refuses fields that depend on t
+  bool corrects_energy = false;       ///< takes the isotropy energy on rigid bodies
   bool by_colour = false;             ///< moves the spins of one colour of a checkerboard at a time
   SetOf<Rotation> rotations{};        ///< none: a baseline
   SetOf<Generator> generators{};      ///< none: a baseline
   SetOf<Isotropy> isotropies{};       ///< but for energy
-  SetOf<SystemKind> energy_kinds{};   ///< that take the isotropy energy
   SetOf<Trial> trials{};
 
   /// Outside the Lie group: takes neither generator, isotropy nor rotation.
@@ -37,7 +37,7 @@ struct Method {
   constexpr bool takes(Rotation rotation) const { return rotations.contains(rotation); }
   constexpr bool takes(Generator generator) const { return generators.contains(generator); }
   constexpr bool takes(Isotropy isotropy, SystemKind kind) const {
-    return isotropy == Isotropy::energy ? energy_kinds.contains(kind)
+    return isotropy == Isotropy::energy ? corrects_energy && kind == SystemKind::rigid_body
                                         : isotropies.contains(isotropy);
   }
   /// The rotation of a scene that names none.

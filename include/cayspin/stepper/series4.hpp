@@ -195,7 +195,7 @@ class Series4 : public detail::StepperBase<Spins> {
     } else {
       static_assert(std::is_same_v<Isotropy, isotropy::Zero>,
                     "isotropy::Energy knows rigid bodies alone; for other generators there is "
-                    "EnergyProjection.");
+                    "EnergyControl.");
       if (!detail::has_affine_field(generator))
         throw std::invalid_argument(this->label(
             "::step: the field is not affine in the spins, as with biquadratic couplings"));

@@ -21,7 +21,6 @@ void use_beside_kernels(Lattice const& lattice) {
   run_each(generator, spins, Rkmk4<S>(spins), LieEuler<S, isotropy::Analytic>(spins),
            LieAdamsBashforth2<S>(spins), CommutatorFree4<S>(spins),
            Rkmk<S, tableau::DormandPrince5>(spins), RedBlack2<S>(spins),
-           EnergyProjection<LieHeun<S>>(spins, LieHeun(spins)),
            AdaptiveRkmk<S, tableau::Tsitouras5>(spins),
            AdaptiveProjected<S, tableau::DormandPrince5>(spins),
            AdaptiveStereographic<S, tableau::Tsitouras5>(spins));
