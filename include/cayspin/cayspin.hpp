@@ -17,7 +17,6 @@
 #include <cayspin/field/field_with_vacancies.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/interfacial_dmi.hpp>
-#include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/field/site_dependent_exchange.hpp>
 #include <cayspin/field/site_dependent_uniaxial_anisotropy.hpp>

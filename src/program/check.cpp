@@ -42,13 +42,11 @@ double bytes_per_site(Plan const& plan) {
 std::optional<double> repeated_on(CheckOptions const& options, io::Scene const& scene,
                                   Plan const& plan) {
   if (!options.ranks) return std::nullopt;
-  auto const& slab = scene.field.slab_demag;
-  int const ghosts = slab && slab->dear && slab->average_layer ? 0 : plan.variant.ghosts;
-  if (ghosts == 0)
+  if (plan.variant.ghosts == 0)
     throw UsageError(fmt::format("--ranks {}: the method runs on one rank alone; accepted: another",
                                  *options.ranks));
   auto const parts = read_parts(*options.ranks, plan.lattice, depth_of_parts(scene, plan));
-  return repeated_share(plan.lattice, ghosts, parts);
+  return repeated_share(plan.lattice, plan.variant.ghosts, parts);
 }
 
 int order(io::Scene const& scene, Variant const& variant) {

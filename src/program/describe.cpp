@@ -206,9 +206,8 @@ void add_torques(io::Scene const& scene, std::vector<std::pair<std::string, std:
 
 std::string slab_text(io::Field const& field) {
   auto const& slab = *field.slab_demag;
-  return fmt::format("H = -{:.6g} {} n, n = {}, {}{}", field.mu0 * slab.strength,
-                     slab.average_layer ? "<m.n>" : "(m.n)", vector_text(slab.normal),
-                     slab.average_layer ? "averaged over each layer" : "site by site",
+  return fmt::format("H = -{:.6g} (m.n) n, n = {}{}", field.mu0 * slab.strength,
+                     vector_text(slab.normal),
                      slab.dear      ? ", dear: computed on the host once a step"
                      : slab.on_host ? ", computed on the host"
                                     : "");

@@ -34,18 +34,10 @@ struct RunOptions : DeviceOptions {
   Listener listener = Listener::user;
 };
 
-void require_one_rank(io::Scene const& scene, Plan const& plan, bool on_host, Ranks const& ranks) {
-  if (!ranks.many()) return;
-  std::string const accepted = "runs on one rank alone; accepted: one rank, ";
-  if (plan.variant.ghosts == 0)
-    throw io::scene_error(scene, "integrator.method", accepted + "or another method");
-  auto const& slab = scene.field.slab_demag;
-  if (!slab || !slab->average_layer) return;
-  if (slab->dear)
-    throw io::scene_error(scene, "field.slab_demag.dear", accepted + "or no such key");
-  if (slab->on_host || slab->normal[0] != 0 || !on_host)
-    throw io::scene_error(scene, "field.slab_demag.average",
-                          accepted + "or a normal along y or z on a host without where = \"host\"");
+void require_one_rank(io::Scene const& scene, Plan const& plan, Ranks const& ranks) {
+  if (ranks.many() && plan.variant.ghosts == 0)
+    throw io::scene_error(scene, "integrator.method",
+                          "runs on one rank alone; accepted: one rank, or another method");
 }
 
 // What is refused, with the option that names the file.
@@ -234,10 +226,7 @@ int run(RunOptions const& options, Ranks& ranks) {
   auto plan = ranks.together([&] { return make_plan(scene, options.precision); });
   auto const depth = depth_of_parts(scene, plan);
   auto const parts = ranks.together([&] {
-    bool const on_host = in_space(space, options.precision, []<class, class Space>() {
-      return cayspin::detail::is_host_execution<Space>;
-    });
-    require_one_rank(scene, plan, on_host, ranks);
+    require_one_rank(scene, plan, ranks);
     return ranks.division(plan.lattice, depth, options.ranks);
   });
   auto const part = ranks.divide(plan.lattice, depth, parts);

@@ -105,8 +105,6 @@ void check_crystal(Scene const& scene) {
             : field.dmi ? "material.D"
                         : "material.D_bulk",
             "field.couplings with D");
-  refuse_if(field.slab_demag && field.slab_demag->average_layer, "field.slab_demag.average",
-            "no such key");
   refuse_if(field.demag.has_value(), "field.demag", "no such key");
   refuse_if(field.torque.zhang_li.has_value(), "torque.zhang_li", "slonczewski, or no such key");
 }

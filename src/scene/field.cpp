@@ -149,37 +149,22 @@ void read_applied(Item const& item, Field& field) {
   field.applied = three(item, "three numbers or expressions in t", component_in_time);
 }
 
-// Whether the scene's one word stands there.
-bool option(Table const& table, std::string_view name, std::string_view only) {
-  auto const item = table.find(name);
+bool is_on_host(Table const& table) {
+  constexpr std::string_view accepted = "\"host\", or no such key";
+  auto const item = table.find("where");
   if (!item) return false;
-  auto const accepted = fmt::format("\"{}\", or no such key", only);
   auto const typed = string(*item, accepted);
-  if (typed != only) item->fail(fmt::format("\"{}\" is not known", typed), accepted);
+  if (typed != "host") item->fail(fmt::format("\"{}\" is not known", typed), accepted);
   return true;
-}
-
-// A direction within 1e-4 of an axis, as rounded digits may leave it, is that axis.
-Triple along_axis_if_close(Triple const& direction) {
-  constexpr double close = 1e-4;
-  auto axis = direction;
-  for (double& component : axis)
-    if (std::abs(component) <= close) component = 0;
-  return std::ranges::count(axis, 0.0) == 2 ? normalise(axis).value_or(direction) : direction;
 }
 
 SlabDemagnetization read_slab_demag(Item const& item, Scene& scene) {
   auto slab = read_term<SlabDemagnetization>(item, scene);
   Table const table(item, scene);
-  slab.average_layer = option(table, "average", "layer");
-  slab.on_host = option(table, "where", "host");
-  if (slab.dear && !slab.average_layer && !slab.on_host)
-    table.find("dear")->fail("site by site the field is of each spin alone, and cheap",
-                             "average = \"layer\" or where = \"host\" beside it, or no such key");
-  if (slab.average_layer) slab.normal = along_axis_if_close(slab.normal);
-  if (slab.average_layer && std::ranges::count(slab.normal, 0.0) != 2)
-    table.find("normal")->fail("average = \"layer\" needs a normal along an axis",
-                               "[1, 0, 0], [0, 1, 0] or [0, 0, 1]");
+  slab.on_host = is_on_host(table);
+  if (slab.dear && !slab.on_host)
+    table.find("dear")->fail("the field of a slab is of each spin alone, and cheap",
+                             "where = \"host\" beside it, or no such key");
   return slab;
 }
 
@@ -303,8 +288,7 @@ Field without_numbers_of_sites(Field field) {
 bool has_torque(Field const& field) { return field.torque.zhang_li || field.torque.slonczewski; }
 
 bool is_nonlocal(Field const& field) {
-  auto const& slab = field.slab_demag;
-  return field.own.nonlocal || field.demag || (slab && (slab->average_layer || slab->on_host));
+  return field.own.nonlocal || field.demag || (field.slab_demag && field.slab_demag->on_host);
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -56,8 +56,8 @@ constexpr RefusedPair pairs[] = {
     {"demag", "red_black2, red_black4", neighbors_alone, "field.demag",
      "no such key, or another method",
      [](Scene const& scene) { return scene.field.demag.has_value(); }, by_two_colours},
-    {"slab_demag by layers or on the host", "red_black2, red_black4", neighbors_alone,
-     "field.slab_demag", "neither average nor where, or another method",
+    {"slab_demag on the host", "red_black2, red_black4", neighbors_alone, "field.slab_demag",
+     "no where = \"host\", or another method",
      [](Scene const& scene) { return is_nonlocal(scene.field); }, by_two_colours},
     {"couplings, cubic axes, torques, vacancies, numbers of sites", "red_black2, red_black4",
      "\"{}\" needs a field of the neighbours alone: it moves spins while their neighbours stay, and "

@@ -25,8 +25,7 @@ auto FieldInPass<Spins>::Terms::at(Exec const& exec, SceneFieldNow<Real> const& 
   others.has_applied = false;
   auto const velocity = torques_.velocity ? (*torques_.velocity)(t) : Vec3<double>{0, 0, 0};
   auto const strengths = torques_.strengths ? (*torques_.strengths)(t) : Vec3<double>{0, 0, 0};
-  bool const has_usual =
-      has_lattice_terms_ || others.quadratic.present() || others.has_layers || others.has_stored;
+  bool const has_usual = has_lattice_terms_ || others.quadratic.present() || others.has_stored;
   PassTerms<Real> terms{.usual = others,
                         .pairs = pairs_.prepare(exec, spins, t),
                         .zhang_li = {lattice_, velocity, torques_.nonadiabaticity},
@@ -64,7 +63,7 @@ auto FieldInPass<Spins>::Terms::in_stages(SceneFieldNow<Real> const& usual) cons
   now.lattice_terms = seen_;
   now.quadratic = usual.quadratic.with(site.quadratic, site.gyromagnetic * site.per_moment);
   now.zeeman.applied = site.gyromagnetic * usual.zeeman.applied;
-  now.has_layers = now.has_stored = false;
+  now.has_stored = false;
   return now;
 }
 
@@ -163,7 +162,7 @@ double FieldInPass<Spins>::gyromagnetic() const {
 
 template <class Spins>
 SceneFieldNow<typename Spins::value_type> FieldInPass<Spins>::nothing() const {
-  return {terms_->none_, {}, {}, {}, {}, false, false, false};
+  return {terms_->none_, {}, {}, {}, false, false};
 }
 
 template <class Spins>

@@ -10,7 +10,6 @@
 #include "text.hpp"
 #include "thermal.hpp"
 
-#include <cayspin/detail/exact_sum.hpp>
 #include <cayspin/detail/row_layout.hpp>
 #include <cayspin/io/ovf.hpp>
 #include <cayspin/io/trajectory.hpp>
@@ -64,12 +63,8 @@ Memory memory_of(io::Scene const& scene, Lattice const& lattice, Variant const& 
     int const of_vacancies = io::has_vacancies(scene) ? 1 : 0;
     memory.field += memory.spins + (3 + of_bonds + of_vacancies) * field_bytes<Real>(lattice, 1);
   }
-  if (auto const& slab = scene.field.slab_demag) {
-    if (slab->on_host || slab->dear) memory.field += memory.spins;
-    // Means, and of parts that share layers their exact sums.
-    std::int64_t const words = lattice.part == nullptr ? 1 : 1 + cayspin::detail::ExactSum::words;
-    if (slab->average_layer) memory.field += 8 * words * std::ranges::max(whole(lattice).shape);
-  }
+  if (auto const& slab = scene.field.slab_demag; slab && (slab->on_host || slab->dear))
+    memory.field += memory.spins;
   if (scene.field.demag)
     memory.field += memory.spins + demagnetization_bytes<Real>(*scene.field.demag, lattice);
   if (has_dear_field(scene)) {

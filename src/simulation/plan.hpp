@@ -19,7 +19,7 @@ namespace cayspin::simulation {
 struct Memory {
   std::int64_t spins = 0;  // the state
   std::int64_t work = 0;   // the method's
-  std::int64_t field = 0;  // of terms and inertia that are stored per site or layer
+  std::int64_t field = 0;  // of terms and inertia that are stored per site
   std::int64_t files = 0;  // the start as it is read, and frames on their way to the file
 
   std::int64_t simulation() const { return spins + work + field; }

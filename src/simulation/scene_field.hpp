@@ -71,12 +71,12 @@ class SceneField {
   }
   template <class Exec, class Any>
   bool needs_time_alone(Exec const&, Any const&) const {
-    return !layers_ && !stored_ && !dear_ && !pass_;
+    return !stored_ && !dear_ && !pass_;
   }
 
   template <class Exec, class Any>
   bool rows_need_time_alone(Exec const&, Any const&) const {
-    return !layers_ && !stored_ && !dear_ && (!pass_ || pass_->rows_need_time_alone());
+    return !stored_ && !dear_ && (!pass_ || pass_->rows_need_time_alone());
   }
 
   /// The same for rates of spins, the applied field's own rate in place of the field.
@@ -94,10 +94,9 @@ class SceneField {
  private:
   template <class Exec>
   SceneFieldNow<Real> usual_terms(Exec const& exec, Spins const& spins, double t) const {
-    SceneFieldNow<Real> now{lattice_terms_,      quadratic_,      {}, {}, {}, applied_.present(),
-                            layers_.has_value(), stored_ || dear_};
+    SceneFieldNow<Real> now{lattice_terms_, quadratic_,          {}, {},
+                            applied_.present(), stored_ || dear_};
     if (now.has_applied) now.zeeman = {applied_(t)};
-    if (layers_) now.layers = cayspin::detail::prepare_term(*layers_, exec, spins, t);
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);
     if (dear_) now.stored = cayspin::detail::prepare_term(*dear_, exec, spins, t);
     return now;
@@ -115,9 +114,7 @@ class SceneField {
     Vec3<double> const normal{slab.normal[0], slab.normal[1], slab.normal[2]};
     double const strength = mu0 * slab.strength;
     if (slab.on_host || slab.dear) {
-      stored_.emplace(lattice, HostSolver(SlabDemagOnHost(normal, strength, slab.average_layer)));
-    } else if (slab.average_layer) {
-      layers_.emplace(lattice, normal.x != 0 ? 0 : normal.y != 0 ? 1 : 2, strength);
+      stored_.emplace(lattice, HostSolver(SlabDemagOnHost(normal, strength)));
     } else {
       quadratic_.add(-strength, slab.normal);
     }
@@ -126,7 +123,6 @@ class SceneField {
   SceneLatticeTerms lattice_terms_;
   QuadraticTerms quadratic_;
   AppliedField applied_;
-  std::optional<LayerAveragedSlabDemag<typename Spins::memory_space>> layers_;
   std::optional<WholeField<Spins>> stored_;
   std::optional<DearTerm> dear_;
   std::optional<FieldInPass<Spins>> pass_;

@@ -5,7 +5,6 @@
 
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/host_field.hpp>
-#include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/io/field.hpp>
 
@@ -108,9 +107,8 @@ struct SceneFieldNow {
   SceneLatticeTerms lattice_terms;
   QuadraticTerms quadratic;
   Zeeman zeeman;  // zero without an applied field
-  cayspin::detail::LayerField layers;
   cayspin::detail::StoredField<Real> stored;
-  bool has_applied, has_layers, has_stored;
+  bool has_applied, has_stored;
   cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
   FieldAlongRows<Real> along_rows = {};
 
@@ -127,7 +125,7 @@ struct SceneFieldNow {
     compiled_sites = along_rows.is_whole ? 0 : std::max<std::ptrdiff_t>(last - lanes, 0);
     row = {fields.data - begin, fields.stride};
     adds_row = along_rows.evaluate != nullptr;
-    adds_more = has_layers || has_stored || adds_row;
+    adds_more = has_stored || adds_row;
     if (adds_row) along_rows.evaluate(along_rows.terms, spins, begin, end, fields);
   }
   /// H at the packs at the ends of a row, with what begin_row found there.
@@ -194,7 +192,6 @@ struct SceneFieldNow {
     auto e = lattice_terms.energy_density(stencil);
     if (quadratic.present()) e = e + quadratic.energy(stencil.center());
     if (has_applied) e = e + zeeman.energy_density(stencil);
-    if (has_layers) e = e + layers.energy_density(stencil);
     if (has_stored) e = e + stored.energy_density(stencil);
     return e;
   }
@@ -207,7 +204,6 @@ struct SceneFieldNow {
     if (energies.data) return e;
     if (quadratic.present()) e = e + quadratic.magnitude(stencil.center());
     if (has_applied) e = e + Kokkos::abs(zeeman.energy_density(stencil));
-    if (has_layers) e = e + Kokkos::abs(layers.energy_density(stencil));
     if (has_stored) e = e + Kokkos::abs(stored.energy_density(stencil));
     return e;
   }
@@ -227,7 +223,6 @@ struct SceneFieldNow {
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_more(Stencil const& stencil, Vector h) const {
     if (adds_more) [[unlikely]] {
-      if (has_layers) h = h + layers.field(stencil);
       if (has_stored) h = h + stored.field(stencil);
       if (adds_row) h = h + stencil.site().load(row);
     }
@@ -235,10 +230,8 @@ struct SceneFieldNow {
   }
   template <class Stencil, class Vector>
   KOKKOS_FORCEINLINE_FUNCTION Vector add_demagnetization(Stencil const& stencil, Vector h) const {
-    if (has_layers | has_stored) [[unlikely]] {
-      if (has_layers) h = h + layers.field(stencil);
-      if (has_stored) h = h + stored.field(stencil);
-    }
+    if (has_stored) [[unlikely]]
+      h = h + stored.field(stencil);
     return h;
   }
 };

@@ -89,10 +89,10 @@ struct AddedTerms {
 
  private:
   int count() const {
-    return int{terms.usual.has_stored} + int{terms.usual.has_layers} + terms.anisotropies +
-           terms.cubics_of_cell + int{missing.exchange.data != nullptr} +
-           int{terms.exchange_of_sites.any()} + int{terms.dmi_of_sites.constants.data != nullptr} +
-           int{terms.has_zhang_li} + int{terms.has_slonczewski};
+    return int{terms.usual.has_stored} + terms.anisotropies + terms.cubics_of_cell +
+           int{missing.exchange.data != nullptr} + int{terms.exchange_of_sites.any()} +
+           int{terms.dmi_of_sites.constants.data != nullptr} + int{terms.has_zhang_li} +
+           int{terms.has_slonczewski};
   }
 
   struct Loop {
@@ -112,7 +112,6 @@ struct AddedTerms {
       }
       terms.add_anisotropies_of_sites(stencil, sum);
       terms.add_cubics(stencil, 0, terms.cubics_of_cell, sum);
-      if (terms.usual.has_layers) sum.field = sum.field + terms.usual.layers.field(stencil);
       if (terms.usual.has_stored) sum.field = sum.field + terms.usual.stored.field(stencil);
       auto h = as_value<Value>(added.scale) * sum.field;
       if (added.missing.exchange.data) h = h + added.missing.field(stencil);

@@ -86,10 +86,7 @@ void expect_bits_without_a_break(char const* name, std::int64_t runs) {
     Draws draws(static_cast<std::uint64_t>(1000 + number));
     auto const lattice = draws.lattice();
     auto const by_time = turning(every_term(lattice));
-    LandauLifshitz const nonlocal(
-        EffectiveField(Exchange(lattice, 0.7),
-                       LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.8)),
-        0.1);
+    LandauLifshitz const nonlocal(EffectiveField(Exchange(lattice, 0.7), MeanField(0.8)), 0.1);
     auto const start = random_spins<Field>(lattice, static_cast<unsigned>(number));
     auto const change = draws.below(steps + 1), cut = 1 + draws.below(steps - 1);
     std::array const paths{draws.path(), draws.path()};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "../support/mean_field.hpp"
 #include "equal_bits.hpp"
 
 #include <cmath>
@@ -49,10 +50,7 @@ template <class Stepper, class... Options>
 void expect_passes_under_a_nonlocal_field(double dt, Options const&... options) {
   using Field = typename Stepper::spins_type;
   auto const lattice = Lattice::cubic(70, 20, 20);
-  LandauLifshitz const generator(
-      EffectiveField(Exchange(lattice, 1),
-                     LayerAveragedSlabDemag<typename Field::memory_space>(lattice, 2, 0.7)),
-      0.1);
+  LandauLifshitz const generator(EffectiveField(Exchange(lattice, 1), MeanField(0.7)), 0.1);
   auto one = random_spins<Field>(lattice, 4), other = copy_of(one);
   Stepper passing(one, options...), sweeping(other, options...);
   passing.use(Path::pass);

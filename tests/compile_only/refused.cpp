@@ -136,12 +136,12 @@ inline void refused() {
   // A field of coefficients has the precision and the memory space of the spins
   with(SiteDependentExchange(ScalarField<float, Kokkos::HostSpace>("float", Lattice::chain(3))));
 #endif
-#if MISTAKE(15)  // layers_with_vacancies
-  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
+#if MISTAKE(15)  // couplings_with_vacancies
+  // PairCouplings read the spins of vacant sites
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
-    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
-    FieldWithVacancies const field(EffectiveField{layers}, occupation);
+    PairCouplings<Kokkos::HostSpace> const couplings(Lattice::chain(3), {});
+    FieldWithVacancies const field(EffectiveField{couplings}, occupation);
   }
 #endif
 #if MISTAKE(16)  // analytic_sigma_for_heun
@@ -237,21 +237,21 @@ inline void refused() {
   // This needs a field that is the derivative of an energy, without terms that
   { EnergyControl const control{orthogonal(torque), spins}; }
 #endif
-#if MISTAKE(37)  // layers_of_moments_with_vacancies
-  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
+#if MISTAKE(37)  // couplings_of_moments_with_vacancies
+  // PairCouplings read the spins of vacant sites
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
-    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
-    FieldOfMoments const of_moments(layers, CellMoments(Lattice::chain(3), {1}));
+    PairCouplings<Kokkos::HostSpace> const couplings(Lattice::chain(3), {});
+    FieldOfMoments const of_moments(couplings, CellMoments(Lattice::chain(3), {1}));
     FieldWithVacancies const field(of_moments, occupation);
   }
 #endif
-#if MISTAKE(38)  // dear_layers_with_vacancies
-  // LayerAveragedSlabDemag counts the spins of vacant sites in its averages
+#if MISTAKE(38)  // dear_couplings_with_vacancies
+  // PairCouplings read the spins of vacant sites
   {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
-    LayerAveragedSlabDemag<Kokkos::HostSpace> const layers(Lattice::chain(3), 0);
-    FieldWithVacancies const field(EffectiveField(Dear(spins, layers)), occupation);
+    PairCouplings<Kokkos::HostSpace> const couplings(Lattice::chain(3), {});
+    FieldWithVacancies const field(EffectiveField(Dear(spins, couplings)), occupation);
   }
 #endif
 #if MISTAKE(44)  // dear_exchange_with_vacancies

@@ -61,8 +61,7 @@ struct Generators {
   using PerSite = EffectiveField<SiteDependentExchange<Real, MemorySpace>,
                                  SiteDependentUniaxialAnisotropy<Numbers, Vectors>>;
   using Prepared =
-      EffectiveField<LayerAveragedSlabDemag<MemorySpace>,
-                     TimeDependentZeeman<Vec3<double> (*)(double)>, HostField<S, SlabDemagOnHost>>;
+      EffectiveField<TimeDependentZeeman<Vec3<double> (*)(double)>, HostField<S, SlabDemagOnHost>>;
   using DearTerm = Dear<S, HostField<S, SlabDemagOnHost>>;
   using WithDear = EffectiveField<Exchange, DearTerm>;
 

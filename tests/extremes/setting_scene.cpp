@@ -43,7 +43,7 @@ std::string scene_text(Integrator const& integrator, Setting const& setting) {
                                   decimal(setting.exchange), strength);
   if (setting.dear)
     field += fmt::format(
-        "{}slab_demag = {{ normal = [0, 0, 1], average = \"layer\", dear = true, strength = {} }}\n",
+        "{}slab_demag = {{ normal = [0, 0, 1], where = \"host\", dear = true, strength = {} }}\n",
         body ? "[field]\n" : "", decimal(*setting.dear));
   auto const initial = setting.initial.empty()
                            ? fmt::format("uniform = [{}, 0, {}]", setting.along_field ? 0 : across,

@@ -92,7 +92,6 @@ TYPED_TEST(Fields, EnergiesAreSummedInDouble) {
 
 TYPED_TEST(Fields, WhatTermsRefuse) {
   using Memory = typename TypeParam::MemorySpace;
-  using Layers = LayerAveragedSlabDemag<Memory>;
   using Moments = CellMoments<Memory>;
   double const nan = std::numeric_limits<double>::quiet_NaN(),
                infinity = std::numeric_limits<double>::infinity();
@@ -106,9 +105,6 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(Slonczewski(1, 0, {0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemag({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({0, 0, 0}), std::invalid_argument);
-  EXPECT_THROW(SlabDemagOnHost({1, 1, 0}, 1, true), std::invalid_argument);
-  EXPECT_THROW(Layers(lattice, 3), std::invalid_argument);
-  EXPECT_THROW(Layers(lattice, -1), std::invalid_argument);
   EXPECT_THROW(Moments(lattice, {}), std::invalid_argument);
   EXPECT_THROW(Moments(lattice, {1}, {1, 1}), std::invalid_argument);
   for (double const bad : {-1.0, nan, infinity}) {
@@ -121,7 +117,6 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
 TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
   using Spins = typename TypeParam::Spins;
   using Memory = typename TypeParam::MemorySpace;
-  using Layers = LayerAveragedSlabDemag<Memory>;
   Vec3<double> const x{1, 0, 0}, y{0, 1, 0};
   auto const lattice = Lattice::square(4, 3);
   auto const start = [=] {
@@ -146,7 +141,6 @@ TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
         {"UniaxialAnisotropy: the constant", [&] { UniaxialAnisotropy(bad, x); }},
         {"SlabDemag: the strength", [&] { SlabDemag(x, bad); }},
         {"SlabDemagOnHost: the strength", [&] { SlabDemagOnHost(x, bad); }},
-        {"LayerAveragedSlabDemag: the strength", [&] { Layers(lattice, 1, bad); }},
         {"ZeemanOfMoments: the applied field",
          [&] {
            ZeemanOfMoments(Vec3<double>{0, bad, 0}, CellMoments<Memory>(lattice, {1}));

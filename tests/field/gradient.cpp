@@ -2,6 +2,8 @@
 // Every term with one coefficient for all sites: H = -dE/dm, and both against formulas by hand.
 #include "gradient.hpp"
 
+#include "../support/mean_field.hpp"
+
 namespace cayspin::test {
 namespace {
 
@@ -58,29 +60,12 @@ TYPED_TEST(Terms, LocalTerms) {
   this->check("slab", lattice, SlabDemag({1, 2, -2}, 1.2), slab_by_hand({1, 2, -2}, 1.2));
 }
 
-TYPED_TEST(Terms, LayeredSlab) {
-  for (auto const& lattice : lattices)
-    for (int axis = 0; axis < 3; ++axis) {
-      using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
-      this->check("layers along " + std::to_string(axis), lattice,
-                  EffectiveField(Layers(lattice, axis, 1.2)), layers_by_hand(lattice, axis, 1.2));
-    }
-}
-
 TYPED_TEST(Terms, SlabOnTheHost) {
   using OnHost = HostField<typename TypeParam::Spins, SlabDemagOnHost>;
-  for (auto const& lattice : lattices) {
+  for (auto const& lattice : lattices)
     this->check("slab on the host", lattice,
                 EffectiveField(OnHost(lattice, SlabDemagOnHost({1, 2, -2}, 1.2))),
                 slab_by_hand({1, 2, -2}, 1.2), 0, epsilon<typename TypeParam::Real>);
-    for (int axis = 0; axis < 3; ++axis) {
-      Vec3<double> const normal{axis == 0 ? -2.0 : 0.0, axis == 1 ? 1.0 : 0.0,
-                                axis == 2 ? 1.0 : 0.0};
-      this->check("layers on the host along " + std::to_string(axis), lattice,
-                  EffectiveField(OnHost(lattice, SlabDemagOnHost(normal, 1.2, true))),
-                  layers_by_hand(lattice, axis, 1.2), 0, epsilon<typename TypeParam::Real>);
-    }
-  }
 }
 
 /// A host field that does not depend on the spins.
@@ -105,16 +90,27 @@ TYPED_TEST(Terms, HostFieldThatDoesNotDependOnSpins) {
               zeeman_by_hand(rounded), 2.5);
 }
 
+ByHand mean_by_hand(Lattice const& lattice, double strength) {
+  auto const mean = [=](std::vector<double> const& m) {
+    Vec3<double> sum{0, 0, 0};
+    for (std::int64_t site = 0; site < lattice.sites(); ++site) sum = sum + at(m, site);
+    return (1 / static_cast<double>(lattice.sites())) * sum;
+  };
+  return {[=](auto const& m, std::int64_t) { return -strength * mean(m); },
+          [=](auto const& m) {
+            return 0.5 * strength * static_cast<double>(lattice.sites()) * dot(mean(m), mean(m));
+          }};
+}
+
 TYPED_TEST(Terms, AllTogether) {
   auto const& lattice = lattices[1];
-  using Layers = LayerAveragedSlabDemag<typename TypeParam::MemorySpace>;
   EffectiveField const field(Exchange(lattice, 1.3), UniaxialAnisotropy(1.7, {1, -2, 2}),
                              UniaxialAnisotropy(-0.4, {0, 3, 1}), TimeDependentZeeman(turning),
-                             Layers(lattice, 1, 1.2));
+                             MeanField(1.2));
   std::vector<ByHand> const parts{exchange_by_hand(lattice, 1.3),
                                   anisotropy_by_hand(1.7, {1, -2, 2}),
                                   anisotropy_by_hand(-0.4, {0, 3, 1}), zeeman_by_hand(turning(0.5)),
-                                  layers_by_hand(lattice, 1, 1.2)};
+                                  mean_by_hand(lattice, 1.2)};
   this->check("sum of terms", lattice, field,
               {[&](auto const& m, std::int64_t site) {
                  Vec3<double> h{0, 0, 0};

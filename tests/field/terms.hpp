@@ -136,31 +136,4 @@ inline ByHand slab_by_hand(Vec3<double> const& normal, double strength) {
   return anisotropy_by_hand(-strength, normal);
 }
 
-inline ByHand layers_by_hand(Lattice const& lattice, int axis, double strength) {
-  auto const component = [axis](Vec3<double> const& m) {
-    return axis == 0 ? m.x : axis == 1 ? m.y : m.z;
-  };
-  auto const layer = [=](std::int64_t site) {
-    auto const& n = lattice.shape;
-    return axis == 0 ? site % n[0] : axis == 1 ? site / n[0] % n[1] : site / (n[0] * n[1]);
-  };
-  auto const average = [=](std::vector<double> const& m, std::int64_t which) {
-    double sum = 0;
-    int count = 0;
-    for (std::int64_t site = 0; site < lattice.sites(); ++site)
-      if (layer(site) == which) sum += component(at(m, site)), ++count;
-    return sum / count;
-  };
-  return {[=](auto const& m, std::int64_t site) {
-            double const h = -strength * average(m, layer(site));
-            return Vec3<double>{axis == 0 ? h : 0, axis == 1 ? h : 0, axis == 2 ? h : 0};
-          },
-          [=](auto const& m) {
-            double sum = 0;
-            for (std::int64_t site = 0; site < lattice.sites(); ++site)
-              sum += 0.5 * strength * average(m, layer(site)) * component(at(m, site));
-            return sum;
-          }};
-}
-
 }  // namespace cayspin::test

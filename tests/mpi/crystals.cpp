@@ -170,7 +170,7 @@ boundary = ["open", "periodic", "open"]
 [field]
 exchange = 0.7
 dmi = { bulk = 0.2 }
-slab_demag = { normal = [0, 0, 1], average = "layer" }
+slab_demag = { normal = [0, 0, 1], where = "host" }
 [torque]
 zhang_li = { velocity = ["0.3*cos(t)", 0.2, -0.4], nonadiabaticity = 0.2 }
 slonczewski = { damping_like = "0.1*t", field_like = 0.2, polarization = [0, 1, 0.5] })toml",

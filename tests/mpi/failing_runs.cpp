@@ -42,11 +42,6 @@ TEST_F(OnRanks, AreRefusedInOneLine) {
   refused({"--set", "lattice.shape=[7,9,-1]"}, "lattice.shape");
   refused({"--set", "integrator.method='rkmk4_as_printed'"},
           "integrator.method: runs on one rank alone");
-  for (std::string const slab : {"normal=[1,0,0]", "normal=[0,0,1],where='host'"})
-    refused({"--set", fmt::format("field.slab_demag={{{},average='layer'}}", slab)},
-            "field.slab_demag.average: runs on one rank alone");
-  refused({"--set", "field.slab_demag={normal=[0,0,1],average='layer',dear=true}"},
-          "field.slab_demag.dear: runs on one rank alone");
   refused({"--set", "initial={expression=['0','0','k-12']}"}, "the spin of site (0, 0, 12)");
   refused({"--restart", "nothing.h5"}, "nothing.h5");
   refused({"--space", "nowhere"}, "--space nowhere");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // integrate() takes several steps of few spins in one launch; nobody sees a difference.
 #include "../support/backends.hpp"
+#include "../support/mean_field.hpp"
 
 #include <cayspin/cayspin.hpp>
 
@@ -75,8 +76,8 @@ TYPED_TEST(Batches, AreNotTakenWhereTheGeneratorChanges) {
   auto const turning = [](double t) { return Vec3<double>{std::cos(t), std::sin(t), 0}; };
   LandauLifshitz const generator(EffectiveField{TimeDependentZeeman(turning)}, 0.1);
   this->template expect_same<Rkmk4<Spins>>(generator, false);
-  LayerAveragedSlabDemag<typename TypeParam::MemorySpace> const layers(this->lattice, 0);
-  this->template expect_same<LieEuler<Spins>>(LandauLifshitz(EffectiveField{layers}, 0.1), false);
+  LandauLifshitz const by_mean(EffectiveField{MeanField(1)}, 0.1);
+  this->template expect_same<LieEuler<Spins>>(by_mean, false);
 }
 
 }  // namespace

@@ -68,10 +68,6 @@ TYPED_TEST(TermEnergy, IsThatOfThePage) {
   // 1/2 (m.n)^2 with n = (0, 0.6, 0.8): 0, 0.5 and 0.32
   this->expect_energy("SlabDemag", SlabDemag({0, 3, 4}), 0.82, 0.82);
   this->expect_energy("SlabDemag, half", SlabDemag({0, 3, 4}, 0.5), 0.41, 0.41);
-  // <m.n> (m.n) / 2 with <my> = 0.2 in the only layer
-  this->expect_energy("LayerAveragedSlabDemag",
-                      LayerAveragedSlabDemag<typename TypeParam::MemorySpace>(lattice, 1, 0.5),
-                      0.03, 0.03);
 }
 
 TYPED_TEST(TermEnergy, OfVacancies) {

@@ -91,7 +91,7 @@ class AllMethods : public ProgramTest {
   }
 };
 
-// With a field of a layer's average.
+// With a field that the host computes.
 std::string spins_scene() {
   return R"toml([system]
 kind = "llg"
@@ -102,7 +102,7 @@ shape = [7, 5]
 exchange = 0.3
 anisotropy = { constant = 0.6, axis = [0, 0.6, 0.8] }
 applied = [0.3, 0.1, 0.4]
-slab_demag = { normal = [1, 0, 0], average = "layer" }
+slab_demag = { normal = [1, 0, 0], where = "host" }
 [initial]
 expression = ["0.3+0.2*cos(pi*x)", "0.5+0.1*cos(2*pi*y)", "0.8-x*y"]
 [integrator]

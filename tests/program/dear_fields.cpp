@@ -22,7 +22,7 @@ shape = [9, 7]
 [field]
 exchange = 0.5
 applied = [0.1, 0.2, 0.3]
-slab_demag = { normal = [1, 0, 0], average = "layer", dear = true }
+slab_demag = { normal = [1, 0, 0], where = "host", dear = true }
 [initial]
 random = { seed = 5 }
 [integrator]
@@ -133,7 +133,6 @@ TEST_F(DearFields, AreRefusedInOneLine) {
            {{"advise", "scene.toml", "--error", "1e-3", "--set",
              "field.slab_demag={normal=[1,0,0]}"},
             "integrator.substeps: no term of the field is dear"},
-           {{"check", "scene.toml", "--ranks", "1,2"}, "the method runs on one rank alone"},
            {{"check", "scene.toml", "--set", "integrator.method='ab2'"},
             "\"ab2\" takes no dear field"},
            {{"run", "scene.toml", "--output", "out.h5", "--set",

@@ -41,7 +41,6 @@ std::vector<WrongUse> wrong_scenes() {
       {"ZeroAxis", set("field.anisotropy={constant=1,axis=[0,0,0]}"), "field.anisotropy"},
       {"BadExpression", set("field.applied=['sin(t',0,0]"), "field.applied"},
       {"ExpressionWithPole", set("field.applied=['1/(t-0.25)',0,0]"), "field.applied"},
-      {"ObliqueLayers", set("field.slab_demag={normal=[1,1,0],average='layer'}"), "normal"},
       {"UnknownMethod", set("integrator.method='rk5'"), "rkmk4"},
       {"SeriesUnderATimeDependentField",
        set("integrator.method='series4_paper'", "field.applied=['t',0,0]"), "integrator.method"},

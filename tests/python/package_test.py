@@ -20,7 +20,7 @@ TABLES = {
                 "boundary": ["periodic", "open", "open"]},
     "field": {"exchange": 0.7, "anisotropy": {"constant": 0.4, "axis": [0, 1, 2]},
               "applied": [0.3, 0.2, -0.1],
-              "slab_demag": {"normal": [0, 0, 1], "strength": 0.8, "average": "layer"},
+              "slab_demag": {"normal": [0, 0, 1], "strength": 0.8, "where": "host"},
               "mu0": 1.5},
     "initial": {"random": {"seed": 3}},
     "integrator": {"method": "rkmk4", "dt": 0.05, "steps": 40},

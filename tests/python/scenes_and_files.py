@@ -94,7 +94,7 @@ class OwnFields(PackageTest):
     def test_nonlocal_field_is_that_of_the_slab(self):
         def slab(spins, t):
             self.assertTrue(spins.flags.c_contiguous)
-            return -1.2 * spins.mean(axis=(1, 2), keepdims=True) * [0, 0, 1] + 0 * spins
+            return -1.2 * spins * [0, 0, 1]
 
         own = scene(field={"slab_demag": None, "nonlocal": slab})
         sims = [cayspin.Simulation(one) for one in (own, scene())]
@@ -110,7 +110,7 @@ class OwnFields(PackageTest):
             calls.append(t)
             if t > 0.37:
                 raise ZeroDivisionError("at half past")
-            return -1.2 * spins.mean(axis=(1, 2), keepdims=True) * [0, 0, 1] + 0 * spins
+            return -1.2 * spins * [0, 0, 1]
 
         sim = cayspin.Simulation(scene(
             field={"slab_demag": None, "nonlocal": slab},

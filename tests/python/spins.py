@@ -135,8 +135,7 @@ def by_hand(m):
     axis = np.array([0, 1, 2]) / np.sqrt(5)
     h["anisotropy"] = 0.4 * (m @ axis)[..., None] * axis
     h["applied"] = np.broadcast_to(1.5 * np.array(field["applied"]), m.shape)
-    layers = m[..., 2].mean(axis=(1, 2), keepdims=True)[..., None]
-    h["slab_demag"] = -1.5 * 0.8 * np.broadcast_to(layers, m.shape) * [0, 0, 1.0]
+    h["slab_demag"] = -1.5 * 0.8 * m * [0, 0, 1]
     energies = {name: -(m * one).sum() * (1 if name == "applied" else 0.5)
                 for name, one in h.items()}
     return sum(h.values()), energies

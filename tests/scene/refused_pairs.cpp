@@ -49,7 +49,7 @@ std::vector<std::pair<std::string, Overrides>> terms() {
           {"in t", {"field.applied=[0,0,'cos(t)']"}},
           {"demag", {"field.demag={}"}},
           {"slab", {"field.slab_demag={normal=[0,0,1]}"}},
-          {"layers", {"field.slab_demag={normal=[0,0,1],average='layer'}"}},
+          {"slab on the host", {"field.slab_demag={normal=[0,0,1],where='host'}"}},
           {"two sites in a cell, with ratios of their own",
            {"lattice.crystal='bcc'", "lattice.gyromagnetic=[1,2]", "lattice.moments=[1,1]",
             "field={couplings=[{between=[0,1],J=1}]}"}}};

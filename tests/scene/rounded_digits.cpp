@@ -61,14 +61,6 @@ TEST(RoundedDigits, OfCubicAxesAreTaken) {
   EXPECT_NE(said.find("to 1e-4"), said.npos) << said;
 }
 
-TEST(RoundedDigits, OfANormalAlongAnAxisAreThatAxis) {
-  auto const scene = scene_of(single, {"field.slab_demag={normal=[1e-6,-3,2e-5],average='layer'}"});
-  EXPECT_EQ(scene.field.slab_demag->normal, (Triple{0, -1, 0}));
-  expect_holds(
-      refusal([&] { scene_of(single, {"field.slab_demag={normal=[1e-3,1,0],average='layer'}"}); }),
-      "needs a normal along an axis");
-}
-
 // The bonds of exact vectors and of these rounded are the same.
 TEST(RoundedDigits, OfACellKeepItsShells) {
   double const s = std::sqrt(0.75);

@@ -31,7 +31,6 @@ TEST(Scene, EveryKeyArrives) {
   ASSERT_TRUE(scene.field.slab_demag);
   EXPECT_EQ(scene.field.slab_demag->normal, (Triple{1, 0, 0}));
   EXPECT_EQ(scene.field.slab_demag->strength, 2);
-  EXPECT_FALSE(scene.field.slab_demag->average_layer);
   EXPECT_FALSE(scene.field.slab_demag->on_host);
   EXPECT_EQ(scene.field.mu0, 1.5);
   EXPECT_EQ(scene.integrator.method, find_method("rkmk4"));
@@ -91,10 +90,9 @@ TEST(Scene, DefaultsAreTheDocumentedOnes) {
 }
 
 TEST(Scene, DemagnetizationStrengthDefaultsToOne) {
-  auto const text = replaced(llg_scene, "strength = 2", "average = \"layer\", where = \"host\"");
+  auto const text = replaced(llg_scene, "strength = 2", "where = \"host\"");
   auto const slab = scene_of(text).field.slab_demag;
   EXPECT_EQ(slab->strength, 1);
-  EXPECT_TRUE(slab->average_layer);
   EXPECT_TRUE(slab->on_host);
   EXPECT_FALSE(slab->dear);
 }

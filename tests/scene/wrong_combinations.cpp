@@ -35,7 +35,7 @@ integrator = {method='cf4',generator='tangent',dt=0.1,end=1.0} | .generator:
 integrator.method = 'red_black2'; lattice = {shape=[7],boundary='periodic'} | .shape:
   | does not close on itself over the 7 sites of the periodic x
 integrator.method = 'red_black4'; lattice.boundary = 'open';
- field.slab_demag = {normal=[1,0,0],average='layer'} | : | a field of the neighbours alone
+ field.slab_demag = {normal=[1,0,0],where='host'} | : | a field of the neighbours alone
 integrator.method = 'red_black2'; integrator.generator = 'orthogonal' | : | accepted: "default"
 integrator.tolerance = 1e-6 | : | takes steps of dt
 integrator.method = 'tsit5'; integrator.tolerance = 2.0 | : | a number > 0, at most 1
@@ -94,7 +94,7 @@ TEST(Combinations, OfAProgramsOwnFieldWithThoseOfTheScene) {
             "scene.toml:14: field.applied: the program has a uniform field of its own; accepted: "
             "no such key");
   EXPECT_EQ(with(uniform, {"field={exchange=1}"}), "accepted");
-  expect_holds(with(nonlocal, {"field.slab_demag={normal=[1,0,0],average='layer',where='host'}"}),
+  expect_holds(with(nonlocal, {"field.slab_demag={normal=[1,0,0],where='host'}"}),
                ": field.slab_demag: where = \"host\" does not go with a program's own field; "
                "accepted: no such key");
   EXPECT_EQ(with(nonlocal, {}), "accepted");

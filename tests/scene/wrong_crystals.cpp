@@ -137,8 +137,6 @@ field.exchange = 1 | : needs one site in a cell | field.couplings with J
 field.dmi = { interfacial = 1, normal = [0, 0, 1] } | : needs one site in a cell
   | field.couplings with D
 field.dmi = { bulk = 1 } | : needs one site in a cell | field.couplings with D
-field.slab_demag = { normal = [0, 0, 1], average = 'layer' } | .average: needs one site in a cell
-  | no such key
 lattice.basis =; lattice.cell = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]; field = { exchange = 1 }
   | .exchange: needs a cell along the axes | field.couplings with J
 )");

@@ -84,10 +84,10 @@ field.applied = [0.05, '1/t', 0] | [1] | not finite at t = 0 | nothing is accept
 field.applied = [0.05, true, 0] | [1]: true | a string with an expression in t
 field.slab_demag = { normal = [0, 0, 0], strength = 2 } | .normal: is a zero vector
 field.slab_demag = { strength = 2 } | .normal: is missing
-field.slab_demag = { average = 'layer', normal = [1, 1, 0], strength = 2 } | .normal | [0, 0, 1]
-field.slab_demag = { normal = [1, 0, 0], average = 'row' } | .average: "row" | accepted: "layer"
+field.slab_demag = { normal = [1, 0, 0], average = 'layer' } | .average: unknown key
+  | accepted: normal, strength, where, dear
 field.slab_demag = { normal = [1, 0, 0], where = 'gpu' } | .where: "gpu" | accepted: "host"
-field.slab_demag = { normal = [1, 0, 0], dear = true } | .dear: site by site | average = "layer"
+field.slab_demag = { normal = [1, 0, 0], dear = true } | .dear: | where = "host" beside it
 field.slab_demag = { normal = [1, 0, 0], dear = 'yes' } | .dear: | true
 field.slab_demag =; field.demag = 1 | : 1 is an integer | true, or { strength
 field.slab_demag =; field.demag = { image = [1, 0, 0] } | .image: | periodic_images

@@ -99,7 +99,7 @@ class RandomText {
     }
     if (chance(0.4) && field_.find("demag") == std::string::npos)
       field_ += fmt::format("slab_demag = {{ normal = [0, 0, 1], strength = {:.4f}{} }}\n",
-                            uniform(0, 1), !is_crystal && chance(0.3) ? ", average = 'layer'" : "");
+                            uniform(0, 1), !is_crystal && chance(0.3) ? ", where = 'host'" : "");
     std::string axes;
     if (chance(0.7))
       axes += fmt::format("{{ constant = {}, axis = {} }}, ", of_sites(-1, 1), vector());

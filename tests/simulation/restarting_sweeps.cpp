@@ -29,7 +29,7 @@ constexpr KindOfField fields[] = {
 #if defined(CAYSPIN_HAS_FFTW)
     {"of all sites", "demag = { strength = 0.5 }\n"},
 #endif
-    {"averaged", "slab_demag = { normal = [0, 0, 1], strength = 0.5, average = 'layer' }\n"}};
+};
 
 // Steps of two stages or more sweep on twice these sites: their fields exceed the caches of all
 // cores.

@@ -4,6 +4,7 @@
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/mean_field.hpp"
 
 #include <numbers>
 #include <string>
@@ -292,8 +293,7 @@ TEST(RedBlackRefuses, LatticesThatAreNoCheckerboard) {
 TEST(RedBlackRefuses, FieldsThatNeedAllSpins) {
   Spins spins("spins", block);
   RedBlack2 stepper(spins);
-  LandauLifshitz const generator(
-      EffectiveField{LayerAveragedSlabDemag<Space::memory_space>(block, 0)}, 0.1);
+  LandauLifshitz const generator(EffectiveField{MeanField(1)}, 0.1);
   EXPECT_NE(refusal([&] {
               stepper.step(Space{}, generator, spins, 0, 0.1);
             }).find("RedBlack::step: a term of the field needs all spins beforehand"),

@@ -3,6 +3,7 @@
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
+#include "../support/mean_field.hpp"
 
 #include <cayspin/stepper/stiff_gauss.hpp>
 
@@ -68,9 +69,8 @@ TEST(StiffFields, Dmi) {
       EffectiveField(Exchange(film(), 25), InterfacialDmi(film(), 3, {0, 0, 1})), 0.1));
 }
 
-TEST(StiffFields, LayerAveragedSlabDemag) {
-  using Demag = LayerAveragedSlabDemag<Space::memory_space>;
-  expect_converges(LandauLifshitz(EffectiveField(Exchange(film(), 25), Demag(film(), 0, 2)), 0.1));
+TEST(StiffFields, FieldOfAllSpins) {
+  expect_converges(LandauLifshitz(EffectiveField(Exchange(film(), 25), MeanField(2)), 0.1));
 }
 
 TEST(StiffFields, TimeDependentField) {

@@ -120,7 +120,6 @@ void for_each_term(Setting<Real> const& on, Visit const& visit) {
   visit("ZhangLi", ZhangLi(lattice, vector(), number()));
   visit("Slonczewski", Slonczewski(number(), number(), vector()));
   visit("HostField", HostField<Field, AlongZ>(lattice, AlongZ()));
-  visit("LayerAveragedSlabDemag", LayerAveragedSlabDemag<Host>(lattice, 2, number()));
   Coupling const bilinear = Coupling::of({0, 1}, {1, 0, 0}, number(), {number(), number(), 1}),
                  within = Coupling::of({1, 1}, {0, 1, 0}, number());
   visit("PairCouplings", PairCouplings<Host>(lattice, {bilinear, within}));
@@ -134,8 +133,7 @@ void for_each_term(Setting<Real> const& on, Visit const& visit) {
 
 template <class Term>
 inline constexpr bool sees_vacant_spins =
-    detail::holds<LayerAveragedSlabDemag, Term>() || detail::holds<PairCouplings, Term>() ||
-    detail::holds<detail::SeesAllSpins, Term>();
+    detail::holds<PairCouplings, Term>() || detail::holds<detail::SeesAllSpins, Term>();
 
 /// Calls visit(name, wrapped, factors, is_alone) for each of the library's wrappers around a term,
 /// and for some around each other. `is_alone`: it answers as the term does.
@@ -194,7 +192,7 @@ void expect_all_members(Setting<Real> const& on) {
           ++count;
         });
   });
-  EXPECT_EQ(count, 20 * 5 - 4);
+  EXPECT_EQ(count, 19 * 5 - 3);
 }
 
 }  // namespace cayspin::test

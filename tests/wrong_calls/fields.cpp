@@ -68,7 +68,6 @@ TEST(WrongCallsOfSums, SpinsOfOthers) {
       refuses("BulkDmi", BulkDmi(own, 1));
       refuses("PairCouplings", PairCouplings<Kokkos::HostSpace>(own, one_bond));
       refuses("ZhangLi", ZhangLi(own, {1, 1, 1}));
-      refuses("LayerAveragedSlabDemag", LayerAveragedSlabDemag<Kokkos::HostSpace>(own, 1));
       refuses("HostField", HostField(Spins("like", own), NoField()));
       refuses("SiteDependentExchange", EffectiveField(Zeeman(), SiteDependentExchange(numbers)));
       refuses("SiteDependentUniaxialAnisotropy",
@@ -181,13 +180,12 @@ TEST(WrongCallsOfTerms, MadeOfNothing) {
 
 TEST(WrongCallsOfTerms, SolversOnTheHost) {
   for (auto const& own : own_lattices)
-    for (auto const& [kind, other] : fields_of_others<Spins>(own))
-      for (bool const layers : {false, true}) {
-        SlabDemagOnHost const solver({0, 1, 0}, 1, layers);
-        Spins const spins("spins", own);
-        expect_refused({{"field " + kind, [&] { solver(spins, other, 0); }},
-                        {"spins " + kind, [&] { solver(other, spins, 0); }}});
-      }
+    for (auto const& [kind, other] : fields_of_others<Spins>(own)) {
+      SlabDemagOnHost const solver({0, 1, 0});
+      Spins const spins("spins", own);
+      expect_refused({{"field " + kind, [&] { solver(spins, other, 0); }},
+                      {"spins " + kind, [&] { solver(other, spins, 0); }}});
+    }
 }
 
 TEST(WrongCallsOfCopies, ViewsOfOtherExtents) {
@@ -277,7 +275,6 @@ TEST(WrongCallsOfLattices, NoneThatCannotBe) {
          [&] {
            ZhangLi(lattice, Vec3<double>{1, 0, 0});
          }},
-        {"LayerAveragedSlabDemag", [&] { LayerAveragedSlabDemag<Kokkos::HostSpace>(lattice, 0); }},
         {"HostField", [&] { HostField<Spins, NoField>(lattice, NoField()); }},
     });
   }

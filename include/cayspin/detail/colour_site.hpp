@@ -41,11 +41,6 @@ class ColourSite : public SitesOfRow<Value, AtEdge, 2> {
                                          int component) const {
     return at(array.data + component * array.stride + row_.offset);
   }
-  /// Loads from an array along x.
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
-    return at(profile);
-  }
 
   /// Writes these sites and leaves the sites between them alone.
   template <class Real>

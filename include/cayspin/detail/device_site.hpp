@@ -96,10 +96,6 @@ class DeviceSite {
                                          int component) const {
     return detail::load<Value>(array.data + component * array.stride + offset_);
   }
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
-    return detail::load<Value>(profile + at_[0]);
-  }
 
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value,

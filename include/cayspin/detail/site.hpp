@@ -46,11 +46,6 @@ class Site : public SitesOfRow<Value, AtEdge, 1> {
                                          int component) const {
     return detail::load<Value>(array.data + component * array.stride + offset());
   }
-  /// Loads from an array along x.
-  template <class Real>
-  KOKKOS_FORCEINLINE_FUNCTION Value load_profile(Real const* profile) const {
-    return detail::load<Value>(profile + x_);
-  }
   template <class Real>
   KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value,
                                          OutputArray<Real, 1> const& array) const {

@@ -3,7 +3,6 @@
 
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/forwarding.hpp>
-#include <cayspin/field/layer_averaged_slab_demag.hpp>
 #include <cayspin/field/local_part.hpp>
 #include <cayspin/field/pair_couplings.hpp>
 #include <cayspin/stencil.hpp>
@@ -165,8 +164,6 @@ inline constexpr bool comes_in_parts<FieldAmongVacancies<Field, Real>, Stencil> 
 /// A HostField's solver is given the vacant spins too, and has to leave them out.
 template <class Field, class Real, class MemorySpace>
 class FieldWithVacancies : public Forwarding<FieldWithVacancies<Field, Real, MemorySpace>, Field> {
-  static_assert(!detail::holds<LayerAveragedSlabDemag, Field>(),
-                "LayerAveragedSlabDemag counts the spins of vacant sites in its averages.");
   static_assert(!detail::holds<PairCouplings, Field>(),
                 "PairCouplings read the spins of vacant sites: where these are zero vectors, no "
                 "FieldWithVacancies is needed.");

@@ -237,19 +237,17 @@ struct Torque {
   std::optional<Slonczewski> slonczewski;
 };
 
-/// H = -strength (m.normal) normal, per spin or averaged over layers.
+/// H = -strength (m.normal) normal, spin by spin.
 struct SlabDemagnetization {
   Triple normal = {};  ///< unit vector n in H = -strength (m.n) n
   double strength = 1;
-  bool average_layer = false;  ///< (m.n) averaged over each plane normal to n, along an axis
-  bool on_host = false;        ///< computed on the host through a mirror copy
-  bool dear = false;           ///< evaluated once or twice a step, between substeps of the rest
+  bool on_host = false;  ///< computed on the host through a mirror copy
+  bool dear = false;     ///< evaluated once or twice a step, between substeps of the rest
 
   static constexpr auto keys() {
     using Slab = SlabDemagnetization;
     return std::to_array<Key<Slab>>({{"normal", &Slab::normal, {"three numbers"}, true},
                                      {"strength", &Slab::strength},
-                                     {"average"},
                                      {"where"},
                                      {"dear", &Slab::dear}});
   }
