@@ -94,7 +94,7 @@ class SceneField {
  private:
   template <class Exec>
   SceneFieldNow<Real> usual_terms(Exec const& exec, Spins const& spins, double t) const {
-    SceneFieldNow<Real> now{lattice_terms_, quadratic_,          {}, {},
+    SceneFieldNow<Real> now{lattice_terms_,     quadratic_,      {}, {},
                             applied_.present(), stored_ || dear_};
     if (now.has_applied) now.zeeman = {applied_(t)};
     if (stored_) now.stored = cayspin::detail::prepare_term(*stored_, exec, spins, t);

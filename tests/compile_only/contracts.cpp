@@ -31,8 +31,7 @@ template <class Real>
 inline constexpr bool terms_of_cayspin =
     are_terms<Real, Exchange, UniaxialAnisotropy, Zeeman, TimeDependentZeeman<Rotating>, SlabDemag,
               CubicAnisotropy, InterfacialDmi, BulkDmi, ZhangLi, Slonczewski,
-              PairCouplings<Kokkos::HostSpace>,
-              HostField<Spins<Real>, SlabDemagOnHost>,
+              PairCouplings<Kokkos::HostSpace>, HostField<Spins<Real>, SlabDemagOnHost>,
               SiteDependentExchange<Real, Kokkos::HostSpace>,
               SiteDependentUniaxialAnisotropy<Scalars<Real>, Vec3<double>>, EffectiveField<>,
               EffectiveField<Exchange, Zeeman>,
