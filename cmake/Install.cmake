@@ -1,25 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-# Headers, program and the package that find_package(cayspin [COMPONENTS io]) reads.
+# Headers, program and the package that find_package(cayspin) reads.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cayspin)
 
-if(CAYSPIN_BUILD_APP)
-  set(headers_left_out "")
-else()
-  set(headers_left_out PATTERN io EXCLUDE)
-endif()
 install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp" ${headers_left_out})
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(TARGETS cayspin cayspin_same_bits EXPORT cayspinTargets)
 install(EXPORT cayspinTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
-if(TARGET cayspin_io)
-  set_target_properties(cayspin_io PROPERTIES EXPORT_NAME io)
-  install(TARGETS cayspin_io EXPORT cayspin_ioTargets ARCHIVE)
-  install(EXPORT cayspin_ioTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
-endif()
 if(TARGET cayspin_program)
   install(TARGETS cayspin_program cayspin_reproduce cayspin_extremes RUNTIME)
   include(cmake/InstallScripts.cmake)

@@ -2,6 +2,8 @@
 // The slab of scenes/slab_switching.toml with a step of 0.01, by geometric Euler, by classical
 // Euler and by RKMK4: what `cayspin run` computes, in a program that takes seconds to compile.
 #include "cayspin_git_commit.hpp"
+#include "io/scene.hpp"
+#include "io/trajectory.hpp"
 
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/exchange.hpp>
@@ -10,8 +12,6 @@
 #include <cayspin/field/zeeman.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/integrate.hpp>
-#include <cayspin/io/scene.hpp>
-#include <cayspin/io/trajectory.hpp>
 #include <cayspin/observer/record.hpp>
 #include <cayspin/stepper/corrected_euler.hpp>
 #include <cayspin/stepper/methods.hpp>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "simulation/simulate.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <vector>
 

@@ -2,11 +2,11 @@
 // The module _cayspin: scenes and runs as the package python/cayspin wraps them.
 #include "arrays.hpp"
 #include "cayspin_git_commit.hpp"
+#include "io/relax.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
 
-#include <cayspin/io/relax.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>

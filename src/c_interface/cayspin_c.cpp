@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "cayspin_git_commit.hpp"
+#include "io/relax.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/guard.hpp"
 #include "simulation/run_recorder.hpp"
 
 #include <cayspin/cayspin.h>
-#include <cayspin/io/relax.hpp>
 #include <cayspin/version.hpp>
 
 #include <algorithm>

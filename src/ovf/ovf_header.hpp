@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/ovf.hpp>
+#include "io/ovf.hpp"
 
 #include <istream>
 #include <string>

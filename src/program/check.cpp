@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "describe.hpp"
+#include "io/notes.hpp"
+#include "io/relax.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
@@ -12,9 +14,6 @@
 #include "simulation/thermal.hpp"
 #include "terminal_picture.hpp"
 #include "trade/resolved.hpp"
-
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/relax.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/precision.hpp"
 #include "simulation/ranks.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

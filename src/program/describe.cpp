@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "describe.hpp"
 
+#include "io/notes.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/text.hpp"
 #include "simulation/thermal.hpp"
 
 #include <cayspin/demagnetization/images.hpp>
-#include <cayspin/io/notes.hpp>
 
 #include <fmt/args.h>
 #include <fmt/format.h>

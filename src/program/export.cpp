@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "io/ovf.hpp"
+#include "io/relax.hpp"
+#include "io/trajectory.hpp"
 #include "simulation/failure.hpp"
-
-#include <cayspin/io/ovf.hpp>
-#include <cayspin/io/relax.hpp>
-#include <cayspin/io/trajectory.hpp>
 
 #include <fmt/format.h>
 

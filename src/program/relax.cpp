@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/relax.hpp"
+
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "io/notes.hpp"
+#include "io/run_output.hpp"
 #include "progress.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/plan.hpp"
@@ -10,9 +14,6 @@
 #include "simulation/space.hpp"
 #include "simulation/text.hpp"
 
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/relax.hpp>
-#include <cayspin/io/run_output.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <fmt/format.h>

@@ -2,6 +2,8 @@
 #include "cayspin_git_commit.hpp"
 #include "command.hpp"
 #include "describe.hpp"
+#include "io/checkpoint.hpp"
+#include "io/notes.hpp"
 #include "run_watch.hpp"
 #include "simulation/checkpoint_of_ranks.hpp"
 #include "simulation/failure.hpp"
@@ -11,9 +13,6 @@
 #include "simulation/restart.hpp"
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/notes.hpp>
 
 #include <fmt/format.h>
 

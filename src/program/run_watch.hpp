@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/run_output.hpp"
+#include "io/scene.hpp"
 #include "progress.hpp"
 #include "simulation/checkpoint_schedule.hpp"
 #include "simulation/ranks.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/running_scene.hpp"
 
-#include <cayspin/io/run_output.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <algorithm>

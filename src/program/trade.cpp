@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
+#include "io/notes.hpp"
 #include "simulation/dear_method.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
@@ -7,8 +8,6 @@
 #include "simulation/text.hpp"
 #include "trade/resolved.hpp"
 #include "trade/verdict.hpp"
-
-#include <cayspin/io/notes.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

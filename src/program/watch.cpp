@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "bar.hpp"
 #include "command.hpp"
+#include "io/follow.hpp"
+#include "io/sweep.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
-
-#include <cayspin/io/follow.hpp>
-#include <cayspin/io/sweep.hpp>
 
 #include <fmt/format.h>
 

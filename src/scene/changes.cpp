@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "sections.hpp"
+#include "io/changes.hpp"
 
-#include <cayspin/io/changes.hpp>
+#include "sections.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "hdf5/real_dataset.hpp"
-
-#include <cayspin/io/scene.hpp>
+#include "io/scene.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

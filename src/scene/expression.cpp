@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include <cayspin/io/expression.hpp>
+#include "io/expression.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

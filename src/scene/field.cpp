@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/expression.hpp"
 #include "quantity.hpp"
 #include "sections.hpp"
 
 #include <cayspin/demagnetization/images.hpp>
 #include <cayspin/demagnetization/tensor.hpp>
-#include <cayspin/io/expression.hpp>
 
 #include <fmt/format.h>
 

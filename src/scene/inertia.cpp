@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "hdf5/guarded_reading.hpp"
 #include "hdf5/real_dataset.hpp"
+#include "io/scene.hpp"
 #include "sections.hpp"
 #include "start_file.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/notes.hpp"
+
+#include "io/ovf.hpp"
 #include "sections.hpp"
 
 #include <cayspin/demagnetization/images.hpp>
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/ovf.hpp>
 #include <cayspin/shells.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "free_boundary.hpp"
+#include "io/relax.hpp"
 #include "sections.hpp"
-
-#include <cayspin/io/relax.hpp>
 
 #include <fmt/format.h>
 

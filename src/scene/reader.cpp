@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "reader.hpp"
 
-#include <cayspin/io/expression.hpp>
+#include "io/expression.hpp"
 
 #include <fmt/ranges.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "sections.hpp"
+#include "io/refused_pairs.hpp"
 
-#include <cayspin/io/refused_pairs.hpp>
-#include <cayspin/io/scene.hpp>
+#include "io/scene.hpp"
+#include "sections.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/expression.hpp>
-#include <cayspin/io/scene.hpp>
+#include "io/expression.hpp"
+#include "io/scene.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,11 +2,10 @@
 #include "dataset_of_sites.hpp"
 #include "free_boundary.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/scene.hpp"
 #include "sections.hpp"
 #include "site_expression.hpp"
 #include "start_file.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/scene.hpp"
 #include "sections.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 

@@ -4,10 +4,9 @@
 #include "dataset_of_sites.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/ovf.hpp"
+#include "io/trajectory.hpp"
 #include "trajectory/stored_spins.hpp"
-
-#include <cayspin/io/ovf.hpp>
-#include <cayspin/io/trajectory.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

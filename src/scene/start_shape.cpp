@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The zero vectors of a file as sites without a spin.
+#include "io/notes.hpp"
+#include "io/ovf.hpp"
 #include "sections.hpp"
 #include "start_file.hpp"
-
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/ovf.hpp>
 
 #include <toml++/toml.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/sweep.hpp"
 #include "reader.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 #include <fmt/format.h>
 

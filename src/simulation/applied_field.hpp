@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/expression.hpp>
-#include <cayspin/io/field.hpp>
+#include "io/expression.hpp"
+#include "io/field.hpp"
+
 #include <cayspin/vec3.hpp>
 
 #include <array>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/checkpoint.hpp"
 #include "ranks.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
 
 #include <algorithm>
 #include <exception>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "interrupt_poll.hpp"
+#include "io/scene.hpp"
 
-#include <cayspin/io/scene.hpp>
 #include <cayspin/step.hpp>
 
 #include <chrono>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "dear_method.hpp"
 
+#include "io/relax.hpp"
 #include "thermal.hpp"
 
 #include <cayspin/exchange_memory.hpp>
-#include <cayspin/io/relax.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
 #include <fmt/format.h>

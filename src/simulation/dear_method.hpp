@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "plan.hpp"
 #include "variant.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/scene.hpp>
+#include "io/scene.hpp"
+
 #include <cayspin/spin_field.hpp>
 
 #include <cstdint>

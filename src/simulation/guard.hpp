@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "thermal.hpp"
 
-#include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <algorithm>

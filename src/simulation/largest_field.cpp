@@ -3,10 +3,10 @@
 
 #include "applied_field.hpp"
 #include "failure.hpp"
+#include "io/site_box.hpp"
 #include "text.hpp"
 
 #include <cayspin/field/bonds_of_sites.hpp>
-#include <cayspin/io/site_box.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "time_features.hpp"
 
 #include <cayspin/integrate.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/lattice.hpp>
 
 namespace cayspin::simulation {

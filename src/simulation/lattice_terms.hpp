@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/field.hpp"
+
 #include <cayspin/cayspin.hpp>
-#include <cayspin/io/field.hpp>
 
 #include <tuple>
 

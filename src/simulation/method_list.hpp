@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/method.hpp>
+#include "io/method.hpp"
+
 #include <cayspin/stepper/tableau.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
 #include <cayspin/stepper/tableau_order6.hpp>

@@ -2,10 +2,10 @@
 #include "parts.hpp"
 
 #include "failure.hpp"
+#include "io/scene.hpp"
 #include "plan.hpp"
 
 #include <cayspin/field/bonds_of_sites.hpp>
-#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 

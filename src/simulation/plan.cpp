@@ -4,6 +4,8 @@
 #include "dear_method.hpp"
 #include "demagnetization.hpp"
 #include "files/available_memory.hpp"
+#include "io/ovf.hpp"
+#include "io/trajectory.hpp"
 #include "largest_field.hpp"
 #include "ranks.hpp"
 #include "run_files.hpp"
@@ -11,8 +13,6 @@
 #include "thermal.hpp"
 
 #include <cayspin/detail/row_layout.hpp>
-#include <cayspin/io/ovf.hpp>
-#include <cayspin/io/trajectory.hpp>
 #include <cayspin/minimize.hpp>
 #include <cayspin/stability.hpp>
 

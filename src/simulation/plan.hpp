@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "precision.hpp"
 #include "time_features.hpp"
 #include "variant.hpp"
 
-#include <cayspin/io/scene.hpp>
 #include <cayspin/lattice.hpp>
 
 #include <cstdint>

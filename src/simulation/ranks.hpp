@@ -2,8 +2,8 @@
 #pragma once
 
 #include "failure.hpp"
+#include "io/site_box.hpp"
 
-#include <cayspin/io/site_box.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/mpi/division.hpp>
 #include <cayspin/part.hpp>

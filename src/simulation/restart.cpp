@@ -3,10 +3,9 @@
 
 #include "dear_method.hpp"
 #include "failure.hpp"
+#include "io/changes.hpp"
+#include "io/relax.hpp"
 #include "text.hpp"
-
-#include <cayspin/io/changes.hpp>
-#include <cayspin/io/relax.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/checkpoint.hpp"
+#include "io/trajectory.hpp"
 #include "plan.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/trajectory.hpp>
 
 #include <filesystem>
 #include <memory>

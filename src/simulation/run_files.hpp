@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/checkpoint.hpp"
+#include "io/run_output.hpp"
+#include "io/scene.hpp"
 #include "precision.hpp"
 
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/run_output.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/observer/record.hpp>
 
 #include <cstdint>

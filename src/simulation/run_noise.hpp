@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "scene_generator.hpp"
 
 #include <cayspin/integrate.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 
 #include <Kokkos_Timer.hpp>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "run_recorder.hpp"
 
+#include "io/checkpoint.hpp"
 #include "run_files.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
 
 #include <algorithm>
 

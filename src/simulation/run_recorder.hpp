@@ -2,9 +2,8 @@
 #pragma once
 
 #include "checkpoint_schedule.hpp"
+#include "io/run_output.hpp"
 #include "scene_run.hpp"
-
-#include <cayspin/io/run_output.hpp>
 
 #include <filesystem>
 

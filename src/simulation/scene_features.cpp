@@ -2,9 +2,8 @@
 // What a scene has for time_features.hpp to look at.
 #include "applied_field.hpp"
 #include "failure.hpp"
+#include "io/scene.hpp"
 #include "time_features.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 

@@ -3,12 +3,12 @@
 
 #include "applied_field.hpp"
 #include "field_in_pass.hpp"
+#include "io/field.hpp"
 #include "scene_field_now.hpp"
 #include "whole_field.hpp"
 
 #include <cayspin/field/dear.hpp>
 #include <cayspin/generator/rigid_body.hpp>
-#include <cayspin/io/field.hpp>
 #include <cayspin/optional_members.hpp>
 
 #include <optional>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/field.hpp"
 #include "lattice_terms.hpp"
 
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/zeeman.hpp>
-#include <cayspin/io/field.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,10 +2,9 @@
 #include "scene_generator.hpp"
 
 #include "dear_method.hpp"
+#include "io/scene.hpp"
 #include "space.hpp"
 #include "terms_along_row.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <filesystem>
 #include <system_error>

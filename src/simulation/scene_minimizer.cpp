@@ -2,11 +2,10 @@
 #include "scene_minimizer.hpp"
 
 #include "failure.hpp"
+#include "io/relax.hpp"
 #include "run_files.hpp"
 #include "space.hpp"
 #include "thermal.hpp"
-
-#include <cayspin/io/relax.hpp>
 
 #include <fmt/format.h>
 

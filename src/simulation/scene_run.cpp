@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "scene_run.hpp"
 
+#include "io/checkpoint.hpp"
+#include "io/notes.hpp"
+#include "io/relax.hpp"
 #include "restart.hpp"
 #include "run_files.hpp"
 #include "scene_run_in_space.hpp"
 
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/relax.hpp>
 #include <cayspin/minimize.hpp>
 #include <cayspin/spin_field.hpp>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/own_field.hpp"
+#include "io/scene.hpp"
 #include "plan.hpp"
 
 #include <cayspin/checkpoint.hpp>
-#include <cayspin/io/own_field.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/minimizer/minimum.hpp>
 #include <cayspin/observer/record.hpp>
 

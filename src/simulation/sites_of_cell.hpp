@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "pass_terms.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include "applied_field.hpp"
 #include "evaluate_in_pass.hpp"
 #include "field_in_pass.hpp"
+#include "io/scene.hpp"
 #include "ranks.hpp"
 #include "sites_of_cell.hpp"
 #include "space.hpp"
@@ -14,7 +15,6 @@
 #include <cayspin/detail/sweep_plan.hpp>
 #include <cayspin/detail/table.hpp>
 #include <cayspin/field/site_dependent_exchange.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/scalars.hpp>
 
 #include <algorithm>

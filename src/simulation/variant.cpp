@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "variant.hpp"
 
-#include <cayspin/io/scene.hpp>
+#include "io/scene.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/method.hpp"
 #include "simulate.hpp"
 
 #include <cayspin/checkpoint.hpp>
-#include <cayspin/io/method.hpp>
 #include <cayspin/stepper/step_control.hpp>
 
 #include <memory>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "demagnetization.hpp"
+#include "io/own_field.hpp"
 
 #include <cayspin/field/host_field.hpp>
 #include <cayspin/field/slab_demag_on_host.hpp>
-#include <cayspin/io/own_field.hpp>
 #include <cayspin/optional_members.hpp>
 
 #include <type_traits>

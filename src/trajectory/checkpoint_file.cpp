@@ -6,11 +6,10 @@
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/checkpoint.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "require.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
 
 #include <array>
 #include <cstring>

@@ -3,10 +3,9 @@
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/follow.hpp"
 #include "scalar_series.hpp"
 #include "trajectory_reader.hpp"
-
-#include <cayspin/io/follow.hpp>
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "hdf5/handle.hpp"
-
-#include <cayspin/io/units.hpp>
+#include "io/units.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,7 @@
 
 #include "fletcher32.hpp"
 #include "hdf5/dataset.hpp"
-
-#include <cayspin/io/trajectory.hpp>
+#include "io/trajectory.hpp"
 
 #include <array>
 #include <cstddef>

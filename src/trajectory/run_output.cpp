@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/run_output.hpp"
+
 #include "files/file_beside.hpp"
 #include "format.hpp"
 #include "require.hpp"
 #include "scalar_series.hpp"
 #include "scalar_table.hpp"
 #include "xdmf_file.hpp"
-
-#include <cayspin/io/run_output.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "hdf5/handle.hpp"
-
-#include <cayspin/io/trajectory.hpp>
+#include "io/trajectory.hpp"
 
 #include <array>
 #include <cstdint>

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "hdf5/real_dataset.hpp"
+#include "io/site_box.hpp"
+#include "io/trajectory.hpp"
 #include "scalar_series.hpp"
-
-#include <cayspin/io/site_box.hpp>
-#include <cayspin/io/trajectory.hpp>
 
 #include <array>
 #include <cstdint>

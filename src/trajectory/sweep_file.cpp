@@ -3,12 +3,11 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/sweep.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "stored_spins.hpp"
 #include "sweep_format.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 #include <array>
 #include <stdexcept>

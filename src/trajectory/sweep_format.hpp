@@ -3,8 +3,7 @@
 
 #include "hdf5/dataset.hpp"
 #include "hdf5/handle.hpp"
-
-#include <cayspin/io/trajectory.hpp>
+#include "io/trajectory.hpp"
 
 namespace cayspin::inline v0_1::io {
 

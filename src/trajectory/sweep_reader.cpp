@@ -3,9 +3,8 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
+#include "io/sweep.hpp"
 #include "sweep_format.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 #include <algorithm>
 #include <array>

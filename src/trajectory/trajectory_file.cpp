@@ -6,12 +6,11 @@
 #include "hdf5/dataset.hpp"
 #include "hdf5/error.hpp"
 #include "hdf5/synced_file.hpp"
+#include "io/trajectory.hpp"
 #include "new_file.hpp"
 #include "open_file_space.hpp"
 #include "require.hpp"
 #include "scalar_series.hpp"
-
-#include <cayspin/io/trajectory.hpp>
 
 #include <bit>
 #include <chrono>

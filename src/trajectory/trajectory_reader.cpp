@@ -9,9 +9,8 @@
 #include "hdf5/error.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
+#include "io/trajectory.hpp"
 #include "scalar_series.hpp"
-
-#include <cayspin/io/trajectory.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -4,12 +4,12 @@
 #include "../support/decimal_comma.hpp"
 #include "../support/file_bytes.hpp"
 #include "c_interface_test.hpp"
+#include "io/expression.hpp"
+#include "io/ovf.hpp"
+#include "io/scene.hpp"
+#include "io/trajectory.hpp"
 
 #include <cayspin/detail/text.hpp>
-#include <cayspin/io/expression.hpp>
-#include <cayspin/io/ovf.hpp>
-#include <cayspin/io/scene.hpp>
-#include <cayspin/io/trajectory.hpp>
 
 #include <cmath>
 #include <map>

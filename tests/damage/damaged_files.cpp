@@ -3,11 +3,10 @@
 // CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
+#include "io/follow.hpp"
+#include "io/scene.hpp"
 #include "support/reads_in_child.hpp"
 #include "trajectory/trajectory_test.hpp"
-
-#include <cayspin/io/follow.hpp>
-#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 

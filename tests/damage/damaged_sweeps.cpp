@@ -3,10 +3,9 @@
 // CAYSPIN_DAMAGED_SWEEPS and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
 #include "hdf5/real_dataset.hpp"
+#include "io/sweep.hpp"
 #include "support/reads_in_child.hpp"
 #include "trajectory/trajectory_test.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 #include <iostream>
 

@@ -2,9 +2,8 @@
 // Shipped scenes with tokens deleted, swapped or replaced: each is read, or refused with one line.
 // CAYSPIN_MUTATED_SCENES and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
-
-#include <cayspin/io/expression.hpp>
-#include <cayspin/io/scene.hpp>
+#include "io/expression.hpp"
+#include "io/scene.hpp"
 
 #include <gtest/gtest.h>
 

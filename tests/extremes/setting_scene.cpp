@@ -2,8 +2,7 @@
 #include "setting_scene.hpp"
 
 #include "exact.hpp"
-
-#include <cayspin/io/relax.hpp>
+#include "io/relax.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

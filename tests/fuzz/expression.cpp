@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // One formula, compiled and evaluated.
-#include "fuzz.hpp"
+#include "io/expression.hpp"
 
-#include <cayspin/io/expression.hpp>
+#include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
   cayspin::fuzz::refuse_or_read([&] {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // An OVF file in any of its formats.
-#include "fuzz.hpp"
+#include "io/ovf.hpp"
 
-#include <cayspin/io/ovf.hpp>
+#include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
   auto const path = cayspin::fuzz::file_with(data, bytes, ".ovf");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The text of a scene, and what it comes to: expressions are evaluated, small lattices started.
-#include "fuzz.hpp"
+#include "io/scene.hpp"
 
-#include <cayspin/io/scene.hpp>
+#include "fuzz.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
   cayspin::fuzz::refuse_or_read([&] {

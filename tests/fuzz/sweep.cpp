@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The file of a sweep, with the child that every reading is tried in.
+#include "io/sweep.hpp"
+
 #include "../support/reads_in_child.hpp"
 #include "fuzz.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
   auto const path = cayspin::fuzz::file_with(data, bytes, ".h5");

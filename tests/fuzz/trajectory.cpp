@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A trajectory file, with the child that every reading is tried in: HDF5's own faults stay there.
+#include "io/trajectory.hpp"
+
 #include "../support/reads_in_child.hpp"
 #include "fuzz.hpp"
-
-#include <cayspin/io/trajectory.hpp>
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t bytes) {
   auto const path = cayspin::fuzz::file_with(data, bytes, ".h5");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // write_seeds FOLDER: small HDF5 files for the fuzzers to begin with, and empty folders for what
 // they find.
-#include <cayspin/io/sweep.hpp>
-#include <cayspin/io/trajectory.hpp>
+#include "io/sweep.hpp"
+#include "io/trajectory.hpp"
 
 #include <vector>
 

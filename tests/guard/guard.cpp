@@ -2,7 +2,7 @@
 // What the guard of a run lets pass, and what it does not: numbers just below and just above.
 #include "simulation/guard.hpp"
 
-#include <cayspin/io/scene.hpp>
+#include "io/scene.hpp"
 
 #include <gtest/gtest.h>
 

@@ -29,12 +29,11 @@ LIBRARY = [
     ("minimisers", ["minimizer/", "minimize.hpp"]),
     ("everything", ["cayspin.hpp"]),
     ("ranks", ["mpi/"]),
-    ("scenes and files", ["io/"]),
 ]
 
 # The same for what is built on the library, relative to the repository.
 PROGRAMS = [
-    ("list of methods", ["src/simulation/method_list.hpp"]),  # data that all others read
+    ("list of methods", ["src/io/method.hpp", "src/io/words.hpp", "src/simulation/method_list.hpp"]),  # data that all others read
     ("the paper's steppers", ["paper/include/"]),  # headers on the library alone
     ("reader and writer", ["src/scene/", "src/trajectory/", "src/hdf5/", "src/ovf/", "src/files/",
                            "src/io/"]),

@@ -36,7 +36,6 @@ PLACES = {
     "minimisers": (1, "states of rest"),
     "everything": (1, "all of the library"),
     "ranks": (2.75, "a part of the lattice on each rank"),
-    "scenes and files": (3.5, "scenes as structs, files"),
     "list of methods": (2.25, "one row for each method of scenes"),
     "the paper's steppers": (0, "forms as printed in 2002"),
     "reader and writer": (2.25, "reads TOML, writes HDF5 and OVF"),

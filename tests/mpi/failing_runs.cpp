@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Runs on several ranks that are refused, fail, are interrupted or lose a rank.
+#include "io/checkpoint.hpp"
 #include "on_ranks.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
 
 #include <sys/types.h>
 

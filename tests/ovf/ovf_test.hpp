@@ -2,8 +2,7 @@
 #pragma once
 
 #include "../support/file_bytes.hpp"
-
-#include <cayspin/io/ovf.hpp>
+#include "io/ovf.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Methods that choose their steps by integrator.tolerance: what error they come to, when frames are
 // written, what ends them.
+#include "io/method.hpp"
 #include "program_test.hpp"
-
-#include <cayspin/io/method.hpp>
 
 namespace cayspin::program::test {
 namespace {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Every choice a scene has between method, generator, isotropy and rotation, on spins and on rigid
 // bodies: it runs at its order, or it is refused in one line.
+#include "io/method.hpp"
 #include "program_test.hpp"
-
-#include <cayspin/io/method.hpp>
 
 #include <cmath>
 #include <set>

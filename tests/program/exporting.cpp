@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // cayspin export, and runs that start from what it wrote.
+#include "io/ovf.hpp"
 #include "program_test.hpp"
-
-#include <cayspin/io/ovf.hpp>
 
 #include <algorithm>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // docs/reports/extremes.md: the page is what is printed, and every run keeps its promise.
+#include "io/method.hpp"
 #include "program_test.hpp"
-
-#include <cayspin/io/method.hpp>
 
 #include <nlohmann/json.hpp>
 

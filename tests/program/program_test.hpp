@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/trajectory.hpp>
+#include "io/trajectory.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/types.h>

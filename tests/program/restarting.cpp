@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // --restart: a run that goes on from a file is the run without a break.
+#include "io/checkpoint.hpp"
+#include "io/scene.hpp"
 #include "program_test.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/scene.hpp>
 
 #include <csignal>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Scenes in SI from end to end: the motion of the reduced scene to the bit, and numbers in SI.
+#include "io/ovf.hpp"
 #include "si_scene.hpp"
-
-#include <cayspin/io/ovf.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // cayspin sweep: all combinations in one file, however it was interrupted on the way.
+#include "io/sweep.hpp"
 #include "program_test.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 #include <hdf5.h>
 

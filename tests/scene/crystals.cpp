@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Cells, sites and bonds as scenes say them.
 #include "hdf5_file.hpp"
+#include "io/ovf.hpp"
 #include "scene_file.hpp"
 
-#include <cayspin/io/ovf.hpp>
 #include <cayspin/shells.hpp>
 
 #include <cmath>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The functions grain and random of expressions.
+#include "io/scene.hpp"
 #include "scene/random_bits.hpp"
 #include "scene_file.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <algorithm>
 #include <cmath>

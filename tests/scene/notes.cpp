@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // What a scene says in vain, or in contradiction to another key.
+#include "io/notes.hpp"
+
+#include "io/ovf.hpp"
 #include "scene_file.hpp"
 
 #include <cayspin/demagnetization/images.hpp>
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/ovf.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Which terms and sites do not go with which methods: those of one table, which is printed, and no
 // others.
-#include "scene_file.hpp"
+#include "io/refused_pairs.hpp"
 
-#include <cayspin/io/method.hpp>
-#include <cayspin/io/refused_pairs.hpp>
+#include "io/method.hpp"
+#include "scene_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // units = "SI": crystals, sublattices, currents and constants of sites.
 #include "hdf5_file.hpp"
+#include "io/expression.hpp"
 #include "wrong_scenes.hpp"
-
-#include <cayspin/io/expression.hpp>
 
 #include <cmath>
 #include <numeric>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // units = "SI": what a material comes to in reduced units, and what is refused.
+#include "io/expression.hpp"
 #include "wrong_scenes.hpp"
-
-#include <cayspin/io/expression.hpp>
 
 #include <cmath>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "hdf5_file.hpp"
+#include "io/ovf.hpp"
 #include "scene_file.hpp"
-
-#include <cayspin/io/ovf.hpp>
 
 #include <cmath>
 #include <cstdlib>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Zero vectors in the file of a start, as other programs write them where nothing is.
 #include "hdf5_file.hpp"
+#include "io/notes.hpp"
+#include "io/ovf.hpp"
 #include "scene_file.hpp"
-
-#include <cayspin/io/notes.hpp>
-#include <cayspin/io/ovf.hpp>
 
 #include <random>
 

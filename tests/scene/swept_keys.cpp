@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The values of --over, and the grid that they make.
-#include <cayspin/io/scene.hpp>
-#include <cayspin/io/sweep.hpp>
+#include "io/scene.hpp"
+#include "io/sweep.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include <cayspin/io/method.hpp>
-#include <cayspin/io/words.hpp>
+#include "io/words.hpp"
+
+#include "io/method.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "io/relax.hpp"
 #include "wrong_scenes.hpp"
-
-#include <cayspin/io/relax.hpp>
 
 namespace cayspin::inline v0_1::io::test {
 namespace {

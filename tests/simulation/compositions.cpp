@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Scenes composed at random, terms x shapes x numbers of sites x methods x precisions, beside the
 // library's own composed field. CAYSPIN_COMPOSITIONS: how many.
+#include "io/method.hpp"
 #include "scenes_of_text.hpp"
 
 #include <cayspin/cayspin.hpp>
-#include <cayspin/io/method.hpp>
 
 #include <cstdlib>
 #include <map>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Scenes of crystals, sublattices and currents against closed forms.
 #include "../support/antiferromagnet.hpp"
+#include "io/method.hpp"
 #include "scenes_of_text.hpp"
-
-#include <cayspin/io/method.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Random scenes of all terms, vacancies, frozen sites and crystals: the derivative of the energy,
 // the torque and the lowest curvature beside finite differences and a dense Hessian.
+#include "io/scene.hpp"
 #include "scenes_of_text.hpp"
 #include "simulation/ranks.hpp"
 #include "simulation/scene_field.hpp"
 #include "simulation/scene_minimizer.hpp"
 
 #include <cayspin/evaluate.hpp>
-#include <cayspin/io/scene.hpp>
 #include <cayspin/scalars.hpp>
 
 #include <Eigen/Eigenvalues>

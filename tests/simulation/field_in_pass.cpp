@@ -2,9 +2,8 @@
 // The same physics said in two ways, by every method that takes it: with and without the pass that
 // evaluates terms of few scenes, with fewer sites and with sites without spins, in numbers and in
 // expressions.
+#include "io/method.hpp"
 #include "scenes_of_text.hpp"
-
-#include <cayspin/io/method.hpp>
 
 #include <cmath>
 #include <optional>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Where a file says that the sites of a crystal are.
+#include "io/relax.hpp"
 #include "simulation/run_files.hpp"
 #include "simulation/scene_minimizer.hpp"
 #include "simulation/text.hpp"
-
-#include <cayspin/io/relax.hpp>
 
 #include <gtest/gtest.h>
 

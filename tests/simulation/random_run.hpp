@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/scene.hpp"
 #include "simulation/method_choice.hpp"
 #include "simulation/precision.hpp"
 #include "simulation/variant.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <fmt/format.h>
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The shipped scenes of muMAG's standard problems, on coarse cells. Figures of finer ones are in
 // docs/reports/standard_problems.md.
+#include "io/relax.hpp"
 #include "scenes_of_text.hpp"
-
-#include <cayspin/io/relax.hpp>
 
 #include <cmath>
 #include <memory>

@@ -3,11 +3,10 @@
 #include "hdf5/attribute.hpp"
 #include "hdf5/guarded_reading.hpp"
 #include "hdf5/handle.hpp"
+#include "io/checkpoint.hpp"
 #include "program/read_in_child.hpp"
 #include "trajectory/checksum.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
 
 #include <sys/wait.h>
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Files of crystals with several sites in a cell, which lie site by site.
 #include "hdf5/real_dataset.hpp"
+#include "io/checkpoint.hpp"
+#include "io/follow.hpp"
+#include "io/run_output.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/follow.hpp>
-#include <cayspin/io/run_output.hpp>
 
 #include <algorithm>
 

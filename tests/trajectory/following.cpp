@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // A file that another process writes meanwhile.
+#include "io/follow.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/follow.hpp>
 
 #include <sys/wait.h>
 

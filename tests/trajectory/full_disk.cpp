@@ -2,10 +2,9 @@
 // The disk fills, or fails, under a run. All of it happens in child processes, whose exit status
 // also tells that HDF5 was left fit to close.
 #include "hdf5/handle.hpp"
+#include "io/scene.hpp"
 #include "trajectory/format.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/scene.hpp>
 
 #include <fcntl.h>
 #include <sys/resource.h>

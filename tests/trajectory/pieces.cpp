@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Frames and fields that no memory holds whole: written by planes, read by boxes.
+#include "io/checkpoint.hpp"
+#include "io/run_output.hpp"
 #include "trajectory/fletcher32.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/run_output.hpp>
 
 #include <algorithm>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The files of a run, written by a thread of their own.
+#include "io/run_output.hpp"
+
 #include "trajectory/scalar_table.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/run_output.hpp>
 
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "../support/file_bytes.hpp"
-
-#include <cayspin/io/trajectory.hpp>
+#include "io/trajectory.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Wrong uses of the writers: each ends in one line, and leaves the file as it was.
 #include "../support/wrong_call.hpp"
+#include "io/checkpoint.hpp"
+#include "io/run_output.hpp"
+#include "io/sweep.hpp"
 #include "trajectory_test.hpp"
-
-#include <cayspin/io/checkpoint.hpp>
-#include <cayspin/io/run_output.hpp>
-#include <cayspin/io/sweep.hpp>
 
 #include <cmath>
 #include <limits>

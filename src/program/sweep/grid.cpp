@@ -2,11 +2,11 @@
 #include "grid.hpp"
 
 #include "cayspin_git_commit.hpp"
+#include "io/notes.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/kokkos_settings.hpp"
 #include "simulation/plan.hpp"
 
-#include <cayspin/io/notes.hpp>
 #include <cayspin/version.hpp>
 
 #include <fmt/format.h>

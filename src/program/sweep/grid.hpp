@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/sweep.hpp"
 #include "program/command.hpp"
-
-#include <cayspin/io/sweep.hpp>
 
 #include <string>
 #include <vector>

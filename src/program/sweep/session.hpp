@@ -2,8 +2,7 @@
 #pragma once
 
 #include "grid.hpp"
-
-#include <cayspin/io/sweep.hpp>
+#include "io/sweep.hpp"
 
 #include <chrono>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/sweep.hpp>
+#include "io/sweep.hpp"
 
 namespace cayspin::program::sweep {
 

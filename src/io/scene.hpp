@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/field.hpp"
+#include "io/method.hpp"
+#include "io/site_box.hpp"
+#include "io/units.hpp"
+#include "io/words.hpp"
+
 #include <cayspin/crystal.hpp>
-#include <cayspin/io/field.hpp>
-#include <cayspin/io/method.hpp>
-#include <cayspin/io/site_box.hpp>
-#include <cayspin/io/units.hpp>
-#include <cayspin/io/words.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/own_field.hpp"
+
 #include <cayspin/coupling.hpp>
-#include <cayspin/io/own_field.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/site_box.hpp>
-#include <cayspin/io/units.hpp>
+#include "io/site_box.hpp"
+#include "io/units.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/words.hpp>
+#include "io/words.hpp"
 
 #include <array>
 #include <cstdint>

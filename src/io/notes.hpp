@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/io/scene.hpp>
+#include "io/scene.hpp"
 
 #include <string>
 #include <vector>

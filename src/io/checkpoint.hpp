@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include "io/site_box.hpp"
+
 #include <cayspin/checkpoint.hpp>
-#include <cayspin/io/site_box.hpp>
 
 #include <array>
 #include <cstdint>

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-/// The words a scene may use, but for those of methods, which cayspin/io/method.hpp has.
+/// The words a scene may use, but for those of methods, which io/method.hpp has.
 namespace cayspin::inline v0_1::io {
 
 enum class SystemKind { llg, rigid_body };
