@@ -67,7 +67,14 @@ struct Scalars {
   std::array<double, 3> magnetization{};  ///< mean of m over the sites
 };
 
-/// visit(name, member) for each of them, by the names of their datasets.
+/// The observables after a step.
+struct Sample {
+  std::int64_t step = 0;
+  double time = 0;
+  Scalars scalars = {};
+};
+
+/// visit(name, member) for each of the scalars, by the names of their datasets.
 template <class Visit>
 void for_each_scalar(Visit const& visit) {
   visit("energy", &Scalars::energy);
@@ -150,7 +157,8 @@ struct TrajectoryInfo {
   /// Of crystals with several sites in a cell, cell_sites entries for each frame: the mean of m
   /// over the sites s that have a spin; zero where none has.
   std::vector<std::array<double, 3>> frame_sublattices;
-  std::int64_t samples = 0;  ///< length of /scalars
+  std::int64_t samples = 0;                ///< length of /scalars
+  std::optional<Sample> last_sample = {};  ///< where the run is not complete: the last of /scalars
 };
 
 /// Completes a file of TrajectoryStorage::sync after a kill or a power cut, for other readers than
@@ -159,6 +167,14 @@ void complete_file(std::filesystem::path const& path);
 
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
+
+/// The same while another process writes the file: it takes no lock and writes nothing, so the
+/// writer does not notice. Samples that are half written do not count. What cannot be read at one
+/// moment throws std::runtime_error; a moment later it may be whole.
+TrajectoryInfo read_info_while_written(std::filesystem::path const& path);
+
+/// Does a process have the file open for writing? Unknown where files are not locked.
+std::optional<bool> is_being_written(std::filesystem::path const& path);
 
 /// Whatever the file has, where its sites fill the planes of the lattice.
 inline constexpr std::int64_t any_cell_sites = 0;

@@ -6,9 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-#include <cmath>
 #include <cstdlib>
 
 namespace cayspin::program {
@@ -41,23 +39,6 @@ bool has_blocks() {
     return locale.ends_with("utf-8") || locale.ends_with("utf8");
   }
   return false;
-}
-
-std::string sparkline(std::span<double const> values) {
-  constexpr std::size_t width = 40;
-  constexpr std::array<char const*, 8> blocks{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-  if (values.size() < 2 || !has_blocks() ||
-      !std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
-    return {};
-  auto const [least, most] = std::ranges::minmax(values);
-  std::string line;
-  auto const columns = std::min(width, values.size());
-  for (std::size_t column = 0; column < columns; ++column) {
-    double const value = values[column * (values.size() - 1) / (columns - 1)];
-    double const height = most > least ? (value - least) / (most - least) : 0;
-    line += blocks[static_cast<std::size_t>(height * 7.999)];
-  }
-  return line;
 }
 
 int terminal_lines() {

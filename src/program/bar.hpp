@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdio>
-#include <span>
 #include <string>
 
 namespace cayspin::program {
@@ -15,9 +14,6 @@ bool has_blocks();
 
 /// "[#####...................]"
 std::string bar(double share);
-
-/// Values over time as a row of blocks; empty where the locale has none, or values are not finite.
-std::string sparkline(std::span<double const> values);
 
 /// How many lines the terminal shows.
 int terminal_lines();

@@ -30,13 +30,12 @@ struct Command {
 
 /// Each adds its command, with sentence and options, in the source of its name (advise: trade.cpp).
 using AddCommand = Command(CLI::App& program);
-AddCommand add_run, add_relax, add_sweep, add_watch, add_check, add_new, add_trade, add_advise,
-    add_methods, add_info, add_export;
+AddCommand add_run, add_relax, add_sweep, add_check, add_new, add_trade, add_advise, add_methods,
+    add_info, add_export;
 
 /// In the order of --help.
-inline constexpr std::array all_commands{add_run,     add_relax, add_sweep, add_watch,
-                                         add_check,   add_new,   add_trade, add_advise,
-                                         add_methods, add_info,  add_export};
+inline constexpr std::array all_commands{add_run,   add_relax,  add_sweep,   add_check, add_new,
+                                         add_trade, add_advise, add_methods, add_info,  add_export};
 
 /// Of a command that reads a scene.
 struct SceneOptions {

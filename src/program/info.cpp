@@ -2,24 +2,33 @@
 #include "command.hpp"
 #include "describe.hpp"
 #include "io/trajectory.hpp"
+#include "info_progress.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 #include "sweep/table.hpp"
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <thread>
+
 namespace cayspin::program {
 namespace {
 
-void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t frame) {
-  auto const& scalars = info.frame_scalars[frame];
+// `si`: as the file's numbers are.
+void print_sample(char const* name, io::Sample const& sample, bool si) {
+  auto const& [step, time, scalars] = sample;
   auto const& m = scalars.magnetization;
-  bool const si = info.header.units.si;  // as the file's numbers are
   fmt::print(
       "{:<12} step {}, t = {:.9g}{}: energy {:.9g}{}, norm defect {:.3g}, "
       "magnetization ({:.6f}, {:.6f}, {:.6f})\n",
-      name, info.frame_steps[frame], info.frame_times[frame], si ? " s" : "", scalars.energy,
-      si ? " J" : "", scalars.norm_defect, m[0], m[1], m[2]);
+      name, step, time, si ? " s" : "", scalars.energy, si ? " J" : "", scalars.norm_defect, m[0],
+      m[1], m[2]);
+}
+
+void print_frame(char const* name, io::TrajectoryInfo const& info, std::size_t frame) {
+  print_sample(name, {info.frame_steps[frame], info.frame_times[frame], info.frame_scalars[frame]},
+               info.header.units.si);
   auto const sites = static_cast<std::size_t>(info.header.cell_sites);
   if (sites == 1) return;
   for (std::size_t site = 0; site < sites; ++site) {
@@ -46,25 +55,45 @@ int print_sweep(std::filesystem::path const& file) {
   return Status::done;
 }
 
+// What is half written now may be whole in a moment.
+io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
+  for (int tries = 20;; --tries) {
+    try {
+      return io::read_info_while_written(file);
+    } catch (std::runtime_error const&) {
+      if (tries == 1) throw;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
 int print_info(std::filesystem::path const& file) {
-  if (io::is_sweep(file)) return print_sweep(file);
-  auto const info = io::read_info(file);
+  auto const being_written = io::is_being_written(file);
+  if (being_written != true && io::is_sweep(file)) return print_sweep(file);
+  auto const info = being_written == false ? io::read_info(file) : read_beside_writer(file);
   auto const& header = info.header;
   fmt::print("{:<12} {} (format {})\n", "file", file.string(), info.format);
-  fmt::print("{:<12} {}\n", "complete",
-             info.complete ? "yes" : "no: interrupted, failed, or still being written");
+  if (info.complete) fmt::print("{:<12} yes\n", "complete");
+  if (!info.complete)
+    for (auto const& [name, text] : progress_lines(info, being_written))
+      fmt::print("{:<12} {}\n", name, text);
   fmt::print("{:<12} {}, {} precision\n", "lattice", sites_text(header.shape, header.cell_sites),
              header.precision);
   fmt::print("{:<12} {}\n{:<12} {}\n", "frames", info.frames, "samples", info.samples);
   fmt::print("{:<12} {}\n", "units", describe_units(header.units));
   if (info.frames > 0) print_frame("first frame", info, 0);
   if (info.frames > 1) print_frame("last frame", info, static_cast<std::size_t>(info.frames) - 1);
-  if (info.cost.relaxed)
+  auto const& sample = info.last_sample;
+  if (sample && (info.frames == 0 || sample->step > info.frame_steps.back()))
+    print_sample("last sample", *sample, header.units.si);
+  bool const has_ended = info.complete || info.cost.wall_seconds > 0;
+  if (has_ended && info.cost.relaxed)
     fmt::print("{:<12} {}, max |m x H| = {:.3g}{}\n", "at rest",
                info.cost.relaxed->converged ? "yes" : "no", info.cost.relaxed->torque,
                header.units.si ? " T" : "");
-  fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
-             duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
+  if (has_ended)
+    fmt::print("{:<12} {} evaluations, {} in all, {} stepping\n", "cost", info.cost.evaluations,
+               duration_text(info.cost.wall_seconds), duration_text(info.cost.step_seconds));
   fmt::print("{:<12} {}, {} threads\n", "space", header.space, header.threads);
   fmt::print("{:<12} cayspin {} ({}), Kokkos {}\n", "written by", header.cayspin_version,
              header.git_commit, header.kokkos_version);
@@ -77,7 +106,8 @@ int print_info(std::filesystem::path const& file) {
 
 Command add_info(CLI::App& program) {
   auto const file = std::make_shared<std::filesystem::path>();
-  auto* const command = program.add_subcommand("info", "Say what a trajectory file holds");
+  auto* const command =
+      program.add_subcommand("info", "Summarise a trajectory file, also while a run writes it");
   command->add_option("FILE", *file, "Trajectory file (HDF5)")->required();
   return {command, [file](Ranks&) { return print_info(*file); }};
 }

@@ -14,12 +14,6 @@ namespace cayspin::inline v0_1::io {
 
 using Vector = std::array<double, 3>;
 
-struct Sample {
-  std::int64_t step;
-  double time;
-  Scalars scalars;
-};
-
 /// The datasets time, step, energy, norm_defect, magnetization and checksum of one group, and
 /// sublattice_magnetization of the frames of crystals with several sites in a cell. Files of
 /// earlier versions have no checksums.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-#include "trajectory_reader.hpp"
-
 #include "checksum.hpp"
 #include "files/journal.hpp"
 #include "format.hpp"
@@ -12,10 +10,18 @@
 #include "io/trajectory.hpp"
 #include "scalar_series.hpp"
 
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <bit>
+#include <cerrno>
+#include <cstdlib>
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace cayspin::inline v0_1::io {
 namespace {
@@ -60,25 +66,7 @@ void read_extents(hid_t file, TrajectoryInfo& info, std::filesystem::path const&
   header.shape[2] *= header.cell_sites;
 }
 
-TrajectoryInfo read_whole_info(std::filesystem::path const& path) {
-  auto const file = open_file(path);
-  auto info = read_header(file.get(), path);
-  auto const series = ScalarSeries::open(file.get(), path, info.header.cell_sites);
-  info.frames = std::min(info.frames, series.readable(info.complete ? 0 : 1, path));
-  for (auto const& sample : series.read(0, info.frames, path)) {
-    info.frame_steps.push_back(sample.step);
-    info.frame_times.push_back(sample.time);
-    info.frame_scalars.push_back(sample.scalars);
-  }
-  info.frame_sublattices = series.read_sublattices(0, info.frames, path);
-  auto const scalars = open_group(file.get(), "scalars", path);
-  info.samples =
-      ScalarSeries::open(scalars.get(), path).readable(info.complete ? 0 : most_pending, path);
-  return info;
-}
-
-}  // namespace
-
+// The scalars are not read, and `frames` are those that have spins.
 TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   RootAttributes const attributes(file, path);
   TrajectoryInfo info;
@@ -106,11 +94,51 @@ TrajectoryInfo read_header(hid_t file, std::filesystem::path const& path) {
   return info;
 }
 
+TrajectoryInfo read_whole_info(std::filesystem::path const& path, Locking locking) {
+  auto const file = open_file(path, locking);
+  // `complete` is written last: once it is there, so is all else.
+  auto info = read_header(file.get(), path);
+  auto const series = ScalarSeries::open(file.get(), path, info.header.cell_sites);
+  auto const torn_frames = info.complete ? 0 : locking == Locking::on ? 1 : most_pending;
+  info.frames = std::min(info.frames, series.readable(torn_frames, path));
+  for (auto const& sample : series.read(0, info.frames, path)) {
+    info.frame_steps.push_back(sample.step);
+    info.frame_times.push_back(sample.time);
+    info.frame_scalars.push_back(sample.scalars);
+  }
+  info.frame_sublattices = series.read_sublattices(0, info.frames, path);
+  auto const group = open_group(file.get(), "scalars", path);
+  auto const samples = ScalarSeries::open(group.get(), path);
+  info.samples = samples.readable(info.complete ? 0 : most_pending, path);
+  if (!info.complete && info.samples > 0)
+    info.last_sample = samples.read(info.samples - 1, info.samples, path).front();
+  return info;
+}
+
+}  // namespace
+
 void complete_file(std::filesystem::path const& path) { complete_from_journal(path); }
 
 TrajectoryInfo read_info(std::filesystem::path const& path) {
   QuietErrors const quiet;
-  return read_guarded(path, [&] { return read_whole_info(path); });
+  return read_guarded(path, [&] { return read_whole_info(path, Locking::on); });
+}
+
+TrajectoryInfo read_info_while_written(std::filesystem::path const& path) {
+  QuietErrors const quiet;
+  return read_guarded(path, [&] { return read_whole_info(path, Locking::off); });
+}
+
+std::optional<bool> is_being_written(std::filesystem::path const& path) {
+  char const* const locking = std::getenv("HDF5_USE_FILE_LOCKING");
+  if (locking && std::string_view(locking) == "FALSE") return std::nullopt;
+  int const file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return std::nullopt;
+  bool const got = ::flock(file, LOCK_SH | LOCK_NB) == 0;
+  int const error = errno;
+  ::close(file);
+  if (got) return false;
+  return error == EWOULDBLOCK ? std::optional(true) : std::nullopt;
 }
 
 }  // namespace cayspin::inline v0_1::io

@@ -3,7 +3,6 @@
 // CAYSPIN_DAMAGED_FILES and CAYSPIN_SEED: how many, and which.
 #include "damaged_bytes.hpp"
 #include "inertia_file.hpp"
-#include "io/follow.hpp"
 #include "io/scene.hpp"
 #include "support/reads_in_child.hpp"
 #include "trajectory/trajectory_test.hpp"
@@ -56,16 +55,6 @@ std::string all_of(std::vector<InertiaTensor> const& tensors) {
   return {reinterpret_cast<char const*>(tensors.data()), sizeof(InertiaTensor) * tensors.size()};
 }
 
-std::string followed(std::filesystem::path const& path) {
-  FollowedTrajectory run(path);
-  run.look();
-  run.look();
-  std::string text = fmt::format("{}", run.complete());
-  for (std::size_t i = 0; i < run.steps().size(); ++i)
-    text += fmt::format("\n{} {} {}", run.steps()[i], run.times()[i], run.scalars()[i].energy);
-  return text;
-}
-
 struct Reading {
   char const* name;
   std::string (*read)(std::filesystem::path const&);
@@ -102,8 +91,7 @@ constexpr Reading of_trajectories[] = {
      [](auto const& path) {
        return all_of(read_spins(path, {4, 3, 2}, 0));
      }},
-    {"initial.file", spins_of_start},
-    {"watch", followed}};
+    {"initial.file", spins_of_start}};
 constexpr Reading of_inertia[] = {{"inertia.file", tensors}};
 
 class Damage : public TrajectoryTest {

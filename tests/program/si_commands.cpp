@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <csignal>
+#include <regex>
 
 namespace cayspin::program::test {
 namespace {
@@ -124,10 +126,17 @@ TEST_F(SiScene, MessagesHaveSeconds) {
   EXPECT_TRUE(contains(pole.errors, "field.applied: is not finite at t = 1.00"));
 }
 
-TEST_F(SiScene, WatchHasUnits) {
-  run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 25", "[0.02, 0, 0.1]"));
-  EXPECT_TRUE(
-      contains_all(output_of({"watch", "out.h5"}), {"t = 2.5e-12 s: energy ", " J, norm defect "}));
+TEST_F(SiScene, ProgressOfARunHasUnits) {
+  auto const process = begin({"run",
+                              write("scene.toml", film("method = \"rkmk4\"\ndt = 1e-13\n"
+                                                       "steps = 1000000000",
+                                                       "[0.02, 0, 0.1]")),
+                              "--quiet", "--threads", "1", "--output", "out.h5", "--set",
+                              "output.every=1000000000"});
+  ASSERT_TRUE(eventually([&] { return exists("out.h5"); }));
+  EXPECT_EQ(end(process, SIGTERM), 130);
+  auto const line = std::regex("\nprogress     step [0-9]+ of 1000000000 .*, t = [0-9.e-]+ s\n");
+  EXPECT_TRUE(std::regex_search(output_of({"info", "out.h5"}), line));
 }
 
 TEST_F(SiScene, UntilTorqueIsInTesla) {

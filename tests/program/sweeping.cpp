@@ -192,7 +192,7 @@ TEST_F(Sweeping, OnlyOneProcessHasAFile) {
 
   auto const run = begin({"run", "chain.toml", "--quiet", "--output", "run.h5", "--set",
                           "integrator.steps=1000000000"});
-  EXPECT_TRUE(eventually([&] { return start({"watch", "run.h5", "--once"}).status == 0; }));
+  EXPECT_TRUE(eventually([&] { return start({"info", "run.h5"}).status == 0; }));
   expect_refused(sweep_into("run.h5", {"--overwrite", "--over", "integrator.steps=1"}),
                  "another program is writing it");
   end(run, SIGKILL);

@@ -84,12 +84,6 @@ TEST_F(Terminal, AdviceHasABarUnlessItIsToBeQuiet) {
   EXPECT_FALSE(contains(on_terminal(joined(arguments, {"--quiet"})), "\x1b"));
 }
 
-TEST_F(Terminal, AWatchedRunIsDrawn) {
-  run(chain_scene());
-  EXPECT_TRUE(contains_all(on_terminal({"watch", "out.h5"}),
-                           {"run           complete", "progress      step 25 of 25", "energy  "}));
-}
-
 // Half blocks: the upper half of a character has one colour, what is behind it another.
 TEST_F(Terminal, CheckDrawsTheStartWhereColoursAreThere) {
   Arguments const film =

@@ -2,7 +2,6 @@
 // Files of crystals with several sites in a cell, which lie site by site.
 #include "hdf5/real_dataset.hpp"
 #include "io/checkpoint.hpp"
-#include "io/follow.hpp"
 #include "io/run_output.hpp"
 #include "trajectory_test.hpp"
 
@@ -222,15 +221,11 @@ TEST_F(TrajectoryTest, FramesOfCrystalsWithoutSublatticesDoNotCount) {
   EXPECT_EQ(read_spins(path, header.shape), spins_of<double>(header, 1));
 }
 
-TEST_F(TrajectoryTest, SyncedCrystalsAreWholeAndFollowed) {
+TEST_F(TrajectoryTest, SyncedCrystalsAreWhole) {
   auto const path = folder_ / "a.h5";
   auto const header = crystal_header();
   write_crystal<double>(path, header, 3, {.storage = {.sync = true}});
   expect_stored<double>(path, header, 3);
-  FollowedTrajectory run(path);
-  run.look();
-  EXPECT_EQ(run.header().cell_sites, sites);
-  EXPECT_EQ(run.steps(), (std::vector<std::int64_t>{0, 1, 2}));
 }
 
 TEST_F(TrajectoryTest, CheckpointsSayHowManySitesACellHas) {

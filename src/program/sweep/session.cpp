@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "session.hpp"
 
-#include "io/follow.hpp"
 #include "program/progress.hpp"
 #include "simulation/failure.hpp"
+
+#include "io/trajectory.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
