@@ -11,7 +11,7 @@ install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(TARGETS cayspin cayspin_same_bits EXPORT cayspinTargets)
 install(EXPORT cayspinTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
 if(TARGET cayspin_program)
-  install(TARGETS cayspin_program cayspin_reproduce cayspin_extremes RUNTIME)
+  install(TARGETS cayspin_program cayspin_reproduce RUNTIME)
   include(cmake/InstallScripts.cmake)
   cayspin_install_scripts(.)
   install(FILES src/program/completion/cayspin.bash RENAME cayspin

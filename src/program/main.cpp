@@ -64,8 +64,6 @@ std::vector<OtherProgram> other_programs() {
   return {
       {"reproduce", "The tables, figures and errata of Lewis and Nigam 2002, beside the paper's",
        become_sibling, "cayspin-reproduce"},
-      {"extremes", "Behaviour of every method at extreme inputs", become_sibling,
-       "cayspin-extremes"},
       {"plot", "Draw the spins of a trajectory file, one frame or a movie", become_script,
        "plot_texture.py"},
       {"view", "Look at a trajectory file in the browser, also while a run writes it",

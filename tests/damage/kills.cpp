@@ -2,7 +2,6 @@
 // `cayspin run`, killed at random times, out of disk, or with its file cut. CAYSPIN_KILLS and
 // CAYSPIN_SEED: how many of each kind, and which.
 #include "damaged_bytes.hpp"
-#include "io/follow.hpp"
 #include "program/program_test.hpp"
 
 #include <chrono>

@@ -40,7 +40,7 @@ PROGRAMS = [
     ("simulation", ["src/simulation/"]),
     ("C interface", ["src/c_interface/"]),
     ("program", ["src/program/"]),
-    ("paper and extremes", ["paper/", "tests/extremes/"]),
+    ("paper", ["paper/"]),
 ]
 
 # No header in detail/ is named after physics.
@@ -185,7 +185,6 @@ MISTAKES = [
     ("src/io/a.cpp", '#include "simulation/s.hpp"', "(reader and writer) includes"),
     ("src/io/a.cpp", '#include "../program/p.hpp"', "(reader and writer) includes"),
     ("src/program/p.cpp", '#include "../../paper/table.hpp"', "(program) includes"),
-    ("src/simulation/s.cpp", '#include "extremes/e.hpp"', "(simulation) includes"),
     ("examples/a.cpp", "#include <cayspin/old.hpp>", "there is no cayspin/old.hpp"),
 ]
 SOUND = {
@@ -200,7 +199,6 @@ SOUND = {
     "src/simulation/s.hpp": "#include <cayspin/stepper/euler.hpp>",
     "src/program/p.hpp": '#include "simulation/s.hpp"\n#include "cayspin_git_commit.hpp"',
     "paper/table.hpp": '#include "simulation/s.hpp"',
-    "tests/extremes/e.hpp": '#include "simulation/s.hpp"',
 }
 
 

@@ -42,7 +42,7 @@ PLACES = {
     "simulation": (1.5, "scenes as types, the one dispatch"),
     "C interface": (0.5, "scenes for C and Fortran"),
     "program": (1.5, "the commands"),
-    "paper and extremes": (2.5, "the tables of 2002, extreme inputs"),
+    "paper": (2.5, "the tables and figures of 2002"),
 }
 
 WIDTH, HEIGHT, GAP, ROW, EDGE = 236, 58, 20, 94, 12

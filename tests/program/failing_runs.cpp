@@ -90,6 +90,12 @@ TEST_F(FailingRun, DiskFullAtTheStartLeavesNoFile) {
   EXPECT_FALSE(exists("chain.h5"));
 }
 
+TEST_F(FailingRun, ALatticeThatDoesNotFitIsRefusedWithItsNeed) {
+  auto const outcome =
+      expect_status(2, {"run", "chain.toml", "--set", "lattice={shape=[300000000,3000000]}"});
+  EXPECT_TRUE(contains_all(outcome.errors, {"the run needs ", " of memory, ", "available"}));
+}
+
 TEST_F(FailingRun, AllocationThatFailsIsStatusTwo) {
   if (address_sanitizer) GTEST_SKIP() << "the sanitizer itself takes terabytes of address space";
   expect_status(

@@ -35,11 +35,11 @@ inline std::string const default_space = "host_device", another_space = "host_de
 inline std::string const default_space = "openmp", another_space = "serial";
 #endif
 
-/// Are the programs that it starts built, too? They compute on hosts.
+/// Is the program that `reproduce` starts built, too? It computes on hosts.
 #if defined(CAYSPIN_HOST_DEVICE)
-inline constexpr bool has_siblings = false;
+inline constexpr bool has_reproduce = false;
 #else
-inline constexpr bool has_siblings = true;
+inline constexpr bool has_reproduce = true;
 #endif
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -34,5 +34,16 @@ TEST_F(RefuseUnstable, TakesAStableStep) {
   EXPECT_EQ(outcome.errors, "");
 }
 
+TEST_F(RefuseUnstable, WithoutItRunWarns) {
+  for (auto const* method : {"ab2", "implicit_midpoint", "euler"}) {
+    auto const outcome = run_into(
+        "out.h5", macrospin_scene(),
+        set(std::string("integrator={method='") + method + "',dt=3.0,steps=1,energy_guard=false}"));
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(is_one_line(outcome.errors)) << outcome.errors;
+    EXPECT_TRUE(contains_all(outcome.errors, {"warning: ", "integrator.dt"}));
+  }
+}
+
 }  // namespace
 }  // namespace cayspin::program::test

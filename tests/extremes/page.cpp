@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#include "page.hpp"
+
+namespace cayspin::extremes {
+namespace {
+
+constexpr char const* head = R"(# Behaviour at extreme inputs
+
+The test `extremes` computes these tables, compares them with this page and holds every run to the
+promise above its table; `extremes_long` does so for the last one. After a change,
+`build/release/bin/test_extremes --write` writes the page, in minutes.
+
+| word | meaning |
+|---|---|
+| exact | the exact solution to round-off: 8 epsilon a step, and 4 epsilon of the angle |
+| bounded | \| \|m\| - 1 \| is below 4 epsilon a step; the error is that of the method |
+| warned | dt is too large, says a warning; \|m\| is kept, or the run stops with status 3 |
+| drifts | \|m\| is not kept, as `classical_*` say of themselves |
+| refused | one line before the first step |
+| detected | the run stops with status 3 |
+
+Runs take six steps of 1/128 unless the table says otherwise. Two words are for double and single
+precision. Brackets hold generators and rotations where not all behave alike. Constant sigmas
+behave as zero does.
+
+A program of your own has neither the warnings nor the guard. Where a table says warned or
+detected, call `largest_stable_step` before the run, and `energy` and `norm_defect` during it.
+)";
+
+// Those that the many steps can be had of in minutes.
+std::vector<Integrator> simplest() {
+  std::vector<Integrator> few;
+  for (auto const& one : with_equal_steps())
+    if (one.name() == "rkmk4" && one.generator == io::Generator::standard) few.push_back(one);
+  return few;
+}
+
+// Whose scenes are not refused.
+std::vector<Integrator> those_that_take(Setting const& setting) {
+  Situation const situation{"", setting, setting};
+  std::vector<Integrator> some;
+  for (auto const& one : with_equal_steps())
+    if (try_out(one, situation, Precision::double_precision).fate != Fate::refused)
+      some.push_back(one);
+  return some;
+}
+
+std::vector<Table> all_tables() {
+  std::vector<Table> all;
+  for (auto const& section : sections()) all.emplace_back(section, with_equal_steps());
+  all.emplace_back(adaptive_steps(), with_adaptive_steps());
+  all.emplace_back(temperatures(), those_that_take({.damping = 0.1, .temperature = 1}));
+  all.emplace_back(dear_fields(), those_that_take({.damping = 0.1, .dear = 0.5}));
+  all.emplace_back(states_of_rest(), std::vector{relaxation()});
+  return all;
+}
+
+}  // namespace
+
+std::vector<Table> const& tables() {
+  static auto const all = all_tables();
+  return all;
+}
+
+Table table_of_longest_runs() { return {longest_runs(), simplest()}; }
+
+std::string page_of_tables() {
+  std::string text = head;
+  for (auto const& table : tables()) text += table.to_markdown();
+  return text;
+}
+
+}  // namespace cayspin::extremes
