@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "command.hpp"
 #include "describe.hpp"
-#include "io/trajectory.hpp"
 #include "info_progress.hpp"
+#include "io/trajectory.hpp"
 #include "simulation/failure.hpp"
 #include "simulation/text.hpp"
 #include "sweep/table.hpp"

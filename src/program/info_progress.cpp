@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "info_progress.hpp"
 
-#include "simulation/text.hpp"
-
 #include "io/scene.hpp"
+#include "simulation/text.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -10,7 +10,6 @@
 #include "io/trajectory.hpp"
 #include "scalar_series.hpp"
 
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The tables are those of docs/reports/extremes.md, and every run keeps its promise.
-#include "page.hpp"
-
 #include "io/method.hpp"
+#include "page.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

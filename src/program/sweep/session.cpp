@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #include "session.hpp"
 
+#include "io/trajectory.hpp"
 #include "program/progress.hpp"
 #include "simulation/failure.hpp"
-
-#include "io/trajectory.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
