@@ -25,16 +25,22 @@ struct FileAge {
 };
 
 FileAge age_of(std::filesystem::path const& path) {
+  std::chrono::duration<double> const now = std::chrono::system_clock::now().time_since_epoch();
+#if defined(STATX_BTIME)
   struct statx status {};
   if (::statx(AT_FDCWD, path.c_str(), 0, STATX_MTIME | STATX_BTIME, &status) != 0) return {};
   auto const seconds = [](statx_timestamp const& time) {
     return static_cast<double>(time.tv_sec) + 1e-9 * time.tv_nsec;
   };
-  std::chrono::duration<double> const now = std::chrono::system_clock::now().time_since_epoch();
   FileAge age{.idle = std::max(0.0, now.count() - seconds(status.stx_mtime))};
   if ((status.stx_mask & STATX_BTIME) != 0)
     age.written = std::max(0.0, seconds(status.stx_mtime) - seconds(status.stx_btime));
   return age;
+#else
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return {};
+  return {.idle = std::max(0.0, now.count() - static_cast<double>(status.st_mtime))};
+#endif
 }
 
 /// What the scene in a file plans, which a newer version may have written.
