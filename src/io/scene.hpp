@@ -10,6 +10,7 @@
 #include <cayspin/crystal.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -282,7 +283,16 @@ bool has_vacancies(Scene const& scene);
 /// have biquadratic couplings.
 bool has_linear_field(Scene const& scene);
 
-/// The largest gyromagnetic ratio over moment of a cell's sites, by which noise turns them faster.
+/// The number of a site of the cell; 1 without numbers.
+double of_cell_site(std::vector<double> const& numbers, std::size_t site);
+
+/// `number` over the moment of a site of the cell; 0 where the moment is 0, as there is no spin.
+double over_moment(Lattice const& lattice, std::size_t site, double number);
+
+/// The gyromagnetic ratio over the moment of each site of the cell, by which noise turns its spins
+/// faster; 0 without a spin.
+std::vector<double> noise_of_sites(Scene const& scene);
+/// The largest of these.
 double largest_noise(Scene const& scene);
 
 /// A lattice's cell.

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace cayspin::inline v0_1::io {
@@ -69,15 +68,23 @@ std::vector<unsigned char> frozen(Scene const& scene, SiteBox const& box) {
   return sites_where(scene, scene.lattice.frozen, "lattice.frozen", box);
 }
 
-double largest_noise(Scene const& scene) {
-  auto const& [moments, gyromagnetic] = std::tie(scene.lattice.moments, scene.lattice.gyromagnetic);
-  double largest = 0;
-  for (std::size_t site = 0; site < scene.lattice.basis.size(); ++site)
-    if (moments.empty() || moments[site] > 0)
-      largest = std::max(largest, (gyromagnetic.empty() ? 1 : gyromagnetic[site]) /
-                                      (moments.empty() ? 1 : moments[site]));
-  return largest;
+double of_cell_site(std::vector<double> const& numbers, std::size_t site) {
+  return numbers.empty() ? 1 : numbers[site];
 }
+
+double over_moment(Lattice const& lattice, std::size_t site, double number) {
+  double const moment = of_cell_site(lattice.moments, site);
+  return moment > 0 ? number / moment : 0;
+}
+
+std::vector<double> noise_of_sites(Scene const& scene) {
+  auto const& lattice = scene.lattice;
+  std::vector<double> noise;
+  for (std::size_t site = 0; site < lattice.basis.size(); ++site)
+    noise.push_back(over_moment(lattice, site, of_cell_site(lattice.gyromagnetic, site)));
+  return noise;
+}
+double largest_noise(Scene const& scene) { return std::ranges::max(noise_of_sites(scene)); }
 
 bool has_linear_field(Scene const& scene) {
   auto const& field = scene.field;

@@ -192,11 +192,6 @@ bool FieldInPass<Spins>::is_affine() const {
 }
 
 template <class Spins>
-std::vector<double> const& FieldInPass<Spins>::noise_of_sites() const {
-  return terms_->noise_of_sites_;
-}
-
-template <class Spins>
 auto FieldInPass<Spins>::moves() const -> std::optional<ScalarField<Real, Memory>> const& {
   return terms_->moves_;
 }

@@ -63,8 +63,6 @@ class FieldInPass {
   template <class Exec>
   double norm_defect(Exec const& exec, Spins const& spins) const;
 
-  /// The gyromagnetic ratio over the moment, for each site of a cell.
-  std::vector<double> const& noise_of_sites() const;
   /// 0 where a spin is frozen; none where all move.
   std::optional<ScalarField<Real, Memory>> const& moves() const;
 

@@ -92,11 +92,30 @@ double bound_of_numbers(io::Scene const& scene, Lattice const& lattice) {
   return bound;
 }
 
+// Those between sites that have a spin.
+std::vector<Coupling> couplings_of_spins(io::Scene const& scene) {
+  auto couplings = io::couplings(scene);
+  std::erase_if(couplings, [&](Coupling const& bond) {
+    return std::ranges::any_of(bond.between, [&](int site) {
+      return io::of_cell_site(scene.lattice.moments, static_cast<std::size_t>(site)) == 0;
+    });
+  });
+  return couplings;
+}
+
+double largest_gyromagnetic(io::Lattice const& lattice) {
+  double largest = 0;
+  for (std::size_t site = 0; site < lattice.basis.size(); ++site)
+    if (io::of_cell_site(lattice.moments, site) > 0)
+      largest = std::max(largest, io::of_cell_site(lattice.gyromagnetic, site));
+  return largest;
+}
+
 // Of the terms that have sites of their own: the largest of the sites of a cell.
 double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_all) {
   auto const field = io::without_numbers_of_sites(scene.field);
   of_all += bound_of_numbers(scene, lattice);
-  cayspin::detail::BondLists const bonds(lattice, io::couplings(scene));
+  cayspin::detail::BondLists const bonds(lattice, couplings_of_spins(scene));
   double largest = 0;
   for (std::size_t site = 0; site < bonds.field_bounds.size(); ++site) {
     double bound = of_all + bonds.field_bounds[site];
@@ -105,12 +124,8 @@ double bound_of_sites(io::Scene const& scene, Lattice const& lattice, double of_
     };
     for (auto const& term : field.anisotropies) add(term.site, term.constant);
     for (auto const& term : field.cubic_anisotropies) add(term.site, 2 * term.constant);
-    auto const of_site = [&](std::vector<double> const& numbers) {
-      return numbers.empty() ? 1 : numbers[site];
-    };
-    double const moment = of_site(scene.lattice.moments);
-    if (moment > 0)
-      largest = std::max(largest, bound * of_site(scene.lattice.gyromagnetic) / moment);
+    double const turning = bound * io::of_cell_site(scene.lattice.gyromagnetic, site);
+    largest = std::max(largest, io::over_moment(scene.lattice, site, turning));
   }
   return largest;
 }
@@ -160,10 +175,7 @@ double field_bound(io::Scene const& scene, Lattice const& lattice, Times const& 
     for (auto const& term : field.anisotropies) bound += std::abs(term.constant);
     return bound + applied;
   }
-  auto const fastest = [](std::vector<double> const& numbers) {
-    return numbers.empty() ? 1 : std::ranges::max(numbers);
-  };
-  return bound_of_sites(scene, lattice, bound) + fastest(scene.lattice.gyromagnetic) * applied +
+  return bound_of_sites(scene, lattice, bound) + largest_gyromagnetic(scene.lattice) * applied +
          torque_bound(scene, lattice, times, features);
 }
 

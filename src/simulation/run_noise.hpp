@@ -56,7 +56,7 @@ class RunNoise {
                                 static_cast<std::uint64_t>(scene.thermal->seed)};
     auto const& pass = generator.landau_lifshitz().field().pass();
     if (!pass) return {like, scene.system.damping, options};
-    options.cell_sites = pass->noise_of_sites();
+    options.cell_sites = io::noise_of_sites(scene);
     if (pass->moves()) return {like, scene.system.damping, options, *pass->moves()};
     return {like, scene.system.damping, options};
   }

@@ -118,7 +118,6 @@ class FieldInPass<Spins>::Terms {
   SceneLatticeTerms seen_;  // by the moments of a cell with one site
   std::optional<ScalarField<Real, Memory>> missing_;
   double largest_moment_ = 0;
-  std::vector<double> noise_of_sites_;
   Spins field_;
   ScalarField<Real, Memory> energies_, moments_;
   // The terms of the stages that are being run: those of a sweep are so together.
@@ -152,10 +151,7 @@ FieldInPass<Spins>::Terms::Terms(io::Scene const& scene, Lattice const& lattice)
     torques_.polarization = vector(of->polarization);
   }
   auto const [sites, cubics] = sites_of_cell(scene);
-  for (auto const& site : sites) {
-    noise_of_sites_.push_back(site.moment > 0 ? site.gyromagnetic / site.moment : 1);
-    largest_moment_ = std::max(largest_moment_, site.moment);
-  }
+  for (auto const& site : sites) largest_moment_ = std::max(largest_moment_, site.moment);
   cell_ = sites;
   auto seen = io::without_numbers_of_sites(scene.field);
   io::for_each_lattice_term(seen, [&](auto& term) {

@@ -148,5 +148,15 @@ TEST(SiteNumbers, ATemperatureIsHeldAgainstTheLeastMoment) {
   EXPECT_NE(hot("moments = 0.0001").find("over the least moment is 10"), std::string::npos);
 }
 
+TEST(SiteNumbers, SitesWithoutASpinHaveNoNoise) {
+  Folder const folder;
+  auto const scene =
+      read_text(folder, replaced(plain_scene, "shape = [4, 3, 2]",
+                                 "shape = [4, 3, 2]\ncrystal = 'kagome'\nmoments = [4, 0, 5]\n"
+                                 "gyromagnetic = [2, 3, 1]"));
+  EXPECT_EQ(noise_of_sites(scene), (std::vector{0.5, 0.0, 0.2}));
+  EXPECT_EQ(largest_noise(scene), 0.5);
+}
+
 }  // namespace
 }  // namespace cayspin::inline v0_1::io::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Methods that divide by the length of a spin, in scenes with vacant sites: those of the shape as a
-// lattice of its own.
+// lattice of its own. A site of the cell without a spin: the scene without that site.
 #include "random_run.hpp"
 #include "scenes_of_text.hpp"
 
@@ -82,6 +82,54 @@ TEST(Vacancies, LeaveTheMotionOfTheShapeAlone) {
   }
   std::printf("    %lld scenes\n", static_cast<long long>(compared));
   EXPECT_GT(compared, 40);
+}
+
+/// A film of moments 10, with so many hundredths of the most noise that a step may have.
+io::Scene film_of_moments(std::string const& lattice, std::string const& couplings,
+                          int hundredths) {
+  constexpr double damping = 0.5, dt = 0.02;
+  return llg_scene(
+      fmt::to_string(damping), "heun", steps,
+      fmt::format("[lattice]\nshape = [9, 6]\n{}\n[field]\ncouplings = [{}]\n"
+                  "applied = [0.3, -0.2, 0.5]\nanisotropy = {{ constant = 3, axis = [1, 2, 3] }}\n"
+                  "[thermal]\ntemperature = {}\nseed = 5\n"
+                  "[initial]\nexpression = ['cos(0.7*i)', 'sin(0.9*j)', '0.4']\n",
+                  lattice, couplings, 0.01 * hundredths * 10 / (damping * dt)));
+}
+
+// Nor does what the empty site has of its own make dt too large.
+TEST(Vacancies, AMomentOfZeroIsNoSite) {
+  std::string const bond = "{ offset = [1, 0, 0], J = 4, D = [0, 0, 1] }";
+  auto const film = [&](int hundredths) {
+    return film_of_moments("moments = [10]\ngyromagnetic = [1]", bond, hundredths);
+  };
+  auto const with_site = [&](int hundredths) {
+    return film_of_moments(
+        "basis = [[0, 0, 0], [0.5, 0.5, 0]]\nmoments = [10, 0]\ngyromagnetic = [1, 100]",
+        bond + ", { between = [0, 1], J = 80 }, { between = [1, 1], offset = [0, 1, 0], J = 90 }",
+        hundredths);
+  };
+  for (int const hundredths : {0, 1, 30, 99}) {
+    auto const alone = make_plan(film(hundredths), Precision::double_precision),
+               plan = make_plan(with_site(hundredths), Precision::double_precision);
+    EXPECT_EQ(plan.stable_dt, alone.stable_dt);
+    EXPECT_EQ(plan.turn, alone.turn);
+    EXPECT_EQ(plan.noise_turn, alone.noise_turn);
+    for (auto const precision : precisions) {
+      SCOPED_TRACE(
+          fmt::format("{} % of the most noise, {} precision", hundredths, to_string(precision)));
+      auto const expected = end_of(film(hundredths), precision);
+      auto const found = end_of(with_site(hundredths), precision);
+      auto const spins = static_cast<std::ptrdiff_t>(expected.size());
+      EXPECT_LT(largest_distance({found.begin(), found.begin() + spins}, expected),
+                64 * steps * epsilon(precision));
+      for (auto number = found.begin() + spins; number != found.end(); ++number)
+        EXPECT_EQ(*number, 0);
+    }
+  }
+  constexpr char const* too_much = "integrator.dt: damping times temperature times dt";
+  expect_refused([&] { return film(101); }, too_much);
+  expect_refused([&] { return with_site(101); }, too_much);
 }
 
 }  // namespace

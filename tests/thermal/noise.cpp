@@ -256,12 +256,36 @@ TYPED_TEST(Thermal, CopiesTakeStepsOfOtherLengths) {
   EXPECT_EQ(turned(assigned, 0.1), expected);
 }
 
+// Its number in the bound of a step is 0, and so is its turn.
+TYPED_TEST(Thermal, ASiteWithoutASpinHasNoNoise) {
+  using Spins = typename TypeParam::Spins;
+  using Noise = typename TestFixture::Noise;
+  using Half = typename TestFixture::Half;
+  auto const lattice = Crystal::bcc().lattice({5, 3, 2});
+  auto start = random_directions(lattice.sites(), 3);
+  for (std::size_t i = 0; i < start.size(); ++i)
+    if (i / 45 % 2 == 1) start[i] = 0;
+  auto const spins = spins_of<Spins>(lattice, start), others = spins_of<Spins>(lattice, start);
+  Noise const noise(spins, 0.5, {.temperature = 8, .seed = 3, .cell_sites = {0.2, 0}});
+  Noise const as_others(spins, 0.5, {.temperature = 8, .seed = 3, .cell_sites = {0.2, 0.2}});
+  for (auto const half : {Half::after, Half::before}) {
+    noise.turn(this->exec, 1, half, 1.2, spins);
+    as_others.turn(this->exec, 1, half, 1.2, others);
+  }
+  this->exec.fence();
+  auto const turned = numbers_of(spins);
+  EXPECT_EQ(turned, numbers_of(others));
+  for (std::size_t i = 0; i < start.size(); ++i) EXPECT_EQ(turned[i] == 0, i / 45 % 2 == 1) << i;
+  EXPECT_THROW(noise.turn(this->exec, 2, Half::before, 1.3, spins), std::invalid_argument);
+}
+
 TEST(ThermalNoiseUses, AreRefusedInOneSentence) {
   using Spins = SpinField<double, Kokkos::HostSpace>;
   Spins const spins("spins", Lattice::chain(4)), others("others", Lattice::chain(5));
   for (double const wrong : {-1.0, std::nan(""), HUGE_VAL}) {
     EXPECT_THROW(ThermalNoise<Spins>(spins, wrong, {}), std::invalid_argument);
     EXPECT_THROW(ThermalNoise<Spins>(spins, 1, {.temperature = wrong}), std::invalid_argument);
+    EXPECT_THROW(ThermalNoise<Spins>(spins, 1, {.cell_sites = {wrong}}), std::invalid_argument);
   }
   Kokkos::DefaultHostExecutionSpace const exec;
   using Half = ThermalNoise<Spins>::Half;

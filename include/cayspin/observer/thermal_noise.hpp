@@ -144,7 +144,8 @@ struct TurnAtRandom {
 struct ThermalNoiseOptions {
   double temperature = 0;  ///< in units of moment times field: kB T over the energy of a site
   std::uint64_t seed = 0;
-  /// Of each site of a crystal's cell: its gyromagnetic ratio over its moment. Empty: all 1.
+  /// Of each site of a crystal's cell: its gyromagnetic ratio over its moment, and 0 without a
+  /// spin. Empty: all 1.
   std::vector<double> cell_sites = {};
 };
 
@@ -180,9 +181,9 @@ class ThermalNoise {
       throw std::invalid_argument(
           "cayspin::ThermalNoise: there is not one number for each site of a cell");
     for (double const number : options.cell_sites)
-      if (!(number > 0) || !std::isfinite(number))
+      if (!(number >= 0) || !std::isfinite(number))
         throw std::invalid_argument(
-            "cayspin::ThermalNoise: the numbers of a cell's sites must be finite and > 0");
+            "cayspin::ThermalNoise: the numbers of a cell's sites must be finite and >= 0");
     cell_turns_ = CellTurns(options.cell_sites.size());
   }
   /// The same, without noise where `moves` is 0.
