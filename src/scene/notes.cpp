@@ -165,8 +165,7 @@ class Notes {
   void of_sites() {
     auto const& lattice = scene_.lattice;
     auto const count = lattice.basis.size();
-    bool const asks = lattice.occupied.there() || lattice.frozen.there();
-    if (!asks) return;
+    if (!has_vacancies(scene_) && !lattice.frozen.there()) return;
     std::vector<std::int64_t> spins(count), moving(count);
     auto const& [nx, ny, nz] = lattice.shape;
     for (std::int64_t plane = 0; plane < nz; ++plane) {

@@ -45,7 +45,8 @@ struct Case {
 
 TEST(Notes, SayWhatActsNowhere) {
   std::string const chain = "lattice.shape=[8]", single = "lattice.shape=[1]";
-  std::string const site = "lattice={shape=[4,4,2],crystal='bcc',occupied='s==0'}";
+  std::string const site = "lattice={shape=[4,4,2],crystal='bcc',occupied='s==0'}",
+                    moment = "lattice={shape=[4,4,2],crystal='bcc',moments=[2,0]}";
   for (auto const& [overrides, expected] : std::vector<Case>{
            {{"field.exchange=1"}, ""},
            {{single, "field.exchange=1"}, "field.exchange: acts nowhere: no cell has a neighbour"},
@@ -69,6 +70,8 @@ TEST(Notes, SayWhatActsNowhere) {
             "no cell has a spin on site 1"},
            {{site, "field.anisotropy={constant=1,axis=[0,0,1],site=0}"}, ""},
            {{site, "field.couplings=[{between=[0,1],J=1}]"}, "field.couplings[0]: acts nowhere"},
+           {{moment, "field.couplings=[{between=[0,1],J=1}]"}, "field.couplings[0]: acts nowhere"},
+           {{moment, "field.couplings={shells=[1]}"}, ""},
            {{chain, "field.couplings={shells=[1,1,1,1,1,1,1]}"}, ""},
            {{chain, "field.couplings={shells=[1,1,1,1,1,1,1,1]}"}, "entry 7, for pairs 8 apart"},
            {{chain, "lattice.boundary='periodic'", "field.couplings=[{offset=[8,0,0],J=1}]"},
