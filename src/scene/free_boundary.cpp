@@ -31,10 +31,15 @@ std::vector<double> constants(Scene const& scene, SiteNumbers const& numbers, do
   return std::vector<double>(static_cast<std::size_t>(nx * ny * nz), constant);
 }
 
+bool has_spin(Lattice const& lattice, std::vector<unsigned char> const& occupied,
+              std::array<std::int64_t, 3> const& site) {
+  auto const at = (site[2] * lattice.shape[1] + site[1]) * lattice.shape[0] + site[0];
+  return occupied.empty() || occupied[static_cast<std::size_t>(at)];
+}
+
 /// How many of a site's two neighbours along an axis are missing.
 int open_sides(Lattice const& lattice, std::vector<unsigned char> const& occupied,
                std::array<std::int64_t, 3> const& site, std::size_t axis) {
-  auto const nx = lattice.shape[0], ny = lattice.shape[1];
   auto const extent = lattice.shape[axis];
   int open = 0;
   for (int const side : {-1, 1}) {
@@ -47,9 +52,7 @@ int open_sides(Lattice const& lattice, std::vector<unsigned char> const& occupie
       }
       neighbour[axis] = (neighbour[axis] + extent) % extent;
     }
-    auto const at =
-        static_cast<std::size_t>((neighbour[2] * ny + neighbour[1]) * nx + neighbour[0]);
-    open += !occupied.empty() && !occupied[at];
+    open += !has_spin(lattice, occupied, neighbour);
   }
   return open;
 }
@@ -113,6 +116,7 @@ std::optional<std::vector<double>> numbers_at_free_sides(Scene const& scene,
     for (std::int64_t j = 0; j < ny; ++j)
       for (std::int64_t i = 0; i < nx; ++i, ++at) {
         std::array const site{box.begin[0] + i, box.begin[1] + j, box.begin[2] + k};
+        if (!has_spin(scene.lattice, there, site)) continue;
         int const sides = open_sides(scene.lattice, there, site, axis);
         if (sides == 0 || D[at] == 0) continue;
         if (!(A[at] > 0))
