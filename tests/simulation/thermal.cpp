@@ -68,7 +68,8 @@ TEST_F(ThermalRuns, HaveTheSameBitsInRandomScenes) {
   std::set<std::string_view> methods;
   for (std::int64_t draw = 0; scenes < wanted && draw < 50 * wanted && !HasFailure(); ++draw) {
     RandomRun random(random_seed(), draw);
-    auto const& variant = variants()[(7 * static_cast<std::size_t>(draw)) % variants().size()];
+    // A prime beyond their number: all come in turn.
+    auto const& variant = variants()[(10007 * static_cast<std::size_t>(draw)) % variants().size()];
     auto const text =
         random.scene(variant) + fmt::format("[thermal]\ntemperature = {}\nseed = {}\n",
                                             random.one_in(2) ? 0.6 : 0.05, random.below(1000));
