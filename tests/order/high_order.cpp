@@ -67,14 +67,6 @@ TEST(EightStages, SatisfyTheConditionsToRoundOff) {
   expect_conditions<tableau::Damped86>("damped", 0x1p-50);
 }
 
-TEST_P(HighOrder, InSinglePrecisionErrorsAreRoundOff) {
-  using Field = SpinField<float, Space::memory_space>;
-  constexpr int steps = 14;
-  auto const end = run<StereographicRungeKutta<Field, DormandPrince8>>(
-      slab.natural(), chain_start<Field>(), end_time / steps, steps);
-  expect_below("tangent", largest_distance(end, reference), 4 * steps * 0x1p-23);
-}
-
 INSTANTIATE_TEST_SUITE_P(Damping, HighOrder, chain_dampings);
 
 }  // namespace

@@ -43,14 +43,9 @@ void expect_slope(char const* what, int order, std::vector<int> const& ladder) {
 
 TEST(TimeDependentField, KeepsTheOrder) {
   std::vector<int> const ladder{40, 80, 160, 320};
-  expect_slope<LieEuler<Spins>>("geometric Euler", 1, ladder);
   expect_slope<Rkmk4<Spins>>("rkmk4", 4, ladder);
   expect_slope<Rkmk<Spins, tableau::Kutta3>>("rkmk of Kutta's tableau", 3, ladder);
   expect_slope<Rkmk<Spins, tableau::ThreeEighths4>>("rkmk of the 3/8 tableau", 4, ladder);
-  expect_slope<LieHeun<Spins>>("geometric Heun", 2, ladder);
-  expect_slope<LieAdamsBashforth2<Spins>>("ab2", 2, ladder);
-  expect_slope<ImplicitLieEuler<Spins>>("implicit Euler", 1, ladder);
-  expect_slope<ImplicitMidpoint<Spins>>("implicit midpoint", 2, ladder);
   expect_slope<StereographicRungeKutta<Spins, tableau::Classical4>>("stereographic", 4, ladder);
   expect_slope<Rkmk4AsPrinted<Spins>>("rkmk4 as printed", 3, ladder);
   expect_slope<ClassicalHeun<Spins>>("classical Heun", 2, ladder);

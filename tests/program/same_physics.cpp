@@ -84,38 +84,5 @@ TEST_F(SamePhysics, InertiaFromFileIsTheInertia) {
   EXPECT_NEAR(info.frame_scalars[0].energy, info.frame_scalars[1].energy, 1e-6);
 }
 
-TEST_F(SamePhysics, OrthogonalConstantAndExponentialAgreeToTheMethodsOrder) {
-  auto const reference = spins(chain_scene(), {});
-  for (std::string const other :
-       {"generator='orthogonal'", "isotropy={constant=0.7}", "rotation='exponential'"}) {
-    auto const difference = distance(spins(chain_scene(), set("integrator." + other)), reference);
-    EXPECT_LT(difference, 1e-5) << other;
-    EXPECT_GT(difference, 1e-12) << other;
-  }
-}
-
-TEST_F(SamePhysics, MethodsAgreeToTheirOrder) {
-  auto const reference = spins(chain_scene(), set("integrator.method='rkmk8'"));
-  for (auto const& [method, tolerance] :
-       std::vector<std::pair<std::string, double>>{{"euler", 0.2},
-                                                   {"rkmk4_as_printed", 1e-4},
-                                                   {"rkmk5", 1e-7},
-
-                                                   {"classical_euler", 0.2},
-                                                   {"classical_heun", 5e-3},
-                                                   {"classical_rk4", 1e-5},
-                                                   {"projected_euler", 0.2},
-                                                   {"projected_heun", 5e-3},
-                                                   {"projected_rk4", 1e-5},
-                                                   {"projected_rk5", 1e-7},
-                                                   {"projected_rk8", 5e-9}}) {
-    auto const difference = distance(spins(chain_scene(), set("integrator.method='" + method + "'",
-                                                              "integrator.energy_guard=false")),
-                                     reference);
-    EXPECT_LT(difference, tolerance) << method;
-    EXPECT_GT(difference, 0) << method;
-  }
-}
-
 }  // namespace
 }  // namespace cayspin::program::test

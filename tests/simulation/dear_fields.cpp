@@ -34,15 +34,7 @@ random = { seed = 5 }
 
 TEST(DearFields, OfScenesHaveOrderThreeOrFour) {
   auto const exact = end_of(film("method='rkmk8'\ndt=0.002\nsteps=500", {}));
-  for (auto const& [method, order] : {std::pair{"heun", 2},
-                                      {"rkmk4", 3},
-                                      {"projected_rk4", 3},
-                                      {"cf4", 3},
-                                      {"rkmk64", 3},
-                                      {"rkmk5", 4},
-                                      {"rkmk8", 4},
-                                      {"projected_rk5", 4},
-                                      {"projected_rk8", 4}}) {
+  for (auto const& [method, order] : {std::pair{"heun", 2}, {"rkmk4", 3}, {"rkmk8", 4}}) {
     double errors[2];
     for (int i = 0; i < 2; ++i) {
       int const steps = 40 << i;

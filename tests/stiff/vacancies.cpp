@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Steps that divide by the length of a spin, on lattices with vacant sites, whose spins are zero:
-// beside the same shape as a lattice of its own, beside explicit steps on the group, and with the
-// order that they have without vacancies.
+// beside the same shape as a lattice of its own.
 #include "../support/backends.hpp"
 #include "../support/coefficients.hpp"
 #include "../support/figures.hpp"
@@ -178,28 +177,6 @@ TEST(VacanciesOfAdaptiveStiffSteps, AreWithinTheToleranceOfTheFilmAlone) {
   double const tolerance = 1e-4 / epsilon<double>;
   expect_that_of_the_film_alone<WithinTolerance<AdaptiveStiffGauss2<Spins>>>("stiff_adaptive",
                                                                              tolerance);
-}
-
-/// The order of steps on a disc, beside short steps on the group.
-template <class Stepper>
-void expect_order(char const* name, int order, double end, std::array<int, 4> const& ladder,
-                  double exchange) {
-  auto const shape = disc(9, 2);
-  auto const generator = shape.generator<double>(exchange, 0.1);
-  auto const start = shape.start<Spins>(3);
-  auto const reference = run<Rkmk4<Spins>>(generator, start, end / 4000, 4000);
-  expect_convergence(name, end, ladder, order, 0.2, [&](int steps, double dt) {
-    auto const spins = run<Stepper>(generator, start, dt, steps);
-    expect_vacant_spins_are_zero(spins, shape);
-    return largest_distance(spins, reference);
-  });
-}
-
-TEST(VacanciesKeepTheOrder, OfStepsThatDivideByTheLengthOfASpin) {
-  expect_order<ProjectedRk4<Spins>>("projected_rk4", 4, 1, {40, 80, 160, 320}, 1);
-  expect_order<Chart4<Spins>>("chart", 4, 1, {40, 80, 160, 320}, 1);
-  expect_order<StiffGauss2<Spins>>("stiff2", 2, 1, {40, 80, 160, 320}, 1);
-  expect_order<StiffGauss4<Spins>>("stiff4", 4, 1, {40, 80, 160, 320}, 1);
 }
 
 /// Corrections that a step takes, on average.
