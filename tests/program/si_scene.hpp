@@ -20,7 +20,7 @@ std::string text(Parts const&... parts) {
   return stream.str();
 }
 
-/// A film of a material in SI, the same in reduced units, and one atom.
+/// A film of a material in SI, and one atom.
 class SiScene : public ProgramTest {
  protected:
   static std::string film(std::string const& integrator, std::string const& applied) {
@@ -57,18 +57,6 @@ every = 10
   static units::Micromagnetic units() {
     return units::Micromagnetic(
         {.Ms = 8e5, .cell = {4e-9, 5e-9, 3e-9}, .damping = units::gilbert(0.3)});
-  }
-  static std::string reduced_film(std::string const& integrator, std::string const& applied) {
-    auto const u = units();
-    return text(
-        "[system]\nkind = \"llg\"\ndamping = 0.3\n[lattice]\nshape = [12, 5]\nspacing = [1.0, ",
-        u.spacing()[1], "]\n[field]\nexchange = ", u.exchange(1.3e-11),
-        "\nanisotropy = { constant = ", u.anisotropy(5e4),
-        ", axis = [0, 0, 1] }\ndmi = { interfacial = ", u.dmi(1e-3),
-        ", normal = [0, 0, 1] }\nslab_demag = { normal = [0, 0, 1], strength = 0.9 }\n"
-        "applied = ",
-        applied, "\n[initial]\nrandom = { seed = 5 }\n[integrator]\n", integrator,
-        "\n[output]\nfile = \"reduced.h5\"\nevery = 10\n");
   }
   static std::string atom(std::string const& more = "") {
     return R"(units = "SI"

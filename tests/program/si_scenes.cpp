@@ -1,83 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Scenes in SI from end to end: the motion of the reduced scene to the bit, and numbers in SI.
+// The files of scenes in SI.
 #include "io/ovf.hpp"
 #include "si_scene.hpp"
 
 #include <array>
-#include <cmath>
 #include <fstream>
-#include <iterator>
-#include <numbers>
 
 namespace cayspin::program::test {
 namespace {
 
-TEST_F(SiScene, MovesAsTheReducedSceneToTheBit) {
-  auto const u = units();
-  struct Case {
-    std::string si, reduced;
-  };
-  auto const method = [&](std::string const& keys, double dt) {
-    return Case{keys + text("\ndt = ", dt, "\nsteps = 25"),
-                keys + text("\ndt = ", u.time(dt), "\nsteps = 25")};
-  };
-  auto adaptive = method("method = \"tsit5\"\ntolerance = 1e-5", 2e-13);
-  adaptive.si += "\nmax_dt = 5e-14";
-  adaptive.reduced += text("\nmax_dt = ", u.time(5e-14));
-  auto sigma = method("method = \"rkmk4\"", 1e-13);
-  sigma.si += "\nisotropy = { constant = 3e11 }";
-  sigma.reduced += text("\nisotropy = { constant = ", u.rate(3e11), " }");
-  for (auto const& [si, reduced] :
-       {method("method = \"rkmk4\"", 1e-13), method("method = \"ab2\"", 1e-13), adaptive, sigma})
-    for (std::string const precision : {"double", "single"}) {
-      Arguments const arguments{"--precision", precision, "--overwrite"};
-      auto const h = text("[", u.applied(0.02), ", ", u.applied(-0.3), ", ", u.applied(0.1), "]");
-      auto const expected = run(reduced_film(reduced, h), arguments);
-      auto const spins = read_dataset("out.h5", "/spins").values;
-      auto const info = run(film(si, "[0.02, -0.3, 0.1]"), arguments);
-      EXPECT_EQ(read_dataset("out.h5", "/spins").values, spins) << si << ", " << precision;
-      ASSERT_EQ(info.frames, 4);
-      for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(info.frame_times[i], expected.frame_times[i] * u.time_unit());
-        EXPECT_EQ(info.frame_scalars[i].energy, expected.frame_scalars[i].energy * u.energy_unit());
-        EXPECT_EQ(info.frame_scalars[i].magnetization, expected.frame_scalars[i].magnetization);
-      }
-    }
-}
-
-TEST_F(SiScene, AnExpressionInSecondsMovesAsTheOneInReducedTime) {
-  auto const u = units();
-  run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 100",
-           "[\"0.3*sin(2*pi*2e11*t)\", \"0.1+1e10*t\", 0]"));
-  auto const in_seconds = last_spins("out.h5");
-  run(reduced_film(
-          text("method = \"rkmk4\"\ndt = ", u.time(1e-13), "\nsteps = 100"),
-          text("[\"", u.applied(0.3), "*sin(", u.rate(2 * std::numbers::pi * 2e11), "*t)\", \"",
-               u.applied(0.1), "+", u.applied(1e10 * u.time_unit()), "*t\", 0]")),
-      {"--overwrite"});
-  EXPECT_LT(distance(last_spins("out.h5"), in_seconds), 1e-12);
-}
-
-TEST_F(SiScene, AMomentTurnsByGammaTimesFieldTimesSeconds) {
-  for (std::string const precision : {"double", "single"}) {
-    run(atom(), {"--precision", precision, "--overwrite"});
-    auto const m = last_spins("out.h5");
-    double const tolerance = precision == "double" ? 1e-8 : 1e-4;
-    EXPECT_NEAR(std::atan2(m[1], m[0]), gamma_e * 1e-11 / 1.01, tolerance);
-    double const theta =
-        2 * std::atan(std::tan(0.5 * std::acos(0.8)) * std::exp(-0.1 * gamma_e * 1e-11 / 1.01));
-    EXPECT_NEAR(m[2], std::cos(theta), tolerance);
-    auto const energy = read_dataset("out.h5", "/energy").values;
-    EXPECT_NEAR(energy.back() / (-2 * 9.2740100657e-24), m[2], tolerance);
-    EXPECT_NEAR(read_dataset("out.h5", "/time").values.back(), 1e-11, 1e-24);
-  }
-}
+constexpr double mu0 = 1.25663706127e-6;
 
 TEST_F(SiScene, TheFileSaysItsUnits) {
-  auto const info = run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 1", "[0, 0, 0.1]"));
+  auto const info = run(film("method = \"rkmk4\"\ndt = 1e-13\nsteps = 1", "[0, 0, 0.1]"),
+                        set("initial={uniform=[0,0,1]}"));
   auto const u = units();
   EXPECT_EQ(info.header.units,
             (io::Units{true, u.time_unit(), u.length_unit(), u.field_unit(), u.energy_unit()}));
+  EXPECT_NEAR(read_dataset("out.h5", "/time").values.back(), 1e-13, 1e-27);
+  double const pressure = 0.9 * 0.5 * mu0 * 8e5 * 8e5 - 8e5 * 0.1 - 5e4;
+  EXPECT_NEAR(read_dataset("out.h5", "/energy").values[0] / (60 * 60e-27 * pressure), 1, 1e-13);
   auto const said = output_of({"info", "out.h5"});
   EXPECT_TRUE(contains(said,
                        "units        SI; one reduced unit is 6.15746661e-12 s, 4e-09 m, "

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// [thermal]: the same bits however a run is cut and watched, what `check` says, and Boltzmann's law
-// of atoms in kelvin. Seeds are fixed; statistical limits are five standard errors.
-#include "si_scene.hpp"
+// [thermal]: the same bits however a run is cut and watched, and what `check` says.
+#include "program_test.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -10,7 +9,7 @@
 namespace cayspin::program::test {
 namespace {
 
-class Thermal : public SiScene {
+class Thermal : public ProgramTest {
  protected:
   static std::string warm_scene() {
     return R"toml([system]
@@ -145,60 +144,6 @@ TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
            {{"trade", scene}, "thermal.temperature: trajectories at a temperature are random"},
            {{"advise", scene, "--error", "1e-4"}, "thermal.temperature: trajectories"}})
     expect_refused(arguments, part);
-}
-
-// m_z of atoms in a field B: Langevin's function of mu_s B / (kB T), here 2. Then an anisotropy K
-// alone: <m_z^2> over Boltzmann's weights exp(K m_z^2 / (kB T)). Gilbert's damping and Landau's and
-// Lifshitz's differ in time, not in the law.
-TEST_F(Thermal, AtomsInKelvinFollowBoltzmann) {
-  double const kelvin = 5, moment = 2 * units::bohr_magneton;
-  double const tesla = 2 * units::boltzmann * kelvin / moment;
-  double const K = 3 * units::boltzmann * kelvin;
-  auto const scene = [&](std::string const& form, std::string const& material,
-                         std::string const& field) {
-    return text(
-        "units = \"SI\"\n[material]\nmu_s = { bohr_magnetons = 2.0 }\nalpha = 1\n"
-        "damping_form = \"",
-        form, "\"\n", material, "\n[system]\nkind = \"llg\"\n[lattice]\nshape = [128, 128]",
-        "\nspacing = 3e-10\n[field]\n", field,
-        "\n[initial]\nrandom = { seed = 5 }\n[integrator]\nmethod = \"heun\"\n"
-        "dt = 2e-14\nend = 2e-11\n[thermal]\ntemperature = ",
-        kelvin, "\n[output]\nfile = \"out.h5\"\n");
-  };
-  constexpr double sites = 128 * 128;
-  for (std::string const form : {"gilbert", "landau_lifshitz"}) {
-    ProgramTest::end_of(scene(form, "", text("applied = [0, 0, ", tesla, "]")));
-    double const x = 2, langevin = 1 / std::tanh(x) - 1 / x, square = 1 - 2 * langevin / x;
-    EXPECT_NEAR(read_dataset("out.h5", "/magnetization").values.back(), langevin,
-                5 * std::sqrt((square - langevin * langevin) / sites) + 1e-3);
-
-    auto const spins = ProgramTest::end_of(scene(form, text("K = ", K, "\naxis = [0, 0, 1]"), ""));
-    double weights = 0, squares = 0, fourths = 0;
-    for (int i = 0; i < 1000; ++i) {
-      double const z = (i + 0.5) / 1000, weight = std::exp(3 * z * z);
-      weights += weight;
-      squares += weight * z * z;
-      fourths += weight * z * z * z * z;
-    }
-    double const expected = squares / weights;
-    double found = 0;
-    for (std::size_t i = 2; i < spins.size(); i += 3) found += spins[i] * spins[i] / sites;
-    EXPECT_NEAR(found, expected,
-                5 * std::sqrt((fourths / weights - expected * expected) / sites) + 1e-3);
-  }
-}
-
-// A film of cells: the bits of the same in reduced units, kelvin by the energy of a cell.
-TEST_F(Thermal, KelvinAreTheReducedTemperatureOfTheScene) {
-  auto const u = units();
-  auto const in_si = film("method = \"heun\"\ndt = 1e-14\nsteps = 40", "[0, 0, 0]") +
-                     "[thermal]\ntemperature = 300\nseed = 2\n";
-  auto const reduced =
-      reduced_film(text("method = \"heun\"\ndt = ", u.time(1e-14), "\nsteps = 40"), "[0, 0, 0]") +
-      text("[thermal]\nseed = 2\ntemperature = ", u.temperature(300), "\n");
-  EXPECT_LT(distance(ProgramTest::end_of(in_si), ProgramTest::end_of(reduced)), 1e-11);
-  EXPECT_TRUE(
-      contains(output_of({"check", write("scene.toml", in_si)}), "temperature 300 K (0.08583"));
 }
 
 }  // namespace

@@ -258,26 +258,6 @@ integrator = {{ method = "rkmk4", dt = 1e-12, steps = 200 }}
     }
 }
 
-// tan(theta/2) falls by exp(-gamma a t), a = 0.0548510 T of 1e12 A/m^2 in 3 nm, by hand.
-TEST(SiScenes, ACurrentTurnsAFreeSpinToItsPolarization) {
-  auto const scene = scene_of(R"toml(units = "SI"
-material = { Ms = 8e5, alpha = 0 }
-system = { kind = "llg" }
-lattice = { shape = [1], spacing = 4e-9 }
-torque = { slonczewski = { current_density = 1e12, efficiency = 0.4, thickness = 3e-9, polarization = [0, 0, 1] } }
-initial = { uniform = [1, 0, 0] }
-integrator = { method = "rkmk4", dt = 1e-12, steps = 100 }
-)toml");
-  double const half = std::exp(-gamma * 0.0548510 * 1e-10);
-  for (auto const precision : precisions) {
-    auto const m = end_of(scene, precision);
-    double const allowed = 2e-6 + 100 * epsilon(precision);
-    EXPECT_NEAR(m[0], 2 * half / (1 + half * half), allowed);
-    EXPECT_NEAR(m[1], 0, allowed);
-    EXPECT_NEAR(m[2], (1 - half * half) / (1 + half * half), allowed);
-  }
-}
-
 // Spins without bonds: each moves as in a scene of its own damping.
 TEST(SiScenes, GilbertsDampingMayDifferFromSiteToSite) {
   auto const end = [](std::string const& alpha, std::string const& form, Precision precision) {

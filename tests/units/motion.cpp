@@ -74,72 +74,6 @@ TYPED_TEST(UnitsInMotion, AFreeSpinTurnsAt28GigahertzPerTesla) {
   }
 }
 
-TYPED_TEST(UnitsInMotion, AtomicMomentsTurnAtTheSameFrequency) {
-  using Field = typename TestFixture::Field;
-  units::Atomistic const units({.mu_s = 3.3 * units::bohr_magneton,
-                                .energy = 4e-21,
-                                .lattice_constant = 3e-10,
-                                .damping = gilbert(0.1)});
-  auto const start = make_spins<Field>(Lattice::chain(1), [](auto...) { return Vector{3, 0, 4}; });
-  LandauLifshitz const generator{EffectiveField{Zeeman{{0, 0, units.applied(1.0)}}},
-                                 units.damping()};
-  constexpr double seconds = 1e-11;
-  auto const end = this->after(seconds, units, generator, start);
-  EXPECT_NEAR(this->turn(end, start), gamma_e * seconds / 1.01, this->tolerance);
-}
-
-// Right-handed helices at an angle theta to z turn about it as a whole.
-template <class Field>
-Field helix(Lattice const& lattice, double k, double theta) {
-  return make_spins<Field>(lattice, [&](auto i, auto, auto) {
-    double const phase = k * static_cast<double>(i);
-    return Vector{std::sin(theta) * std::cos(phase), std::sin(theta) * std::sin(phase),
-                  std::cos(theta)};
-  });
-}
-
-TYPED_TEST(UnitsInMotion, SpinWavesOfAChainFollowTheirDispersion) {
-  using Field = typename TestFixture::Field;
-  auto const units = material(gilbert(0));
-  Lattice const lattice{
-      {12, 1, 1}, units.spacing(), {Boundary::periodic, Boundary::open, Boundary::open}};
-  LandauLifshitz const generator{EffectiveField{Exchange{lattice, units.exchange(A)},
-                                                UniaxialAnisotropy{units.anisotropy(Ku), {0, 0, 1}},
-                                                Zeeman{{0, 0, units.applied(0.3)}}},
-                                 0.0};
-  constexpr double theta = 0.3, d = cell[0];
-  for (int mode = 0; mode <= 6; ++mode) {
-    double const kd = 2 * pi * mode / 12;
-    double const stiff = 2 * A / Ms * 2 * (1 - std::cos(kd)) / (d * d);
-    double const omega = gamma_e * (0.3 + std::cos(theta) * (2 * Ku / Ms + stiff));
-    double const seconds = 3.0 / omega;
-    auto const start = helix<Field>(lattice, kd, theta);
-    auto const end = this->after(seconds, units, generator, start);
-    EXPECT_NEAR(this->turn(end, start, 5), 3.0, this->tolerance) << "mode " << mode;
-  }
-}
-
-TYPED_TEST(UnitsInMotion, MagnonsOfAtomsFollowTheirDispersion) {
-  using Field = typename TestFixture::Field;
-  constexpr double J = 3e-21, K = 2e-22, B = 1.5;
-  double const mu_s = 2 * units::bohr_magneton;
-  units::Atomistic const units({.mu_s = mu_s, .energy = 7e-21, .lattice_constant = 3e-10});
-  auto const lattice = Lattice::chain(8, 1, Boundary::periodic);
-  LandauLifshitz const generator{EffectiveField{Exchange{lattice, units.exchange(J)},
-                                                UniaxialAnisotropy{units.anisotropy(K), {0, 0, 1}},
-                                                Zeeman{{0, 0, units.applied(B)}}},
-                                 0.0};
-  constexpr double theta = 0.4;
-  for (int mode = 0; mode <= 4; ++mode) {
-    double const ka = 2 * pi * mode / 8;
-    double const omega =
-        gamma_e / mu_s * (mu_s * B + std::cos(theta) * (2 * K + 2 * J * (1 - std::cos(ka))));
-    auto const start = helix<Field>(lattice, ka, theta);
-    auto const end = this->after(3.0 / omega, units, generator, start);
-    EXPECT_NEAR(this->turn(end, start, 3), 3.0, this->tolerance) << "mode " << mode;
-  }
-}
-
 TYPED_TEST(UnitsInMotion, AFilmPrecessesAtKittelsFrequency) {
   using Field = typename TestFixture::Field;
   auto const units = material();
@@ -156,22 +90,6 @@ TYPED_TEST(UnitsInMotion, AFilmPrecessesAtKittelsFrequency) {
   auto const m = spin(this->after(4.0 / omega, units, generator, start), 0);
   double const phase = std::atan2(m.z * std::sqrt(out_of_plane / in_plane), m.y);
   EXPECT_NEAR(std::remainder(phase - 4, 2 * pi), 0, TestFixture::in_double ? 1e-8 : 1e-3);
-}
-
-TYPED_TEST(UnitsInMotion, AGrainSwitchesAtTwoKuOverMs) {
-  using Field = typename TestFixture::Field;
-  auto const units = material(gilbert(1));
-  auto const start = make_spins<Field>(Lattice::chain(1), [](auto...) {
-    return Vector{0.01, 0, 1};
-  });
-  for (double const share : {0.98, 1.02}) {
-    LandauLifshitz const generator{
-        EffectiveField{UniaxialAnisotropy{units.anisotropy(Ku), {0, 0, 1}},
-                       Zeeman{{0, 0, -units.applied(share * 2 * Ku / Ms)}}},
-        units.damping()};
-    auto const end = this->after(200e-9, units, generator, start, 20000);
-    EXPECT_NEAR(spin(end, 0).z, share < 1 ? 1 : -1, 1e-3) << share;
-  }
 }
 
 // B = mu0 H of a spin in a block with open ends, in T.
