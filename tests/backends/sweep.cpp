@@ -127,6 +127,15 @@ TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   });
 }
 
+// Steps that batch does not take would be read from memory that a sweep does not have.
+TYPED_TEST(Sweep, RefusesBatches) {
+  typename TestFixture::Field spins("spins", Lattice::cubic(8, 8, 8));
+  Rkmk4 stepper(spins);
+  stepper.use(Path::sweep);
+  LandauLifshitz const generator(EffectiveField(Zeeman{{1, 0, 0}}), 0.1);
+  EXPECT_THROW(stepper.batch(Threaded(), generator, spins, 0, 0.1, 2), std::invalid_argument);
+}
+
 TEST(SweepRefusals, OneStageAndFewPeriodicRows) {
   using Field = SpinField<double, Kokkos::HostSpace>;
   auto const lattice = Lattice::cubic(9, 3, 3, 1, Boundary::periodic);

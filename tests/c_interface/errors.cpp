@@ -94,7 +94,6 @@ TEST(CInterfaceErrors, LeaveWhatPointersPointTo) {
 TEST(CInterfaceErrors, WrongScenes) {
   expect_failure(open_with(scene_text("konstant = 1.0\n")), CAYSPIN_WRONG_SCENE,
                  "mine.toml:8: field.konstant");
-  expect_failure(open_with("[system"), CAYSPIN_WRONG_SCENE, "mine.toml:1");
   cayspin_simulation* simulation = nullptr;
   expect_failure(cayspin_open_file("no_such.toml", CAYSPIN_DOUBLE, nullptr, &simulation),
                  CAYSPIN_WRONG_SCENE, "no_such.toml");

@@ -280,8 +280,6 @@ TEST(EnergyControl, Refuses) {
   refuses(slab.natural(), {.period = 0});
   refuses(slab.natural(), {.largest_fraction = 0});
   refuses(slab.natural(), {.energy = std::numeric_limits<double>::infinity()});
-  EnergyControl control(slab.natural(), spins);
-  EXPECT_THROW(control(Space{}, Step{}, random_spins(Lattice::chain(9), 3)), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// Every choice a scene has between method, generator, isotropy and rotation, on spins and on rigid
-// bodies: it runs at its order, or it is refused in one line.
-#include "io/method.hpp"
+// Every choice a scene has between method, generator, isotropy and rotation runs at its order, on
+// spins and on rigid bodies.
+#include "../support/method_choice.hpp"
 #include "program_test.hpp"
 
 #include <cmath>
@@ -10,41 +10,8 @@
 namespace cayspin::program::test {
 namespace {
 
-struct MethodChoice {
-  io::Method const& method;
-  io::Generator generator;
-  io::Isotropy isotropy;
-  io::Rotation rotation;
-
-  Arguments arguments() const {
-    auto const method_text = "integrator.method='" + std::string(method.word) + "'";
-    if (method.is_baseline()) return set(method_text);
-    auto const isotropy_text = isotropy == io::Isotropy::constant
-                                   ? "{constant=0.7}"
-                                   : "'" + std::string(to_string(isotropy)) + "'";
-    return set(method_text, "integrator.generator='" + std::string(to_string(generator)) + "'",
-               "integrator.isotropy=" + isotropy_text,
-               "integrator.rotation='" + std::string(to_string(rotation)) + "'");
-  }
-
-  bool is_default() const {
-    return generator == io::Generator::standard && isotropy == io::Isotropy::zero &&
-           rotation == io::Rotation::cayley;
-  }
-  bool has_meaning(io::SystemKind kind) const {
-    if (!steps_on(method, kind)) return false;
-    if (method.is_baseline()) return is_default();
-    bool const needs_cayley =
-        isotropy == io::Isotropy::energy || generator == io::Generator::tangent;
-    if (needs_cayley && rotation != io::Rotation::cayley) return false;
-    if (generator == io::Generator::tangent && isotropy != io::Isotropy::zero) return false;
-    return method.takes(rotation) && method.takes(generator) && method.takes(isotropy, kind);
-  }
-  // The others take a tolerance: adaptive_methods.cpp.
-  static bool steps_on(io::Method const& method, io::SystemKind kind) {
-    return method.has_equal_steps() && (!method.by_colour || kind == io::SystemKind::llg);
-  }
-};
+using cayspin::test::for_each_method_choice;
+using cayspin::test::MethodChoice;
 
 class AllMethods : public ProgramTest {
  protected:
@@ -54,27 +21,17 @@ class AllMethods : public ProgramTest {
     return end_of(scene, joined(joined(changes, set("integrator.dt=" + dt)), plain));
   }
 
-  // Calls work with each choice of words of the methods on the group, and with each baseline.
-  template <class Work>
-  static void for_each_choice(Work const& work) {
-    for (auto const* const method : io::methods())
-      for (auto const& generator : io::words<io::Generator>())
-        for (auto const& isotropy : io::words<io::Isotropy>())
-          for (auto const& rotation : io::words<io::Rotation>()) {
-            MethodChoice const choice{*method, generator.value, isotropy.value, rotation.value};
-            if (!method->is_baseline() || choice.is_default()) work(choice);
-          }
-  }
-
   // `floor`: below it errors are round-off, and longer steps show the order.
   void expect_orders(std::string const& scene, io::SystemKind kind, double floor) {
     auto const reference = end(scene, set("integrator.method='rkmk8'"), "0.0025");
     std::set<std::string_view> checked;
     std::set<double> errors_of_rkmk4;
-    for_each_choice([&](MethodChoice const& choice) {
-      if (!choice.has_meaning(kind)) return;
+    for_each_method_choice([&](MethodChoice const& choice) {
+      // The others take a tolerance: adaptive_methods.cpp.
+      if (!choice.method.has_equal_steps() || !choice.has_meaning(kind)) return;
       checked.insert(choice.method.word);
-      auto changes = choice.arguments();
+      Arguments changes;
+      for (auto const& assignment : choice.overrides()) changes = joined(changes, set(assignment));
       // One colour of the spins moves at a time: the host would compute the field of all.
       if (choice.method.by_colour)
         changes = joined(changes, set("field.slab_demag={normal=[1,0,0]}"));
@@ -99,7 +56,8 @@ class AllMethods : public ProgramTest {
       EXPECT_NEAR(energies.back(), energies.front(), 2e-5) << name;
     });
     for (auto const* const method : io::methods())
-      EXPECT_EQ(checked.contains(method->word), MethodChoice::steps_on(*method, kind))
+      EXPECT_EQ(checked.contains(method->word),
+                method->has_equal_steps() && (!method->by_colour || kind == io::SystemKind::llg))
           << method->word;
   }
 };
@@ -146,20 +104,6 @@ TEST_F(AllMethods, OnSpinsHaveTheirOrder) {
 
 TEST_F(AllMethods, OnRigidBodiesHaveTheirOrder) {
   expect_orders(tensor_bodies_scene(), io::SystemKind::rigid_body, 1e-12);
-}
-
-TEST_F(AllMethods, WithoutMeaningAreRefusedInOneLine) {
-  auto const scene = write("scene.toml", tensor_bodies_scene());
-  int refused = 0;
-  for_each_choice([&](MethodChoice const& choice) {
-    // One generator for the many that fail alike.
-    if (choice.has_meaning(io::SystemKind::rigid_body) ||
-        choice.generator == io::Generator::orthogonal)
-      return;
-    expect_status(2, joined({"check", scene}, choice.arguments()));
-    ++refused;
-  });
-  EXPECT_GT(refused, 100);
 }
 
 // With a field in time sigma by the derivative needs dH/dt: without it the energy's rate is wrong

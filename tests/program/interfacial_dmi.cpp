@@ -89,13 +89,5 @@ TEST_F(InterfacialDmi, UndampedRunsConserveTheEnergy) {
   }
 }
 
-TEST_F(InterfacialDmi, WrongTablesAreOneLine) {
-  for (std::string const table :
-       {"0.5", "{ interfacial = 0.5 }", "{ interfacial = 0.5, normal = [0, 0, 0] }",
-        "{ interfacial = 0.5, normal = [0, 0, 1], bulk = 1 }"}) {
-    expect_refused({"check", "chain.toml", "--set", "field.dmi=" + table}, "field.dmi");
-  }
-}
-
 }  // namespace
 }  // namespace cayspin::program::test

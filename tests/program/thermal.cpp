@@ -131,14 +131,7 @@ TEST_F(Thermal, IsCheckedAndDescribed) {
 
 TEST_F(Thermal, IsRefusedWhereItHasNoMeaning) {
   auto const scene = write("scene.toml", warm_scene()).string();
-  std::string const remembers = "integrator.method: remembers steps";
   for (auto const& [arguments, part] : std::vector<std::pair<Arguments, std::string>>{
-           {{"check", scene, "--set", "integrator.method='ab2'"}, remembers},
-           {joined({"check", scene}, set("integrator.method='euler'",
-                                         "integrator.isotropy='finite_difference_backward'")),
-            remembers},
-           {{"check", scene, "--set", "field.slab_demag={normal=[0,0,1],where='host',dear=true}"},
-            "thermal.temperature: noise does not go with a dear field"},
            {{"relax", scene, "--output", "out.h5", "--set", "field.applied=[0.3,0.1,0.2]"},
             "thermal.temperature: a state of rest has no temperature"},
            {{"trade", scene}, "thermal.temperature: trajectories at a temperature are random"},

@@ -98,6 +98,7 @@ TEST(RefusedPairs, AreThoseOfTheTable) {
         continue;
       }
       ++found[static_cast<std::size_t>(pair - refused_pairs().data())];
+      expect_holds(said, fmt::format(": {}: ", pair->key));
       auto const why = pair->why;
       expect_holds(said, why.substr(why.find("{}") == why.npos ? 0 : why.find("{}") + 2));
       expect_holds(said, pair->accepted);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // Words that are right each by itself and have no meaning together.
+#include "../support/method_choice.hpp"
 #include "wrong_scenes.hpp"
 
 #include <cmath>
@@ -20,7 +21,6 @@ integrator.isotropy = 'energy' | : "energy" corrects steps of kind = "rigid_body
   | accepted: "zero", { constant = sigma }
 integrator.method = 'series4'; integrator.isotropy = 'energy' | :
  "energy" corrects steps of kind = "rigid_body" alone | accepted: "zero"
-integrator.method = 'series4' | : | fields that depend on t
 integrator.method = 'series4_paper'; field.applied = [0,0,1]; integrator.rotation = 'exponential'
   | : | belongs to Cayley coordinates
 integrator.method = 'implicit_midpoint'; integrator.rotation = 'exponential' | :
@@ -71,6 +71,22 @@ integrator.method = 'red_black2' | : | moves spins of a lattice
 integrator.isotropy = 'energy'; integrator.rotation = 'exponential' | :
   | belongs to Cayley coordinates
 )");
+}
+
+TEST(WrongCombination, OfWordsOfEveryMethod) {
+  int refused = 0;
+  cayspin::test::for_each_method_choice([&](cayspin::test::MethodChoice const& choice) {
+    auto const overrides = choice.overrides();
+    SCOPED_TRACE(testing::PrintToString(overrides));
+    for (auto const kind : {SystemKind::llg, SystemKind::rigid_body}) {
+      auto const said = refusal_of(kind == SystemKind::llg ? plain_scene : body_scene, overrides);
+      EXPECT_EQ(said == "accepted", choice.has_meaning(kind)) << said;
+      if (said == "accepted") continue;
+      expect_holds(said, "; accepted: ");
+      ++refused;
+    }
+  });
+  EXPECT_GT(refused, 1000);
 }
 
 TEST(Combinations, OfRigidBodiesWithEnergyAreAccepted) {

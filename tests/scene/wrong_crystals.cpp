@@ -128,6 +128,8 @@ field.anisotropy = { cubic = 1, axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] } | .ax
   | two vectors
 field.anisotropy = { cubic = 1, axes = [[1, 0, 0], [0, 0, 0]] } | .axes[1]: is a zero vector
 field.dmi = 1 | : 1 is an integer | { interfacial = D, normal = [x, y, z] } or { bulk = D }
+field.dmi = { interfacial = 1 } | .normal: is missing | three numbers
+field.dmi = { interfacial = 1, normal = [0, 0, 0] } | .normal: is a zero vector | three numbers
 field.dmi = { bulkk = 1 } | .bulkk: unknown key | interfacial, normal, bulk
 field.dmi = { bulk = 1, interfacial = 1, normal = [0, 0, 1] } | : is of an interface and of the bulk
   | { bulk = D }
@@ -164,12 +166,6 @@ torque.slonczewski = { damping_like = 1, polarization = [1, 0, 0] };
  integrator.energy_control = true | : | accepted:
 torque.slonczewski = { damping_like = 1, polarization = [1, 0, 0] }; integrator.until_torque = 1 | :
   | no such key
-)");
-}
-
-TEST(WrongCrystal, WithMethods) {
-  expect_refused(crystal_scene, R"(
-integrator.method = 'red_black2' | : "red_black2" needs a field of the neighbours alone | "rkmk4"
 )");
 }
 

@@ -42,6 +42,7 @@ system.damping = | : is missing | >= 0
 system.damping = -0.05 | : -0.05 is negative | a number >= 0
 system.damping = nan | : nan is not finite
 system.damping = inf | : inf is not finite
+system.damping = true | : true is a boolean | a number >= 0
 system.damping = 'big' | : expression "big" | a formula in x, y, z, i, j, k
 system.precession = 1 | : 1 is an integer | true, false
 system.precession =; system.inertia = [1, 2, 3] | : | no meaning
@@ -81,6 +82,7 @@ field.applied = [0.05, 0] | : has 2 entries | three
 field.applied = [0.05, '0.1*cos(x)', 0] | [1] | accepted: a formula in t
 field.applied = [0.05, '0.1*cos(', 0] | [1] | expression "0.1*cos("
 field.applied = [0.05, '1/t', 0] | [1] | not finite at t = 0 | nothing is accepted
+field.applied = [inf, 0, 0] | [0]: inf is not finite | a finite number
 field.applied = [0.05, true, 0] | [1]: true | a string with an expression in t
 field.slab_demag = { normal = [0, 0, 0], strength = 2 } | .normal: is a zero vector
 field.slab_demag = { strength = 2 } | .normal: is missing

@@ -89,6 +89,14 @@ io::Scene thermal_chain() {
                    std::string(chain_of_nine) + "thermal = { temperature = 0.5 }\n");
 }
 
+TEST(ThermalPlan, RefusesMethodsThatRememberSteps) {
+  for (auto const& keys : std::vector<std::vector<std::string>>{
+           {"integrator.method='ab2'"},
+           {"integrator.method='euler'", "integrator.isotropy='finite_difference_backward'"}})
+    expect_refused([&] { return io::with_overrides(thermal_chain(), keys); },
+                   "integrator.method: remembers steps");
+}
+
 std::int64_t fences_of_noise = 0;
 
 // Between two looks nothing waits for noise.

@@ -64,9 +64,18 @@ std::vector<WrongCall> calls_of(std::string const& what, Make const& make, Latti
 TEST(WrongCallsOfSteppers, SpinsOfOthers) {
   for_each_stepper([](std::string const& name, auto const& make) {
     for (auto const& own : own_lattices)
-      for (auto const& [kind, spins] : fields_of_others<Spins>(own))
+      for (auto const& [kind, spins] : fields_of_others<Spins>(own)) {
+        for (std::int64_t site = 0; site < spins.sites(); ++site) spins.set(site, {0.6, 0, 0.8});
         expect_refused(calls_of(name + ", spins " + kind, make, own, spins, generator_on(own)));
+        for (std::int64_t site = 0; site < spins.sites(); ++site)
+          EXPECT_EQ(spins.get(site).y, 0) << name << " changed spins " << kind;
+      }
   });
+  Lattice const own = own_lattices[0];
+  Spins const like("like", own);
+  Spins other("other", Lattice::chain(3));
+  EXPECT_EQ(refusal([&] { RedBlack2(like).step(Exec(), generator_on(own), other, 0, 0.1); }),
+            "cayspin::RedBlack2::step: the spins are not of the stepper's lattice");
 }
 
 TEST(WrongCallsOfSteppers, GeneratorsOfOthers) {
