@@ -106,7 +106,7 @@ SceneGeneratorNow<Spins> SceneGenerator<Spins>::now(
   SceneGeneratorNow<Spins> now{llg, bodies, is_llg_, orthogonal_};
   if (!is_llg_) {  // rows have the A of bodies in place of H
     auto field = llg.field();
-    field.along_rows = {.is_whole = true};
+    field.along_rows.is_whole = true;
     now.llg = LandauLifshitz(field, 0);
   }
   if (auto const& pass = llg_.field().pass(); pass && !alone_) now.own = pass->own_of_sites();
