@@ -121,7 +121,7 @@ concept FieldTerm = requires {
 /// | `bool is_orthogonal()` | A has no part along m | false |
 /// | `auto bare()` | the same with that part | itself |
 /// | `Vec3<Value> rate(m, rates)` | A' at m along the rates | isotropy::Analytic refuses it |
-/// | `static bool is_local` | A is of the spin itself alone, linearly: for Series4 | false |
+/// | `static bool is_local` | A is linear in the spin, without neighbours: for Series4 | false |
 /// | `Vec3<Value> series_source(stencil)` | what Series4 differentiates | Series4 refuses it |
 /// | `Vec3<Value> linear_series_source(stencil)` | its linear part | the same |
 /// | `Vec3<Value> derivative<K>(m, source)` | the K-th time derivative of A | the same |

@@ -166,8 +166,8 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil 
 template <class Term>
 inline constexpr bool depends_on_time = requires { requires Term::depends_on_time; };
 
-/// Of a term: H at a site depends on the spin there and on t alone. Of a generator: so does A, and
-/// linearly.
+/// A term is local where H at a site depends on nothing but the spin there and t. A generator is
+/// where its A does, and is linear in that spin.
 template <class Term>
 inline constexpr bool is_local = requires { requires Term::is_local; };
 

@@ -168,7 +168,7 @@ void complete_file(std::filesystem::path const& path);
 /// Reads all but the spins of a trajectory file.
 TrajectoryInfo read_info(std::filesystem::path const& path);
 
-/// The same while another process writes the file: it takes no lock and writes nothing, so the
+/// Reads a file that another process writes: this takes no lock and writes nothing, so the
 /// writer does not notice. Samples that are half written do not count. What cannot be read at one
 /// moment throws std::runtime_error; a moment later it may be whole.
 TrajectoryInfo read_info_while_written(std::filesystem::path const& path);

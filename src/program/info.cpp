@@ -55,7 +55,7 @@ int print_sweep(std::filesystem::path const& file) {
   return Status::done;
 }
 
-// What is half written now may be whole in a moment.
+// Reads again for a while: a part that is half written may be whole in a moment.
 io::TrajectoryInfo read_beside_writer(std::filesystem::path const& file) {
   for (int tries = 20;; --tries) {
     try {

@@ -43,7 +43,7 @@ FileAge age_of(std::filesystem::path const& path) {
 #endif
 }
 
-/// What the scene in a file plans, which a newer version may have written.
+/// The steps that the scene in a file plans. A newer version may have written it.
 struct PlannedSteps {
   std::int64_t steps = 0;    // 0 where that is not known
   bool equal_steps = false;  // those of the method are those of the run

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// The same bits on Serial and on the threaded space: steppers that remember, iterate and
+// Serial and the threaded space give equal bits: steppers that remember, iterate and
 // differentiate, and one that changes sites in place while others are read.
 #include "equal_bits.hpp"
 

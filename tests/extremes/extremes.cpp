@@ -65,7 +65,7 @@ void for_each_run(std::string const& situation, Expect const& expect) {
   }
 }
 
-/// Of the methods that choose their steps, or of the others.
+/// The methods that choose their steps, or all others.
 std::vector<std::string> words_of_methods(bool adaptive) {
   std::vector<std::string> all;
   for (auto const* const method : io::methods())

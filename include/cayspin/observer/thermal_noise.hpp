@@ -144,8 +144,8 @@ struct TurnAtRandom {
 struct ThermalNoiseOptions {
   double temperature = 0;  ///< in units of moment times field: kB T over the energy of a site
   std::uint64_t seed = 0;
-  /// Of each site of a crystal's cell: its gyromagnetic ratio over its moment, and 0 without a
-  /// spin. Empty: all 1.
+  /// The gyromagnetic ratio over the moment of each site of a crystal's cell, and 0 without a spin.
+  /// Empty: all 1.
   std::vector<double> cell_sites = {};
 };
 
