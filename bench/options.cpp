@@ -6,6 +6,9 @@
 #include "scene.hpp"
 #include "stream.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
+
 #include <cmath>
 #include <string>
 #include <vector>

@@ -3,12 +3,12 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cayspin)
 
-install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin
+install(DIRECTORY include/cayspin ${PROJECT_BINARY_DIR}/include/cayspin paper/include/cayspin_paper
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 
 install(FILES LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-install(TARGETS cayspin cayspin_same_bits EXPORT cayspinTargets)
+install(TARGETS cayspin cayspin_same_bits cayspin_paper EXPORT cayspinTargets)
 install(EXPORT cayspinTargets NAMESPACE cayspin:: DESTINATION ${package_dir})
 if(TARGET cayspin_program)
   install(TARGETS cayspin_program cayspin_reproduce RUNTIME)

@@ -52,7 +52,6 @@
 #include <cayspin/stepper/methods.hpp>
 #include <cayspin/stepper/multirate.hpp>
 #include <cayspin/stepper/red_black.hpp>
-#include <cayspin/stepper/series4.hpp>
 #include <cayspin/stepper/tableau_dormand_prince8.hpp>
 #include <cayspin/stepper/tableau_order6.hpp>
 #include <cayspin/stepper/two_point.hpp>

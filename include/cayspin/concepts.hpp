@@ -70,24 +70,14 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// | `Value energy_density(stencil)` | the site's share of E | required |
 /// | `Vec3<Value> add_field(stencil, h)` | h + H, where that takes less | h + field |
 /// | `Vec3<Value> add_turning_field(stencil, h)` | the same, less a multiple of m | add_field |
-/// | `Vec3<Value> turning_field(stencil)` | that of a sum, from its first term | from h = 0 |
-/// | `Value energy_magnitude(stencil)` | the sum of absolute E of its terms | energy_density |
-/// | `static int energy_terms` | of how many terms E is the sum | 1 |
-/// | `energy_densities(stencil, Value* e)` | the E of each of them | energy_density |
-/// | `static int degree` | 1: H without the spins, 2: linear in them | asks for the next two |
-/// | `Vec3<Value> linear_field(stencil)` | the linear part of an affine H | by the degree |
-/// | `Vec3<Value> field_rate(m, rates)` | dH/dt at m along the rates | linear_field(rates) |
-/// | `static bool is_local` | H is of the spin itself and t alone | false |
-/// | `Vec3<Value> neighbor_field(stencil)` | H of the other spins | H has no parts; 0 if local |
-/// | `Vec3<Value> local_field(spin)` | the rest of H | 0, field if local |
-/// | `bool local_field_varies()` | does the rest change with the spin? | true, unless degree = 1 |
+/// | `static int degree` | 1: H without the spins, 2: linear in them | H is neither |
+/// | `static bool is_local` | H depends on the spin itself and t only | false |
+/// | `Vec3<Value> neighbor_field(stencil)` | H of the others, less a multiple of m | see below |
 ///
-/// Steppers ask for linear_field, field_rate and degree where they need derivatives
-/// (isotropy::Analytic and Series4). RedBlack asks for the two parts of H. Where a term has none it
-/// evaluates the whole field for each iterate of a spin.
-/// Multiples of the spin itself may be left out of neighbor_field and local_field.
 /// Conditions on values are select(condition, yes, no). No `if` works: on the host a value is a
-/// pack of several sites.
+/// pack of several sites. RedBlack moves a spin in the field of the others, by neighbor_field: H
+/// has no other part then. Where a term that is not local leaves it out, the whole field is
+/// evaluated for each iterate of a spin.
 ///
 /// On the host, before a kernel, these are called:
 ///
@@ -95,15 +85,15 @@ int evaluations_of_next_step(Stepper const& stepper) {
 /// |---|---|---|
 /// | `check_spins(spins)` | throws for other spins and wrong numbers | takes any spins |
 /// | `auto prepare(exec, spins, t)` | the term for kernels at time t | the term itself |
-/// | `auto prepare_rate(exec, rates, t, dt)` | the same for dH/dt | prepare |
 /// | `static bool depends_on_time` | H changes with t, not by what is prepared | false |
 /// | `bool is_stationary(exec, spins)` | prepared once for all t and spins | true without prepare |
 /// | `bool needs_time_alone(exec, spins)` | t is enough to prepare | one of the two above |
-/// | `bool is_affine()` | is linear_field all that there is? | true |
+/// | `bool is_affine()` | H is affine in the spins | where it has a degree |
 /// | `static bool is_conservative` | false: H is the derivative of no energy, as a torque | true |
 ///
 /// A term with a prepare has the device members in what that returns. One that is made of others
-/// gets the host members from Forwarding (field/forwarding.hpp).
+/// gets the host members from Forwarding (field/forwarding.hpp), and has gather (field/parts.hpp)
+/// on devices. The derivatives that some methods of the paper ask for are in cayspin_paper.
 template <class Term, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept FieldTerm = requires {
   requires detail::has_field<detail::PreparedFor<Term, Spins>, detail::StencilOf<Spins>>;
@@ -119,12 +109,6 @@ concept FieldTerm = requires {
 /// | `Value energy_density(stencil)` | the site's share of E | it has no energy |
 /// | `bool is_conservative()` | E is kept: A = -dE/dm + c m (host) | EnergyControl refuses it |
 /// | `bool is_orthogonal()` | A has no part along m | false |
-/// | `auto bare()` | the same with that part | itself |
-/// | `Vec3<Value> rate(m, rates)` | A' at m along the rates | isotropy::Analytic refuses it |
-/// | `static bool is_local` | A is linear in the spin, without neighbours: for Series4 | false |
-/// | `Vec3<Value> series_source(stencil)` | what Series4 differentiates | Series4 refuses it |
-/// | `Vec3<Value> linear_series_source(stencil)` | its linear part | the same |
-/// | `Vec3<Value> derivative<K>(m, source)` | the K-th time derivative of A | the same |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =
     detail::is_generator<detail::PreparedFor<Type, Spins>, detail::StencilOf<Spins>>;

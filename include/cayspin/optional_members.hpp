@@ -6,8 +6,8 @@
 #include <concepts>
 
 // Field terms and generators as the library calls them: each function calls the member of its name
-// or, where there is none, does what the tables of concepts.hpp say. field/local_part.hpp has those
-// of a field in two parts.
+// or, where there is none, does what the tables of concepts.hpp say. field/parts.hpp has those of a
+// field that is made of others.
 namespace cayspin::inline v0_1::detail {
 
 template <class Term, class Stencil>
@@ -19,24 +19,6 @@ template <class Term, class Stencil>
 concept has_energy_density = requires(Term const& term, Stencil const& stencil) {
   { term.energy_density(stencil) } -> std::convertible_to<ValueOf<Stencil>>;
 };
-
-template <class Term, class Stencil>
-concept has_linear_field = requires(Term const& term, Stencil const& stencil) {
-  { term.linear_field(stencil) } -> std::convertible_to<VectorOf<Stencil>>;
-};
-
-template <class Term, class Stencil>
-concept has_field_rate = requires(Term const& term, Stencil const& stencil) {
-  { term.field_rate(stencil.center(), stencil) } -> std::convertible_to<VectorOf<Stencil>>;
-};
-
-/// Does a prepared term have the linear part of H?
-template <class Term, class Stencil>
-concept has_linear_part = has_linear_field<Term, Stencil> || requires { Term::degree; };
-
-/// Does it have the derivative of H along rates, of what prepare_rate returns?
-template <class Term, class Stencil>
-concept has_derivative = has_field_rate<Term, Stencil> || has_linear_part<Term, Stencil>;
 
 template <class Generator, class Stencil>
 concept is_generator = requires(Generator const& generator, Stencil const& stencil) {
@@ -91,83 +73,11 @@ KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add_turning_field(Term const& term
   else
     return add_field(term, stencil, h);
 }
-template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Term const& term,
-                                                            Stencil const& stencil) {
-  if constexpr (requires { term.turning_field(stencil); })
-    return term.turning_field(stencil);
-  else if constexpr (requires { term.add_turning_field(stencil, stencil.center()); })
-    return term.add_turning_field(stencil, zero<ValueOf<Stencil>>());
-  else
-    return term.field(stencil);
-}
-
-/// The linear part of an affine field at a stencil's centre, applied to the stencil's array.
-template <class Term, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Term const& term,
-                                                           Stencil const& stencil) {
-  if constexpr (requires { Term::degree; }) {
-    static_assert(
-        Term::degree == 1 || Term::degree == 2,
-        "A field term's degree is that of its energy: 1 for H independent of the spins, 2 "
-        "for H linear in them; leave it out otherwise.");
-    if constexpr (Term::degree == 2)
-      return term.field(stencil);
-    else
-      return zero<ValueOf<Stencil>>();
-  } else {
-    static_assert(has_linear_field<Term, Stencil>,
-                  "This needs the derivative of each field term: a static constexpr int degree (1 "
-                  "for H independent of the spins, 2 for H linear in them), linear_field(stencil) "
-                  "for H affine in them, or, for isotropy::Analytic alone, field_rate(m, rates).");
-    return term.linear_field(stencil);
-  }
-}
-
-/// The derivative of a field at a spin m, along the rates of the stencil's array.
-template <class Term, class Value, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Term const& term, Vec3<Value> const& m,
-                                                   Stencil const& rates) {
-  if constexpr (has_field_rate<Term, Stencil>)
-    return term.field_rate(m, rates);
-  else
-    return linear_field(term, rates);
-}
-
-/// The sum of the absolute values of an energy's terms.
-template <class Source, class Stencil>
-KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& source,
-                                                              Stencil const& stencil) {
-  if constexpr (requires { source.energy_magnitude(stencil); })
-    return source.energy_magnitude(stencil);
-  else
-    return Kokkos::abs(source.energy_density(stencil));
-}
-
-/// Of how many terms the energy is a sum.
-template <class Source>
-inline constexpr int energy_terms = [] {
-  if constexpr (requires { Source::energy_terms; }) return Source::energy_terms;
-  return 1;
-}();
-
-/// The energy of each of them.
-template <class Source, class Stencil, class Value>
-KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil const& stencil,
-                                                  Value* energies) {
-  if constexpr (requires { source.energy_densities(stencil, energies); }) {
-    source.energy_densities(stencil, energies);
-  } else {
-    check_energy_density<Source, Stencil>();
-    energies[0] = source.energy_density(stencil);
-  }
-}
 
 template <class Term>
 inline constexpr bool depends_on_time = requires { requires Term::depends_on_time; };
 
-/// A term is local where H at a site depends on nothing but the spin there and t. A generator is
-/// where its A does, and is linear in that spin.
+/// A term is local where H at a site depends on nothing but the spin there and t.
 template <class Term>
 inline constexpr bool is_local = requires { requires Term::is_local; };
 
@@ -204,19 +114,6 @@ bool rows_need_time_alone(Term const& term, Exec const& exec, Spins const& spins
     return needs_time_alone(term, exec, spins);
 }
 
-/// Is H affine in the spins, of a term with a linear part? What a term says at run time, and all
-/// parts of a sum or a wrapper.
-template <class Term>
-bool has_affine_field(Term const& term) {
-  auto const all = [](auto const& part) { return has_affine_field(part); };
-  if constexpr (requires { term.is_affine(); })
-    return term.is_affine();
-  else if constexpr (requires { term.all_parts(all); })
-    return term.all_parts(all);
-  else
-    return true;
-}
-
 template <class Term, class Spins>
 void check_spins(Term const& term, Spins const& spins) {
   if constexpr (requires { term.check_spins(spins); }) term.check_spins(spins);
@@ -246,15 +143,16 @@ auto prepare_for_rows(Term const& term, Exec const& exec, Spins const& spins, do
   }
 }
 
-/// The same for the derivative of a term or generator along `rates`, the X = A x m of every spin.
+/// Is H affine in the spins? A term of which this is known when compiled has a degree.
 template <class Term, class Exec, class Spins>
-auto prepare_rate(Term const& term, Exec const& exec, Spins const& rates, double t, double dt) {
-  if constexpr (requires { term.prepare_rate(exec, rates, t, dt); }) {
-    check_spins(term, rates);
-    return term.prepare_rate(exec, rates, t, dt);
-  } else {
-    return prepare_term(term, exec, rates, t);
-  }
+bool has_affine_field(Term const& term, Exec const& exec, Spins const& spins) {
+  auto const is = [&](auto const& part) { return has_affine_field(part, exec, spins); };
+  if constexpr (requires { term.is_affine(); })
+    return term.is_affine();
+  else if constexpr (requires { term.all_parts(is); })
+    return term.all_parts(is);
+  else
+    return requires { decltype(prepare_term(term, exec, spins, 0.0))::degree; };
 }
 
 /// A generator's A at the centre of a stencil.

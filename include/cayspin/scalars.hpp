@@ -3,6 +3,7 @@
 
 #include <cayspin/detail/reduce_sites.hpp>
 #include <cayspin/field/coefficient.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
@@ -27,10 +28,7 @@ KOKKOS_FORCEINLINE_FUNCTION void energy_at(Source const& source, Stencil const& 
       "An energy is that of an EffectiveField, a field term, or a generator that has one: "
       "a const, device-callable template energy_density(stencil).");
   values[0] = source.energy_density(stencil);
-  if constexpr (requires { source.energy_magnitude(stencil); })
-    values[1] = source.energy_magnitude(stencil);
-  else
-    values[1] = Kokkos::abs(values[0]);
+  values[1] = energy_magnitude(source, stencil);
 }
 
 template <class Source, class Real>

@@ -7,7 +7,9 @@
 
 #include <cayspin/cayspin.hpp>
 
+#include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/rkmk4_as_printed.hpp>
+#include <cayspin_paper/series4.hpp>
 
 #include <limits>
 

@@ -5,6 +5,8 @@
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/spin_field.hpp>
 
+#include <cayspin_paper/series_source.hpp>
+
 #include <optional>
 #include <utility>
 #include <vector>
@@ -54,7 +56,7 @@ struct RigidBodiesNow {
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
                                                      Vec3<Value> const* source) const {
     return orthogonal ? cayspin::detail::orthogonal_derivative<K>(bodies, m, source)
-                      : bodies.template derivative<K>(m, source);
+                      : cayspin::detail::series_derivative<K>(bodies, m, source);
   }
   template <class Value, class Site>
   KOKKOS_FORCEINLINE_FUNCTION auto inverse_inertia(Site const& site) const {

@@ -11,6 +11,8 @@
 #include <cayspin/generator/rigid_body.hpp>
 #include <cayspin/optional_members.hpp>
 
+#include <cayspin_paper/field_rate.hpp>
+
 #include <optional>
 #include <type_traits>
 #include <utility>

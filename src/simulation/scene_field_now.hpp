@@ -6,6 +6,7 @@
 
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/host_field.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/field/zeeman.hpp>
 
 #include <algorithm>
@@ -151,8 +152,8 @@ struct SceneFieldNow {
     return add_demagnetization(stencil, lattice_terms.add_field(stencil, local_field(stencil)));
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> gather(
+      cayspin::detail::TurningField, Stencil const& stencil) const {
     return add_demagnetization(stencil,
                                lattice_terms.add_turning_field(stencil, local_field(stencil)));
   }
@@ -160,7 +161,7 @@ struct SceneFieldNow {
   /// Does the part of the spin itself depend on the spin?
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return quadratic.present(); }
 
-  /// The linear part alone: without the applied field.
+  /// The linear part: without the applied field.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_field(
       Stencil const& stencil) const {
@@ -170,9 +171,14 @@ struct SceneFieldNow {
   }
   /// The part that comes from other spins, and the rest.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> neighbor_field(
-      Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> gather(
+      cayspin::detail::NeighborField, Stencil const& stencil) const {
     return add_demagnetization(stencil, lattice_terms.neighbor_field(stencil));
+  }
+  template <class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> gather(cayspin::detail::LocalField,
+                                                                     Spin const& spin) const {
+    return local_field(spin);
   }
   template <class Spin>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Spin::value_type> local_field(Spin const& spin) const {

@@ -21,7 +21,7 @@ struct StoreField {
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Stencil const& stencil, std::ptrdiff_t i) const {
-    auto h = TurningAlone ? terms.turning_field(stencil) : terms.field(stencil);
+    auto h = TurningAlone ? cayspin::detail::turning_field(terms, stencil) : terms.field(stencil);
     if (terms.along_rows.evaluate) h = h + fields.template load<typename Stencil::value_type>(i);
     fields.store(h, i);
   }
@@ -132,7 +132,8 @@ template <class Spins>
 template <class Exec>
 SceneGeneratorNow<Spins> SceneGenerator<Spins>::prepare_rate(Exec const& exec, Spins const& rates,
                                                              double t, double dt) const {
-  return now(llg_.prepare_rate(exec, rates, t, dt), bodies_.prepare(exec, rates, t));
+  return now(cayspin::detail::prepare_rate(llg_, exec, rates, t, dt),
+             bodies_.prepare(exec, rates, t));
 }
 
 #define CAYSPIN_INSTANTIATE(Space, Real)                                        \

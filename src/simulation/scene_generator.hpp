@@ -8,6 +8,9 @@
 #include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/observer/record.hpp>
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series_source.hpp>
+
 #include <cstdint>
 
 namespace cayspin::inline v0_1::io {
@@ -62,7 +65,8 @@ struct SceneGeneratorNow {
 
   template <class Value, class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
-    return own.of(rates.site(), m, is_llg ? llg.rate(m, rates) : bodies.rate(m, rates));
+    using cayspin::detail::rate_of;
+    return own.of(rates.site(), m, is_llg ? rate_of(llg, m, rates) : rate_of(bodies, m, rates));
   }
 
   /// With the part along the spin.
@@ -76,18 +80,18 @@ struct SceneGeneratorNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
       Stencil const& stencil) const {
-    return llg.series_source(stencil);
+    return llg.field().field(stencil);
   }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
       Stencil const& stencil) const {
-    return llg.linear_series_source(stencil);
+    return llg.field().linear_field(stencil);
   }
   template <int K, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
                                                      Vec3<Value> const* source) const {
     return orthogonal ? cayspin::detail::orthogonal_derivative<K>(llg, m, source)
-                      : llg.template derivative<K>(m, source);
+                      : cayspin::detail::series_derivative<K>(llg, m, source);
   }
 
   template <class Stencil>
@@ -98,7 +102,8 @@ struct SceneGeneratorNow {
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
       Stencil const& stencil) const {
-    return is_llg ? llg.energy_magnitude(stencil) : Kokkos::abs(bodies.energy_density(stencil));
+    return is_llg ? llg.energy_magnitude(stencil)
+                  : cayspin::detail::energy_magnitude(bodies, stencil);
   }
 
  private:
@@ -145,6 +150,7 @@ class SceneGenerator {
   LandauLifshitz<SceneField<Spins>> const& landau_lifshitz() const { return llg_; }
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
+  bool is_affine() const { return llg_.field().is_affine(); }
   bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }
 
   /// The effective field alone, as the generator of a precession about it.

@@ -3,6 +3,9 @@
 // differentiate, and one that changes sites in place while others are read.
 #include "equal_bits.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
+
 using namespace cayspin;
 using namespace cayspin::test;
 

@@ -3,6 +3,8 @@
 // neither allocates nor copies nor waits.
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
 #include <gtest/gtest.h>
 
 #include <string>

@@ -3,6 +3,8 @@
 // Compiled, not run.
 #include <cayspin/cayspin.hpp>
 
+#include <cayspin_paper/series4.hpp>
+
 #include <type_traits>
 #include <utility>
 
@@ -54,8 +56,8 @@ static_assert(detail::depends_on_time<Orthogonal<Llg<double>>>);
 static_assert(!detail::depends_on_time<LandauLifshitz<EffectiveField<Exchange>>>);
 static_assert(detail::is_local<EffectiveField<Zeeman, UniaxialAnisotropy>>);
 static_assert(!detail::is_local<EffectiveField<Zeeman, Exchange>>);
-static_assert(!detail::is_local<LandauLifshitz<EffectiveField<Zeeman>>>);
-static_assert(detail::is_local<Orthogonal<RigidBody>>);
+static_assert(!detail::SeriesOf<LandauLifshitz<EffectiveField<Zeeman>>>::is_local);
+static_assert(detail::SeriesOf<Orthogonal<RigidBody>>::is_local);
 static_assert(detail::energy_terms<Orthogonal<Llg<double>>> == 2);
 
 // The precession is a bool.

@@ -8,6 +8,9 @@
 #include <cayspin/observer/thermal_noise.hpp>
 #include <cayspin/stepper/multirate.hpp>
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
+
 #define MISTAKE(number) (CAYSPIN_TEST_MISTAKE == (number) || CAYSPIN_TEST_MISTAKE == -1)
 
 using namespace cayspin;

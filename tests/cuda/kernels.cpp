@@ -3,7 +3,9 @@
 // precisions for the device that Kokkos is configured for. Nothing is run.
 #include <cayspin/cayspin.hpp>
 
+#include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/rkmk4_as_printed.hpp>
+#include <cayspin_paper/series4.hpp>
 
 #include <tuple>
 

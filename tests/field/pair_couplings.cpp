@@ -10,7 +10,9 @@
 #include <cayspin/minimize.hpp>
 #include <cayspin/observer/normalize.hpp>
 #include <cayspin/stepper/methods.hpp>
-#include <cayspin/stepper/series4.hpp>
+
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
 
 namespace cayspin::test {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
-// field_rate and linear_field of terms: dH/dt at a spin along its rate, by differences.
+// FieldRate and LinearField of terms: dH/dt at a spin along its rate, by differences.
 #include "terms.hpp"
+
+#include <cayspin_paper/analytic_sigma.hpp>
 
 namespace cayspin::test {
 namespace {
@@ -17,7 +19,8 @@ struct RateOfField {
 
   template <class Stencil>
   KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& rates) const {
-    return detail::field_rate(term, rates.site().load(spins), rates);
+    using Value = typename Stencil::value_type;
+    return detail::FieldRate<Value>{rates.site().load(spins)}(term, rates);
   }
 };
 

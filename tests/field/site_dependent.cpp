@@ -6,6 +6,8 @@
 #include "../support/landau_lifshitz.hpp"
 #include "gradient.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+
 #include <limits>
 #include <stdexcept>
 

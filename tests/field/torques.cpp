@@ -4,6 +4,8 @@
 #include "../support/biquadratic_bonds.hpp"
 #include "gradient.hpp"
 
+#include <cayspin_paper/series4.hpp>
+
 #include <numbers>
 
 namespace cayspin::test {

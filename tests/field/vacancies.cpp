@@ -6,6 +6,8 @@
 
 #include <cayspin/field/field_of_moments.hpp>
 
+#include <cayspin_paper/analytic_sigma.hpp>
+
 #include <algorithm>
 #include <limits>
 #include <stdexcept>

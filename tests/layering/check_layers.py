@@ -13,7 +13,7 @@ LIBRARY = [
     ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
     ("loops over sites", ["detail/"]),
     ("spins", ["spin_field.hpp", "stencil.hpp"]),
-    ("contracts", ["concepts.hpp", "checkpoint.hpp", "optional_members.hpp", "step.hpp", "field/local_part.hpp"]),
+    ("contracts", ["concepts.hpp", "checkpoint.hpp", "optional_members.hpp", "step.hpp", "field/parts.hpp"]),
     ("field terms", ["field/"]),
     ("demagnetization", ["demagnetization/"]),
     ("generators", ["generator/"]),

@@ -8,6 +8,8 @@
 #include <cayspin/cayspin.hpp>
 #include <cayspin/observer/thermal_noise.hpp>
 
+#include <cayspin_paper/series4.hpp>
+
 #include <bit>
 #include <cmath>
 #include <string>

@@ -3,6 +3,8 @@
 #include "../support/evaluate.hpp"
 #include "steps.hpp"
 
+#include <cayspin_paper/series4.hpp>
+
 namespace cayspin::test {
 namespace {
 

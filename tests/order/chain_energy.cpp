@@ -3,6 +3,8 @@
 // not those of a single sphere.
 #include "chain.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+
 using namespace cayspin;
 using namespace cayspin::test;
 

@@ -3,6 +3,9 @@
 // a coupled chain, over step sizes fixed beforehand.
 #include "chain.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
+
 using namespace cayspin;
 using namespace cayspin::test;
 

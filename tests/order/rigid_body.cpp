@@ -4,6 +4,9 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
+
 #include <array>
 
 using namespace cayspin;
@@ -87,7 +90,7 @@ std::vector<int> ladder(int order, bool orthogonal) {
 
 template <class Stepper, class Generator>
 void expect(char const* what, Stepper stepper, Generator const& generator, Orders const& expected) {
-  bool const orthogonal = requires { generator.bare(); };
+  bool const orthogonal = requires { generator.is_orthogonal(); };
   std::vector<double> dts;
   std::vector<Errors> found;
   for (int const steps : ladder(expected.trajectory, orthogonal)) {

@@ -5,6 +5,7 @@
 #include "../support/figures.hpp"
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/rkmk4_as_printed.hpp>
 
 #include <array>

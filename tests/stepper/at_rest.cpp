@@ -4,6 +4,8 @@
 #include "../support/backends.hpp"
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
 #include <gtest/gtest.h>
 
 using namespace cayspin;

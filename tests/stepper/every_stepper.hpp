@@ -6,6 +6,9 @@
 #include <cayspin/stepper/gauss_legendre.hpp>
 #include <cayspin/stepper/stiff_gauss.hpp>
 
+#include <cayspin_paper/analytic_sigma.hpp>
+#include <cayspin_paper/series4.hpp>
+
 #include <string>
 
 namespace cayspin::test {

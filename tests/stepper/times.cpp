@@ -3,6 +3,7 @@
 // coordinates of a step are a sum that can be written down.
 #include "../support/landau_lifshitz.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
 #include <gtest/gtest.h>
 
 using namespace cayspin;

@@ -28,10 +28,6 @@ class Named : public Forwarding<Named<Inner>, Inner> {
   ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return inner_.energy_density(stencil);
   }
-  template <class Stencil>
-  ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
-    return detail::energy_magnitude(inner_, stencil);
-  }
   template <class Stencil, class Value>
   void energy_densities(Stencil const& stencil, Value* energies) const {
     detail::energy_densities(inner_, stencil, energies);

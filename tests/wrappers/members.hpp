@@ -6,6 +6,8 @@
 
 #include <cayspin/cayspin.hpp>
 
+#include <cayspin_paper/field_rate.hpp>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -89,7 +91,7 @@ template <class Prepared, class Field>
     all.added.push_back(in_double(detail::add_field(prepared, stencil, h)));
     all.turning.push_back(in_double(detail::turning_field(prepared, stencil)));
     all.added_turning.push_back(in_double(detail::add_turning_field(prepared, stencil, h)));
-    if constexpr (detail::comes_in_parts<Prepared, ScalarStencil<Real>>) {
+    if constexpr (detail::comes_in_parts<Prepared, ScalarStencil<Real>>()) {
       all.neighbor.push_back(in_double(detail::neighbor_field(prepared, stencil)));
       using Site = std::remove_cvref_t<decltype(stencil.site())>;
       auto const m = stencil.center();
@@ -139,9 +141,9 @@ Answers answers(Term const& term, Setting<Real> const& on) {
   using Prepared = decltype(detail::prepare_term(term, Host(), spins, 0.0));
   using OfRate = decltype(detail::prepare_rate(term, Host(), spins, 0.0, 0.1));
   using Stencil = ScalarStencil<Real>;
-  return {.linear = detail::has_linear_part<Prepared, Stencil>,
-          .derivative = detail::has_derivative<OfRate, Stencil>,
-          .affine = detail::has_affine_field(term),
+  return {.linear = detail::has_linear_part<Prepared, Stencil>(),
+          .derivative = detail::has_derivative<OfRate, Stencil>(),
+          .affine = detail::has_affine_field(term, Host(), spins),
           .conservative = detail::is_conservative<Term>,
           .depends_on_time = detail::depends_on_time<Term>,
           .stationary = detail::is_stationary(term, Host(), spins),
@@ -227,7 +229,7 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   is.expect_turns(here.added_turning, with_added, m, "add_turning_field");
 
   // In two parts, of which the neighbour field is that of no spin itself.
-  if constexpr (detail::comes_in_parts<Prepared, Stencil>) {
+  if constexpr (detail::comes_in_parts<Prepared, Stencil>()) {
     is.expect_turns(here.neighbor - (-1.0 * here.local), field, m,
                     "neighbor_field and local_field");
     std::int64_t const sites = on.lattice.sites();
@@ -276,12 +278,12 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
           << is.what() << ": energy_density, site " << site;
     }
 
-  if constexpr (detail::has_linear_part<Prepared, Stencil>) {
-    if (detail::has_affine_field(term)) {
+  if constexpr (detail::has_linear_part<Prepared, Stencil>()) {
+    if (detail::has_affine_field(term, exec, spins)) {
       auto const of_rates = prepare(rates, on.t);
       Vectors linear;
       for_each_stencil(rates, [&](auto const& s) {
-        linear.push_back(in_double(detail::linear_field(of_rates, s)));
+        linear.push_back(in_double(detail::LinearField()(of_rates, s)));
       });
       auto const both = field_of(term, on.field(combined(m, 1, v)), on.t);
       is.expect_same(linear, both - field, "linear_field", 4);
@@ -289,8 +291,9 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
   }
   double const dt = 0.25;
   using OfRate = decltype(detail::prepare_rate(term, exec, rates, on.t, dt));
-  if constexpr (detail::has_derivative<OfRate, Stencil>) {
-    if (!detail::has_affine_field(term)) {
+  if constexpr (detail::has_derivative<OfRate, Stencil>()) {
+    if (detail::has_linear_part<OfRate, Stencil>() &&
+        !detail::has_affine_field(term, exec, spins)) {
       EXPECT_THROW(detail::prepare_rate(term, exec, rates, on.t, dt), std::invalid_argument)
           << is.what();
       return;
@@ -300,8 +303,8 @@ void expect_members(std::string const& name, Term const& term, Setting<Real> con
     for_each_stencil(rates, [&](auto const& s) {
       auto const site = static_cast<std::int64_t>(found.size());
       auto const spin = at(m, site);
-      found.push_back(in_double(
-          detail::field_rate(of_rates, Vec3<Real>{Real(spin.x), Real(spin.y), Real(spin.z)}, s)));
+      detail::FieldRate<Real> const rate{{Real(spin.x), Real(spin.y), Real(spin.z)}};
+      found.push_back(in_double(rate(of_rates, s)));
     });
     auto const expected = derivative(
         [&](double h) { return field_of(term, on.field(combined(m, h, v)), on.t + h); }, 0.25);

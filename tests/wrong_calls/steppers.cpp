@@ -2,7 +2,9 @@
 // Steppers refuse fields and generators of others, in every call, and their own memory as spins.
 #include "wrong_calls.hpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
 #include <cayspin_paper/rkmk4_as_printed.hpp>
+#include <cayspin_paper/series4.hpp>
 
 #include <memory>
 

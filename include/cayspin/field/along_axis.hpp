@@ -34,8 +34,6 @@ class AlongAxis {
     return multiply_add(Value(c * dot(m, e)), e, h);
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return constant_ != 0; }
-
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;

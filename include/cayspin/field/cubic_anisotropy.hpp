@@ -51,20 +51,6 @@ class CubicAnisotropy {
     return multiply_add(as_value<Value>(2 * constant_),
                         sum<Value>({m.x * m.x * m.x, m.y * m.y * m.y, m.z * m.z * m.z}), h);
   }
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& spin,
-                                                     Stencil const& rates) const {
-    Vec3<Value> const m = parts(spin), rate = parts(rates.center());
-    Vec3<Value> const half{m.x * rate.x, m.y * rate.y, m.z * rate.z};  // of the squares' rates
-    Value const a = m.x * m.x, b = m.y * m.y, c = m.z * m.z;
-    Vec3<Value> const changes{rate.x * (b + c) + Value(2) * m.x * (half.y + half.z),
-                              rate.y * (c + a) + Value(2) * m.y * (half.z + half.x),
-                              rate.z * (a + b) + Value(2) * m.z * (half.x + half.y)};
-    return as_value<Value>(-2 * constant_) * sum(changes);
-  }
-
-  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return constant_ != 0; }
-
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
@@ -73,11 +59,7 @@ class CubicAnisotropy {
     return as_value<Value>(constant_) * detail::multiply_add(a, b, Value(c * (a + b)));
   }
 
- private:
-  static bool is_coordinate(Vec3<double> const& axis) {
-    return int{axis.x == 0} + int{axis.y == 0} + int{axis.z == 0} == 2;
-  }
-
+  KOKKOS_FORCEINLINE_FUNCTION double constant() const { return constant_; }
   /// a, b and c. Where all axes are coordinates, x, y and z: E is the same in any order.
   template <class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> parts(Vec3<Value> const& v) const {
@@ -94,6 +76,11 @@ class CubicAnisotropy {
     return multiply_add(
         v.x, as_value<Value>(axes_[0]),
         multiply_add(v.y, as_value<Value>(axes_[1]), v.z * as_value<Value>(axes_[2])));
+  }
+
+ private:
+  static bool is_coordinate(Vec3<double> const& axis) {
+    return int{axis.x == 0} + int{axis.y == 0} + int{axis.z == 0} == 2;
   }
 
   double constant_;

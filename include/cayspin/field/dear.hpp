@@ -111,7 +111,7 @@ class Dear {
   detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {
     static_assert(std::is_same_v<Others, Spins>,
                   "Dear was made for spins of another precision or memory space.");
-    if (state_->count > 0)
+    if (is_interpolated())
       interpolate(exec, t);
     else
       evaluate(exec, spins, t, state_->field);
@@ -121,15 +121,9 @@ class Dear {
   bool needs_time_alone(Exec const&, Others const&) const {
     return false;  // it is stored for the spins
   }
-  /// Throws std::logic_error between evaluations.
-  template <class Exec>
-  detail::StoredField<Real> prepare_rate(Exec const& exec, Spins const& rates, double t,
-                                         double) const {
-    static_assert(!depends_on_time, "A dear field that depends on t has no rate.");
-    if (state_->count > 0)
-      throw std::logic_error("cayspin::Dear: an interpolated field has no rate");
-    return prepare(exec, rates, t);
-  }
+  bool is_affine() const { return true; }  // by the term's degree
+  /// Between evaluations.
+  bool is_interpolated() const { return state_->count > 0; }
 
   friend auto parts_of(Dear const*) {
     // A solver of one's own leaves out the spins of vacant sites.

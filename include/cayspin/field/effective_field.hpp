@@ -4,7 +4,7 @@
 #include <cayspin/detail/attributes.hpp>
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/forwarding.hpp>
-#include <cayspin/field/local_part.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
@@ -43,6 +43,11 @@ class EffectiveField<> : public Forwarding<EffectiveField<>> {
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const&) const {
     return zero<ValueOf<Stencil>>();
   }
+  template <class Take, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const&, Stencil const&) const {
+    return zero<ValueOf<Stencil>>();
+  }
+  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const&) const {
     return ValueOf<Stencil>(0);
@@ -81,79 +86,26 @@ class EffectiveField<First, Rest...>
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
-    detail::check_field<First, Stencil>();
-    detail::check_energy_density<First, Stencil>();
-    if constexpr (sizeof...(Rest) == 0)
-      return first_.field(stencil);
-    else
-      return detail::add_field(first_, stencil, rest_.field(stencil));
+    return gather(detail::WholeField(), stencil);
   }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Stencil const& stencil) const {
-    detail::check_field<First, Stencil>();
-    detail::check_energy_density<First, Stencil>();
-    if constexpr (sizeof...(Rest) == 0)
-      return detail::turning_field(first_, stencil);
+  template <class Take, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
+                                                       Stencil const& stencil) const {
+    if constexpr (Take::template skips<First>)
+      return rest_.gather(take, stencil);
+    else if constexpr ((Take::template skips<Rest> && ...))
+      return take(first_, stencil);
     else
-      return detail::add_turning_field(first_, stencil, rest_.turning_field(stencil));
+      return take.add(first_, stencil, rest_.gather(take, stencil));
   }
-
-  /// The part of H that is not local.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
-    if constexpr (detail::is_local<First>)
-      return detail::neighbor_field(rest_, stencil);
-    else if constexpr (EffectiveField<Rest...>::is_local)
-      return detail::neighbor_field(first_, stencil);
-    else
-      return detail::neighbor_field(first_, stencil) + detail::neighbor_field(rest_, stencil);
-  }
-
-  /// The rest of H.
-  template <class Spin>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
-    if constexpr (sizeof...(Rest) == 0)
-      return detail::local_field(first_, spin);
-    else
-      return detail::local_field(first_, spin) + rest_.local_field(spin);
-  }
-
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
-    if constexpr (sizeof...(Rest) == 0)
-      return detail::local_field_varies(first_);
-    else
-      return detail::local_field_varies(first_) || rest_.local_field_varies();
-  }
-
-  /// The linear part of H, applied to the stencil's array; every term has to be affine.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
-    requires detail::has_linear_part<First, Stencil> &&
-             detail::has_linear_part<EffectiveField<Rest...>, Stencil>
-  {
-    return detail::linear_field(first_, stencil) + detail::linear_field(rest_, stencil);
-  }
-
-  /// The derivative of H at a spin m, along the rates of the stencil's array.
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const
-    requires detail::has_derivative<First, Stencil> &&
-             detail::has_derivative<EffectiveField<Rest...>, Stencil>
-  {
-    return detail::field_rate(first_, m, rates) + detail::field_rate(rest_, m, rates);
+    return detail::local_field_varies(first_) || rest_.local_field_varies();
   }
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     detail::check_energy_density<First, Stencil>();
     return first_.energy_density(stencil) + rest_.energy_density(stencil);
-  }
-
-  /// Sum of |energy density| over the terms: what round-off in the energy is proportional to.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
-    return Kokkos::abs(first_.energy_density(stencil)) + detail::energy_magnitude(rest_, stencil);
   }
 
   /// The energy density of each term, in their order.
@@ -186,11 +138,5 @@ class EffectiveField<First, Rest...>
 
 template <class... Terms>
 EffectiveField(Terms...) -> EffectiveField<Terms...>;
-
-namespace detail {
-template <class... Terms, class Stencil>
-inline constexpr bool comes_in_parts<EffectiveField<Terms...>, Stencil> =
-    (comes_in_parts<Terms, Stencil> && ...);
-}  // namespace detail
 
 }  // namespace cayspin::inline v0_1

@@ -77,8 +77,6 @@ class UniformExchange {
     return h;
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
-
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;

@@ -5,7 +5,7 @@
 #include <cayspin/detail/table.hpp>
 #include <cayspin/field/effective_field.hpp>
 #include <cayspin/field/forwarding.hpp>
-#include <cayspin/field/local_part.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/stencil.hpp>
@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,41 +55,24 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
-    return factors_.at(stencil.site()) * field_.field(stencil);
+    return gather(WholeField(), stencil);
   }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
-    return factors_.at(stencil.site()) * detail::neighbor_field(field_, stencil);
-  }
-  template <class Spin>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
-    return factors_.at(spin.site()) * detail::local_field(field_, spin);
+  template <class Take, class Stencil>
+    requires(!std::is_same_v<Take, TurningField>)
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
+                                                       Stencil const& stencil) const {
+    return factors_.at(stencil.site()) * take(field_, stencil);
   }
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
     return detail::local_field_varies(field_);
   }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
-    requires has_linear_part<Field, Stencil>
-  {
-    return factors_.at(stencil.site()) * detail::linear_field(field_, stencil);
-  }
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const
-    requires has_derivative<Field, Stencil>
-  {
-    return factors_.at(rates.site()) * detail::field_rate(field_, m, rates);
-  }
+
+  friend PartsOf<Field> parts_of(FieldTimesNumbers const*) { return {}; }
 
  private:
   Field field_;
   NumbersOfCell factors_;
 };
-
-template <class Field, class Stencil>
-inline constexpr bool comes_in_parts<FieldTimesNumbers<Field>, Stencil> =
-    comes_in_parts<Field, Stencil>;
 
 /// What ZeemanOfMoments is in kernels.
 struct AppliedToMoments {

@@ -3,11 +3,12 @@
 
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/forwarding.hpp>
-#include <cayspin/field/local_part.hpp>
 #include <cayspin/field/pair_couplings.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/stencil.hpp>
 
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace cayspin::inline v0_1 {
@@ -28,7 +29,7 @@ constexpr bool any_holds(PartsOf<Parts...>) {
 }
 template <template <class> class Wanted, class Term>
 constexpr bool holds() {
-  return is_a<Wanted, Term> || any_holds<Wanted>(decltype(parts_of(std::declval<Term const*>()))());
+  return is_a<Wanted, Term> || any_holds<Wanted>(PartsOfTerm<Term>());
 }
 
 /// A stencil in which a vacant neighbour is a missing one: the spin itself stands for it.
@@ -89,51 +90,29 @@ class FieldAmongVacancies {
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
-    return unless_vacant(stencil, field_.field(Inner<Stencil>(stencil, occupation_)));
+    return gather(WholeField(), stencil);
   }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
-    return unless_vacant(stencil,
-                         detail::neighbor_field(field_, Inner<Stencil>(stencil, occupation_)));
-  }
-  template <class Spin>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Spin const& spin) const {
-    return unless_vacant(spin, detail::local_field(field_, spin));
+  template <class Take, class Stencil>
+    requires(!std::is_same_v<Take, TurningField>)
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
+                                                       Stencil const& stencil) const {
+    return unless_vacant(stencil, take(field_, Inner<Stencil>(stencil, occupation_)));
   }
   KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
     return detail::local_field_varies(field_);
   }
 
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const
-    requires has_linear_part<Field, Inner<Stencil>>
-  {
-    return unless_vacant(stencil,
-                         detail::linear_field(field_, Inner<Stencil>(stencil, occupation_)));
-  }
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> field_rate(Vec3<Value> const& m,
-                                                     Stencil const& rates) const
-    requires has_derivative<Field, Inner<Stencil>>
-  {
-    return unless_vacant(rates, detail::field_rate(field_, m, Inner<Stencil>(rates, occupation_)));
-  }
-
-  template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return unless_vacant(stencil, field_.energy_density(Inner<Stencil>(stencil, occupation_)));
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Stencil const& stencil) const {
-    return unless_vacant(stencil,
-                         detail::energy_magnitude(field_, Inner<Stencil>(stencil, occupation_)));
   }
   template <class Stencil, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Stencil const& stencil, Value* energies) const {
     detail::energy_densities(field_, Inner<Stencil>(stencil, occupation_), energies);
     for (int i = 0; i < energy_terms; ++i) energies[i] = unless_vacant(stencil, energies[i]);
   }
+
+  friend PartsOf<Field> parts_of(FieldAmongVacancies const*) { return {}; }
 
  private:
   template <class Stencil, class Value>
@@ -150,10 +129,6 @@ class FieldAmongVacancies {
   Field field_;
   SiteArray<Real, 1> occupation_;
 };
-
-template <class Field, class Real, class Stencil>
-inline constexpr bool comes_in_parts<FieldAmongVacancies<Field, Real>, Stencil> =
-    comes_in_parts<Field, Stencil>;
 
 }  // namespace detail
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/row_fields.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/optional_members.hpp>
 
 #include <type_traits>
@@ -29,9 +30,9 @@ struct PrepareForRows {
 /// before a kernel are forwarded to its parts from here. Derived has two members:
 ///   auto with_parts(make) const    the same, for kernels, around make(part) of each part
 ///   bool all_parts(test) const     test(part) holds for every part
-/// Members that Derived has itself come first. What with_parts returns need not have the members
-/// for RedBlack (neighbor_field) and for rows (begin_row): without them the field is not split, and
-/// evaluated spin by spin.
+/// Members that Derived has itself come first. What with_parts returns need not have gather
+/// (parts.hpp) and begin_row (detail/row_fields.hpp): without them RedBlack does not split the
+/// field, and it is evaluated spin by spin.
 template <class Derived, class... Parts>
 class Forwarding {
  public:
@@ -61,11 +62,6 @@ class Forwarding {
     });
   }
   template <class Exec, class Spins>
-  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double dt) const {
-    return derived().with_parts(
-        [&](auto const& part) { return detail::prepare_rate(part, exec, rates, t, dt); });
-  }
-  template <class Exec, class Spins>
   bool is_stationary(Exec const& exec, Spins const& spins) const {
     return derived().all_parts(
         [&](auto const& part) { return detail::is_stationary(part, exec, spins); });
@@ -75,6 +71,8 @@ class Forwarding {
     return derived().all_parts(
         [&](auto const& part) { return detail::needs_time_alone(part, exec, spins); });
   }
+
+  friend detail::PartsOf<Parts...> parts_of(Forwarding const*) { return {}; }
 
  private:
   /// Does what with_parts makes of the parts for rows call begin_row of each?
@@ -90,13 +88,6 @@ class Forwarding {
 };
 
 namespace detail {
-
-/// The parts of a term or generator that forwards to them; none of others.
-template <class... Parts>
-struct PartsOf {};
-template <class Derived, class... Parts>
-PartsOf<Parts...> parts_of(Forwarding<Derived, Parts...> const*);
-PartsOf<> parts_of(void const*);
 
 /// Among the parts of what evaluates Term for all spins, whatever stencil it is given.
 template <class Term>

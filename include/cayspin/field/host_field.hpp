@@ -22,12 +22,6 @@ struct StoredField {
     return stencil.site().load(array);
   }
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
-    using Value = typename Stencil::value_type;
-    if (energy_factor == -0.5) return field(stencil);
-    return zero<Value>();
-  }
-  template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     using Value = typename Stencil::value_type;
     return as_value<Value>(energy_factor) * dot(stencil.center(), stencil.site().load(array));
@@ -80,6 +74,8 @@ class HostField {
                   "HostField(spins, solver) takes both from the spins.");
     require_lattice("cayspin::HostField", field_.lattice(), spins.lattice());
   }
+
+  bool is_affine() const { return true; }  // by the solver's degree
 
   template <class Exec, class Others>
   detail::StoredField<Real> prepare(Exec const& exec, Others const& spins, double t) const {

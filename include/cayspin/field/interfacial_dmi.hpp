@@ -39,8 +39,6 @@ class UniformInterfacialDmi {
     return h;
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
-
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Stencil const& stencil) const {
     return field(stencil);

@@ -50,16 +50,6 @@ class PairCouplings {
       return prepare(exec, spins, t);
   }
 
-  /// Throws std::invalid_argument for biquadratic couplings: their derivative depends on the spins,
-  /// not only on the rates.
-  template <class Exec, class Spins>
-  auto prepare_rate(Exec const& exec, Spins const& rates, double t, double) const {
-    if (has_biquadratic())
-      throw std::invalid_argument(
-          "cayspin::PairCouplings: the derivative of biquadratic couplings is not implemented");
-    return prepare(exec, rates, t);
-  }
-
   /// The largest |H| of unit spins at each site of a cell, or an upper bound of it.
   std::vector<double> const& field_bounds() const { return field_bounds_; }
 

@@ -40,11 +40,6 @@ class PairField {
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
     return parts(stencil).field();
   }
-  /// Of couplings without a biquadratic part, which is left out.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
-    return parts(stencil).linear;
-  }
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {
     return parts(stencil).energy(stencil.center());

@@ -47,8 +47,6 @@ struct ExchangeOfSites {
     return h;
   }
 
-  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const { return false; }
-
   /// Each site carries half of each of its bonds.
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_density(Stencil const& stencil) const {

@@ -26,16 +26,14 @@ class Slonczewski {
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {
-    return linear_field(stencil) + as_value<ValueOf<Stencil>>(field_like_);
+    return damping_like_field(stencil) + as_value<ValueOf<Stencil>>(field_like_);
   }
+  /// The part of H that is linear in m: a m x p.
   template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const& stencil) const {
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> damping_like_field(Stencil const& stencil) const {
     return cross(stencil.center(), as_value<ValueOf<Stencil>>(damping_like_));
   }
-
-  KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies() const {
-    return damping_like_.x != 0 || damping_like_.y != 0 || damping_like_.z != 0;
-  }
+  bool is_affine() const { return true; }
 
   /// It has no energy.
   template <class Stencil>

@@ -32,34 +32,8 @@ struct Zeeman {
   }
 };
 
-namespace detail {
-
-/// What an applied field adds to dH/dt.
-struct AppliedRate {
-  Vec3<double> rate;
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> linear_field(Stencil const&) const {
-    return as_value<ValueOf<Stencil>>(rate);
-  }
-};
-
-/// d/dt of a callable by differences of order 4 over dt/4: relative error about (w dt)^4 / 1e5 for
-/// changes of angular frequency w.
-template <class Applied>
-Vec3<double> time_derivative(Applied const& applied, double t, double dt) {
-  if (dt == 0) return {0, 0, 0};  // a step of no time moves no spin
-  double const d = dt / 8;
-  Vec3<double> const near = applied(t + d) - applied(t - d);
-  Vec3<double> const far = applied(t + 2 * d) - applied(t - 2 * d);
-  return (1 / (12 * d)) * (8.0 * near - far);
-}
-
-}  // namespace detail
-
 /// A uniform applied field that changes with time: `applied(t)` is called on the host, once per
-/// stage, at the stage's own time. isotropy::Analytic also takes its time derivative, by
-/// differences within the step, so `applied` has to be defined a quarter of a step either way.
+/// stage, at the stage's own time.
 template <class Applied>
 class TimeDependentZeeman {
   static_assert(std::is_invocable_r_v<Vec3<double>, Applied const&, double>,
@@ -75,10 +49,7 @@ class TimeDependentZeeman {
   Zeeman prepare(Exec const&, Spins const&, double t) const {
     return Zeeman{applied_(t)};
   }
-  template <class Exec, class Rates>
-  detail::AppliedRate prepare_rate(Exec const&, Rates const&, double t, double dt) const {
-    return detail::AppliedRate{detail::time_derivative(applied_, t, dt)};
-  }
+  Applied const& applied() const { return applied_; }
 
  private:
   Applied applied_;

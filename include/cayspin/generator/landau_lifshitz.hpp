@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cayspin/detail/row_fields.hpp>
-#include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/coefficient.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/optional_members.hpp>
@@ -25,8 +24,6 @@ template <class Field, class Damping = double>
 class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
                        public detail::ForwardingEnergy<LandauLifshitz<Field, Damping>, Field> {
  public:
-  static constexpr bool is_local = false;  // A is not linear in the spin
-
   /// Throws std::invalid_argument when damping is negative or not finite.
   LandauLifshitz(Field field, std::type_identity_t<Damping> damping, bool precession = true)
       : field_(std::move(field)), damping_(std::move(damping)), precession_(precession) {
@@ -91,36 +88,6 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> in_field(
       Stencil const& stencil, Vec3<typename Stencil::value_type> const& h) const {
     return generator(stencil.site(), stencil.center(), h);
-  }
-
-  /// A' at a spin m along the rates X, less damping X x H, which is normal to X and to what sigma
-  /// is made of.
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const& m, Stencil const& rates) const {
-    return generator(rates.site(), m, detail::field_rate(field_, m, rates));
-  }
-
-  /// What Series4 differentiates: H, of which the generator is made, and its linear part.
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
-      Stencil const& stencil) const {
-    return field_.field(stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
-      Stencil const& stencil) const {
-    return detail::linear_field(field_, stencil);
-  }
-  /// The K-th time derivative of A from those of m and H.
-  template <int K, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
-                                                     Vec3<Value> const* h) const {
-    static_assert(uniform, "Series4 needs a damping that is one number for all sites.");
-    Vec3<Value> a = as_value<Value>(precession_ ? 1 : 0) * h[K];
-    detail::leibniz<K>([&](auto weight, auto j, auto rest) {
-      a = multiply_add(as_value<Value>(damping_ * weight), cross(m[j], h[rest]), a);
-    });
-    return a;
   }
 
   /// True where the motion conserves the energy, with A = -dE/dm up to a multiple of m.

@@ -2,12 +2,10 @@
 #pragma once
 
 #include <cayspin/detail/row_fields.hpp>
-#include <cayspin/detail/unrolled.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/stencil.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -20,28 +18,6 @@ template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_part(Vec3<Value> const& a,
                                                         Vec3<Value> const& m) {
   return multiply_add(Value(Value(0) - dot(m, a)), m, a);
-}
-
-/// d^K/dt^K of A - (m.A) m.
-template <int K, class Generator, class Value>
-KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> orthogonal_derivative(Generator const& generator,
-                                                              Vec3<Value> const* m,
-                                                              Vec3<Value> const* source) {
-  constexpr std::size_t count = K + 1;
-  Vec3<Value> a[count];
-  Value along[count];
-  unrolled<K + 1>([&](auto order) {
-    a[order] = generator.template derivative<order()>(m, source);
-    along[order] = Value(0);
-    leibniz<order()>([&](auto weight, auto j, auto rest) {
-      along[order] = multiply_add(Value(weight()), dot(m[j], a[rest]), along[order]);
-    });
-  });
-  Vec3<Value> result = a[K];
-  leibniz<K>([&](auto weight, auto j, auto rest) {
-    result = multiply_add(Value(Value(-weight()) * along[j]), m[rest], result);
-  });
-  return result;
 }
 
 }  // namespace detail
@@ -82,26 +58,6 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> turning_part(
       Stencil const& stencil) const {
     return detail::turning_part(generator_, stencil);
-  }
-
-  /// The generator whose part along the spin was removed.
-  Generator const& bare() const { return generator_; }
-
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
-      Stencil const& stencil) const {
-    return generator_.series_source(stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
-      Stencil const& stencil) const {
-    return generator_.linear_series_source(stencil);
-  }
-  /// The K-th time derivative of A_o from those of m and of the series' source.
-  template <int K, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const* m,
-                                                     Vec3<Value> const* source) const {
-    return detail::orthogonal_derivative<K>(generator_, m, source);
   }
 
   bool is_conservative() const

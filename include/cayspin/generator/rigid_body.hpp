@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 namespace cayspin::inline v0_1 {
 
@@ -30,8 +31,6 @@ struct SymmetricMatrix {
 template <class Bodies>
 class BodyGenerator {
  public:
-  static constexpr bool is_local = true;  // A at a site depends on the spin there alone
-
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(
       Stencil const& stencil) const {
@@ -44,32 +43,6 @@ class BodyGenerator {
     using Value = typename Stencil::value_type;
     return Value(0.5) * dot(stencil.center(), inverse_inertia(stencil) * stencil.center());
   }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION typename Stencil::value_type energy_magnitude(
-      Stencil const& stencil) const {
-    return Kokkos::abs(energy_density(stencil));
-  }
-
-  /// A' along the rates: A is linear.
-  template <class Value, class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> rate(Vec3<Value> const&, Stencil const& rates) const {
-    return (*this)(rates);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> series_source(
-      Stencil const& stencil) const {
-    return (*this)(stencil);
-  }
-  template <class Stencil>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> linear_series_source(
-      Stencil const& stencil) const {
-    return (*this)(stencil);
-  }
-  template <int K, class Value>
-  KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> derivative(Vec3<Value> const*,
-                                                     Vec3<Value> const* a) const {
-    return a[K];
-  }
   bool is_conservative() const { return true; }
 
  private:
@@ -79,6 +52,9 @@ class BodyGenerator {
         stencil.site());
   }
 };
+
+template <class Generator>
+inline constexpr bool is_body = std::is_base_of_v<BodyGenerator<Generator>, Generator>;
 
 }  // namespace detail
 

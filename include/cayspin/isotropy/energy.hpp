@@ -72,29 +72,6 @@ struct Rkmk4Correction {
   }
 };
 
-struct Series4Correction {
-  static constexpr int power = 4;
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
-                                                 Vec3<Value> const& m, bool orthogonal) {
-    BodyInvariants<Value> const body(matrix, m);
-    if (orthogonal) return Value(-1. / 24) * body.mixed * (body.trace_c - body.cubic_c);
-    Value const form = body.det + Value(3) * body.trace * body.b * body.b -
-                       Value(2) * body.second * body.b - Value(3) * body.b * body.b2;
-    return guarded_quotient(Value(Value(1. / 24) * body.mixed * form), body.v2);
-  }
-};
-
-struct Series4PaperCorrection {
-  static constexpr int power = 4;
-  template <class Value>
-  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
-                                                 Vec3<Value> const& m, bool) {
-    BodyInvariants<Value> const body(matrix, m);
-    return Value(-0.125) * body.mixed * (body.trace_c - body.cubic_c);
-  }
-};
-
 /// F + dt^p s m.
 template <class Correction, class Generator, class Site, class Value>
 KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> corrected(Generator const& generator, Site const& site,

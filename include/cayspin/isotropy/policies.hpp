@@ -29,17 +29,6 @@ struct Constant {
   }
 };
 
-/// sigma from A' along the flow: xi = A_o + sigma m with sigma = (m.A) - <A', X> / |X|^2,
-/// X = A x m. The derivative of the field is its linear part at X. For LieEuler, and with the
-/// opposite sign for ImplicitLieEuler. Lewis and Nigam 2002, Sec. 4.1 and 4.2, with the sign and
-/// the norm corrected. Zero if X is zero.
-struct Analytic {};
-
-/// The same number as the geodesic curvature of the orbit times its speed,
-/// sigma = k_g |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form.
-/// Lewis and Nigam 2002, Sec. 3.2.
-struct Connection {};
-
 /// sigma from a forward difference of A_o = A - (m.A) m: xi = A_o + sigma m with
 /// sigma = -<w', w x m> / |w|^2, w = A_o. A second evaluation at cay(dt w) m, t + dt gives w'. It
 /// makes the energy error of LieEuler one order smaller. Lewis and Nigam 2002, Sec. 4.1, with

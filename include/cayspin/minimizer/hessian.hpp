@@ -17,21 +17,6 @@
 // among them, stay as they are in every spin field at which the field is evaluated.
 namespace cayspin::inline v0_1::detail {
 
-/// Is H affine in the spins, of a prepared field?
-template <class Field, class Stencil>
-inline constexpr bool is_affine = [] {
-  if constexpr (requires { Field::degree; })
-    return Field::degree <= 2;
-  else
-    return has_linear_field<Field, Stencil>;
-}();
-template <class... Terms, class Stencil>
-inline constexpr bool is_affine<EffectiveField<Terms...>, Stencil> =
-    (is_affine<Terms, Stencil> && ...);
-template <class Field, class Real, class Stencil>
-inline constexpr bool is_affine<FieldAmongVacancies<Field, Real>, Stencil> =
-    is_affine<Field, Stencil>;
-
 /// v <- the part of it along which spins move
 template <class Real>
 struct KeepTangent {
@@ -118,10 +103,8 @@ class Hessian {
         time_(time),
         spins_(spins),
         is_mobile_(is_mobile),
-        arrays_(arrays) {
-    is_affine_ = is_affine<decltype(prepare_term(field, exec, spins, time)),
-                           Stencil<Site<Pack<double>>, Real>>;
-    is_affine_ = is_affine_ && has_affine_field(field);
+        arrays_(arrays),
+        is_affine_(has_affine_field(field, exec, spins)) {
     evaluate_field(exec, field, spins, time, arrays.at_rest);
     ++evaluations_;
   }

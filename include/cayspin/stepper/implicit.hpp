@@ -7,7 +7,6 @@
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/newton_krylov.hpp>
-#include <cayspin/stepper/rate.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
 
 #include <limits>
@@ -53,23 +52,15 @@ struct ImplicitStage {
   }
 };
 
-/// sigma of an implicit step: <A', X> / |X|^2, less m.A where A is made orthogonal.
-template <class Generator, class Real>
-struct ImplicitSigmaStage {
-  Generator generator;  // prepared on the rates
-  SiteArray<Real, 3> rates, spins;
-  OutputArray<Real, 1> sigma;  // holds m.A before
-  bool orthogonal;
+/// sigma at the begin of an implicit step, for isotropies that find it from the step's solution and
+/// add it then. Zero and Constant do not.
+template <class Spins, class Isotropy>
+struct ImplicitSigma {
+  static constexpr bool is_there = false;
+  static constexpr int evaluations = 0, ghosts = 1, work_fields = 0;
 
-  template <class Site>
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
-    using Value = typename Site::value_type;
-    Stencil<Site, Real> const x(site, rates);
-    Value const square = dot(x.center(), x.center());
-    Value numerator = dot(rate_of(generator, site.load(spins), x), x.center());
-    if (orthogonal) numerator = numerator - site.load(sigma) * square;
-    site.store(guarded_quotient(numerator, square), sigma);
-  }
+  ImplicitSigma(std::string const&, Lattice const&) {}
+  static std::size_t bytes() { return 0; }
 };
 
 /// m1 = R(dt xi(p)) m0 with p = m1, or with p half way between m0 and m1.
@@ -77,23 +68,20 @@ template <class Spins, class Isotropy, class Rotation, bool AtMiddle>
 class Implicit : public StepperBase<Spins> {
  public:
   using typename StepperBase<Spins>::Real;
-  static constexpr bool is_corrected = std::is_same_v<Isotropy, isotropy::Analytic>;
-  static constexpr int ghosts = is_corrected ? 2 : 1;  // iterations exchange their own
-  static constexpr int work_fields = is_corrected ? 4 : 2;
+  static constexpr int ghosts =
+      ImplicitSigma<Spins, Isotropy>::ghosts;  // iterations exchange theirs
+  static constexpr int work_fields = 2 + ImplicitSigma<Spins, Isotropy>::work_fields;
 
   Implicit(std::string const& name, Spins const& like, Isotropy isotropy, ImplicitOptions options)
       : StepperBase<Spins>(name, like.lattice(), ghosts),
         isotropy_(isotropy),
         options_(options),
         level_(name + "::level", like.lattice()),
-        next_(name + "::next", like.lattice()) {
-    if constexpr (is_corrected) rates_ = Rates<Spins>(name, like.lattice());
-  }
+        next_(name + "::next", like.lattice()),
+        sigma_(name, like.lattice()) {}
 
   /// Bytes of work memory, without the 16 fields that Newton's method allocates at its first use.
-  std::size_t work_bytes() const {
-    return level_.bytes() + next_.bytes() + (is_corrected ? rates_.bytes() : 0);
-  }
+  std::size_t work_bytes() const { return level_.bytes() + next_.bytes() + sigma_.bytes(); }
 
   /// Evaluations of the generator so far.
   std::int64_t evaluations_done() const { return evaluations_done_; }
@@ -117,7 +105,8 @@ class Implicit : public StepperBase<Spins> {
       throw NotConverged(this->label("::step: the equation of the step from t = ") + to_text(t) +
                          " is not solved: dt = " + to_text(dt) + " is too large");
     if constexpr (is_corrected) {
-      compute_sigma(exec, generator, spins, t, dt);
+      sigma_.find(exec, generator, spins, t, dt);
+      evaluations_done_ += sigma_.evaluations;
       corrected = true;
     }
     if constexpr (AtMiddle || is_corrected) {
@@ -135,6 +124,8 @@ class Implicit : public StepperBase<Spins> {
   }
 
  private:
+  static constexpr bool is_corrected = ImplicitSigma<Spins, Isotropy>::is_there;
+
   // Leaves the solution in next_.
   template <class Exec, class Map>
   bool solve(Exec const& exec, Map const& map, Spins const& spins) {
@@ -169,33 +160,18 @@ class Implicit : public StepperBase<Spins> {
                   from.array(),          {},       to.output(false),
                   static_cast<Real>(dt), to_middle};
     if constexpr (!is_corrected) kernel.isotropy = isotropy_;
-    if (corrected) kernel.sigma = rates_.along();
+    if constexpr (is_corrected)
+      if (corrected) kernel.sigma = sigma_.array();
     for_each_site<Real>(exec, iterate_label_, start.layout(), kernel, start.layout().own);
     update_ghosts(exec, this->lattice_, to);
     ++evaluations_done_;
   }
 
-  template <class Exec, class Generator>
-  void compute_sigma(Exec const& exec, Generator const& generator, Spins const& spins, double t,
-                     double dt) {
-    bool orthogonal = false;
-    if constexpr (requires { generator.is_orthogonal(); }) orthogonal = generator.is_orthogonal();
-    rates_.compute(exec, rates_label_, generator, spins, t);
-    auto prepared = bare(prepare_rate(generator, exec, rates_.field(), t, dt));
-    for_each_site<Real>(
-        exec, sigma_label_, spins.layout(),
-        ImplicitSigmaStage<decltype(prepared), Real>{
-            std::move(prepared), rates_.array(), spins.array(), rates_.along_output(), orthogonal},
-        spins.layout().own);
-    evaluations_done_ += 2;
-  }
-
-  std::string iterate_label_ = this->label("::iterate"), rates_label_ = this->label("::rates"),
-              sigma_label_ = this->label("::sigma");
+  std::string iterate_label_ = this->label("::iterate");
   Isotropy isotropy_;
   ImplicitOptions options_;
   Spins level_, next_;
-  Rates<Spins> rates_;
+  CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS ImplicitSigma<Spins, Isotropy> sigma_;
   NewtonKrylov<Spins> newton_;
   std::int64_t evaluations_done_ = 0;
 };
@@ -203,8 +179,7 @@ class Implicit : public StepperBase<Spins> {
 }  // namespace detail
 
 /// Implicit Euler, order 1: m1 = cay(dt xi(m1)) m0, xi = A + sigma m, solved as a fixed point and,
-/// where that fails, by Newton's method. isotropy::Analytic: sigma = +<A', X> / |X|^2 at m0, of the
-/// sign opposite to LieEuler's; energy error of order 2. Lewis and Nigam 2002, Sec. 4.2.
+/// where that fails, by Newton's method. Lewis and Nigam 2002, Sec. 4.2.
 template <class Spins, class Isotropy = isotropy::Zero, class Rotation = Cayley>
 class ImplicitLieEuler : public detail::Implicit<Spins, Isotropy, Rotation, false> {
  public:

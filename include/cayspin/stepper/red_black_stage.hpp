@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/for_each_site_of_colour.hpp>
 #include <cayspin/detail/varied_stencil.hpp>
-#include <cayspin/field/local_part.hpp>
+#include <cayspin/field/parts.hpp>
 #include <cayspin/generator/landau_lifshitz.hpp>
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/exact_flow.hpp>
@@ -130,7 +130,7 @@ struct RedBlackStage {
     using Value = typename Site::value_type;
     using Mask = typename ValueTraits<Value>::mask;
     using Vector = Vec3<Value>;
-    static constexpr bool in_parts = comes_in_parts<Field, Stencil<Site, Real>>;
+    static constexpr bool in_parts = comes_in_parts<Field, Stencil<Site, Real>>();
     struct Nothing {
       KOKKOS_FORCEINLINE_FUNCTION Nothing(Site const&, SiteArray<Real, 3> const&) {}
     };

@@ -3,6 +3,8 @@
 // precisions, for the warnings that templates give when they are used.
 #include "../../cuda/kernels.cpp"
 
+#include <cayspin_paper/analytic_sigma.hpp>
+
 #include <vector>
 
 namespace cayspin::test {

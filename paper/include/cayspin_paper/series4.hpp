@@ -4,13 +4,14 @@
 #include <cayspin/concepts.hpp>
 #include <cayspin/detail/for_each_site.hpp>
 #include <cayspin/detail/unrolled.hpp>
-#include <cayspin/generator/orthogonal.hpp>
 #include <cayspin/isotropy/energy.hpp>
 #include <cayspin/isotropy/policies.hpp>
 #include <cayspin/optional_members.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/stencil.hpp>
 #include <cayspin/stepper/stepper_base.hpp>
+
+#include <cayspin_paper/series_source.hpp>
 
 #include <array>
 #include <cstddef>
@@ -21,6 +22,29 @@
 namespace cayspin::inline v0_1 {
 
 namespace detail {
+
+struct Series4Correction {
+  static constexpr int power = 4;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
+                                                 Vec3<Value> const& m, bool orthogonal) {
+    BodyInvariants<Value> const body(matrix, m);
+    if (orthogonal) return Value(-1. / 24) * body.mixed * (body.trace_c - body.cubic_c);
+    Value const form = body.det + Value(3) * body.trace * body.b * body.b -
+                       Value(2) * body.second * body.b - Value(3) * body.b * body.b2;
+    return guarded_quotient(Value(Value(1. / 24) * body.mixed * form), body.v2);
+  }
+};
+
+struct Series4PaperCorrection {
+  static constexpr int power = 4;
+  template <class Value>
+  KOKKOS_FORCEINLINE_FUNCTION static Value sigma(SymmetricMatrix<Value> const& matrix,
+                                                 Vec3<Value> const& m, bool) {
+    BodyInvariants<Value> const body(matrix, m);
+    return Value(-0.125) * body.mixed * (body.trace_c - body.cubic_c);
+  }
+};
 
 /// The truncated series of F from a_k = d^k A / dt^k on the exact flow. Lewis and Nigam 2002,
 /// Sec. 5.3, any isotropy.
@@ -68,8 +92,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> next_derivative(Generator const& generat
                                                         Vec3<Value> const* m,
                                                         Vec3<Value> const* source) {
   Vec3<Value> a[std::size_t{K + 1}];
-  unrolled<K + 1>(
-      [&](auto order) { a[order] = generator.template derivative<order()>(m, source); });
+  unrolled<K + 1>([&](auto order) { a[order] = series_derivative<order()>(generator, m, source); });
   Vec3<Value> sum{Value(0), Value(0), Value(0)};
   leibniz<K>([&](auto weight, auto j, auto rest) {
     sum = multiply_add(Value(static_cast<scalar_t<Value>>(weight())), cross(a[j], m[rest]), sum);
@@ -87,7 +110,7 @@ KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> end_of_series(Generator const& generator
     if constexpr (std::is_same_v<Series, PaperSeries>)
       a[order] = orthogonal_derivative<order()>(generator, m, source);
     else
-      a[order] = generator.template derivative<order()>(m, source);
+      a[order] = series_derivative<order()>(generator, m, source);
   });
   Vec3<Value> f = Series::coordinates(a, m[0], dt);
   if constexpr (std::is_same_v<Isotropy, isotropy::Energy>)
@@ -109,7 +132,7 @@ struct LocalSeriesStage {
     Vec3<Value> m[4], source[4];
     m[0] = site.load(start);
     unrolled<4>([&](auto k) {
-      source[k] = generator.series_source(SpinAlone<Site>(site, m[k]));
+      source[k] = SeriesOf<Generator>::source(generator, SpinAlone<Site>(site, m[k]));
       if constexpr (k < 3) m[k + 1] = next_derivative<k()>(generator, m, source);
     });
     site.store(end_of_series<Series, Isotropy>(generator, site, m, source, Value(dt)), next);
@@ -136,7 +159,8 @@ struct SeriesStage {
       source[k] = site.load(sources[k]);
     });
     m[K] = stencil.center();
-    source[K] = K == 0 ? generator.series_source(stencil) : generator.linear_series_source(stencil);
+    using Of = SeriesOf<Generator>;
+    source[K] = K == 0 ? Of::source(generator, stencil) : Of::linear_source(generator, stencil);
     if constexpr (K < 3) {
       site.store(source[K], sources[K]);
       site.store(next_derivative<K>(generator, m, source), next);
@@ -186,7 +210,7 @@ class Series4 : public detail::StepperBase<Spins> {
     auto const region = this->begin_step(exec, spins);
     this->require_other_memory(spins, next_);
     using Prepared = decltype(detail::prepare_term(generator, exec, spins, t));
-    if constexpr (detail::is_local<Prepared>) {
+    if constexpr (detail::SeriesOf<Prepared>::is_local) {
       auto const prepared = detail::prepare_term(generator, exec, spins, t);
       using Kernel = detail::LocalSeriesStage<Series, Isotropy, Prepared, Real>;
       detail::for_each_site<Real>(
@@ -196,7 +220,7 @@ class Series4 : public detail::StepperBase<Spins> {
       static_assert(std::is_same_v<Isotropy, isotropy::Zero>,
                     "isotropy::Energy knows rigid bodies alone; for other generators there is "
                     "EnergyControl.");
-      if (!detail::has_affine_field(generator))
+      if (!detail::has_affine_field(generator, exec, spins))
         throw std::invalid_argument(this->label(
             "::step: the field is not affine in the spins, as with biquadratic couplings"));
       allocate(spins.lattice());

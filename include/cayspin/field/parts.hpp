@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <cayspin/detail/unrolled.hpp>
+#include <cayspin/optional_members.hpp>
+#include <cayspin/vec3.hpp>
+
+#include <concepts>
+#include <utility>
+
+// A field that is made of other terms, as kernels see it. It has
+//   gather(take, stencil)    the sum over its parts of take(part, stencil), as they count in it,
+// where `take` is one of the structs below and says what is wanted of each part. It may also have
+//   energy_terms, energy_densities(stencil, energies)    their number, and the E of each term
+//   energy_magnitude(stencil)    the sum of their absolute values, where it is not the sum of these
+//   local_field_varies()         does the local part of H change with the spin?
+// The local part of H at a site depends on the spin there and on t only; the rest is the neighbour
+// field. RedBlack moves each spin in the field of its neighbours.
+namespace cayspin::inline v0_1::detail {
+
+/// The parts of a term or generator that is made of others (Forwarding); none of others.
+template <class... Parts>
+struct PartsOf {};
+PartsOf<> parts_of(void const*);
+
+template <class Term>
+using PartsOfTerm = decltype(parts_of(std::declval<Term const*>()));
+
+template <class Take, class Term, class Stencil>
+concept gathers = requires(Take const& take, Term const& term, Stencil const& stencil) {
+  { term.gather(take, stencil) } -> std::convertible_to<VectorOf<Stencil>>;
+};
+
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Term const& term,
+                                                            Stencil const& stencil);
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Term const& term,
+                                                             Stencil const& stencil);
+template <class Term, class Spin>
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Term const& term, Spin const& spin);
+
+template <class Term>
+constexpr bool has_local_part();
+template <class... Parts>
+constexpr bool any_has_local_part(PartsOf<Parts...>) {
+  return (has_local_part<Parts>() || ...);
+}
+template <class Term>
+constexpr bool has_local_part() {
+  return is_local<Term> || any_has_local_part(PartsOfTerm<Term>());
+}
+
+// What is wanted of parts. `add` is the sum of `h` and that of one part.
+
+struct WholeField {
+  template <class Term>
+  static constexpr bool skips = false;
+
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> operator()(Term const& term,
+                                                           Stencil const& stencil) const {
+    check_field<Term, Stencil>();
+    check_energy_density<Term, Stencil>();
+    return term.field(stencil);
+  }
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add(Term const& term, Stencil const& stencil,
+                                                    VectorOf<Stencil> const& h) const {
+    check_energy_density<Term, Stencil>();
+    return add_field(term, stencil, h);
+  }
+};
+
+/// H up to a multiple of the spin.
+struct TurningField {
+  template <class Term>
+  static constexpr bool skips = false;
+
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> operator()(Term const& term,
+                                                           Stencil const& stencil) const {
+    check_field<Term, Stencil>();
+    check_energy_density<Term, Stencil>();
+    return turning_field(term, stencil);
+  }
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add(Term const& term, Stencil const& stencil,
+                                                    VectorOf<Stencil> const& h) const {
+    check_energy_density<Term, Stencil>();
+    return add_turning_field(term, stencil, h);
+  }
+};
+
+/// H of the other spins, up to a multiple of the spin.
+struct NeighborField {
+  template <class Term>
+  static constexpr bool skips = is_local<Term>;
+
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> operator()(Term const& term,
+                                                           Stencil const& stencil) const {
+    return neighbor_field(term, stencil);
+  }
+  template <class Term, class Stencil>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> add(Term const& term, Stencil const& stencil,
+                                                    VectorOf<Stencil> const& h) const {
+    return neighbor_field(term, stencil) + h;
+  }
+};
+
+/// The rest of H.
+struct LocalField {
+  template <class Term>
+  static constexpr bool skips = !has_local_part<Term>();
+
+  template <class Term, class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> operator()(Term const& term, Spin const& spin) const {
+    return local_field(term, spin);
+  }
+  template <class Term, class Spin>
+  KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> add(Term const& term, Spin const& spin,
+                                                 VectorOf<Spin> const& h) const {
+    return local_field(term, spin) + h;
+  }
+};
+
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> turning_field(Term const& term,
+                                                            Stencil const& stencil) {
+  if constexpr (gathers<TurningField, Term, Stencil>)
+    return term.gather(TurningField(), stencil);
+  else if constexpr (requires { term.add_turning_field(stencil, stencil.center()); })
+    return term.add_turning_field(stencil, zero<ValueOf<Stencil>>());
+  else
+    return term.field(stencil);
+}
+
+template <class Term, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> neighbor_field(Term const& term,
+                                                             Stencil const& stencil) {
+  if constexpr (is_local<Term>)
+    return zero<ValueOf<Stencil>>();
+  else if constexpr (gathers<NeighborField, Term, Stencil>)
+    return term.gather(NeighborField(), stencil);
+  else
+    return term.neighbor_field(stencil);
+}
+
+template <class Term, class Spin>
+KOKKOS_FORCEINLINE_FUNCTION VectorOf<Spin> local_field(Term const& term, Spin const& spin) {
+  if constexpr (gathers<LocalField, Term, Spin>)
+    return term.gather(LocalField(), spin);
+  else if constexpr (is_local<Term>)
+    return term.field(spin);
+  else
+    return zero<ValueOf<Spin>>();
+}
+
+/// Has a prepared term the neighbour field and the rest of H?
+template <class Term, class Stencil>
+constexpr bool comes_in_parts();
+template <class Stencil, class... Parts>
+constexpr bool all_come_in_parts(PartsOf<Parts...>) {
+  return (comes_in_parts<Parts, Stencil>() && ...);
+}
+template <class Term, class Stencil>
+constexpr bool comes_in_parts() {
+  if constexpr (gathers<NeighborField, Term, Stencil>)
+    return all_come_in_parts<Stencil>(PartsOfTerm<Term>());
+  else
+    return is_local<Term> ||
+           requires(Term const& term, Stencil const& stencil) { term.neighbor_field(stencil); };
+}
+
+template <class Term>
+KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies(Term const& term) {
+  if constexpr (requires { term.local_field_varies(); })
+    return term.local_field_varies();
+  else if constexpr (requires { requires Term::degree == 1; })
+    return false;
+  else
+    return is_local<Term>;
+}
+
+/// Of how many terms the energy of a term or generator is a sum.
+template <class Source>
+inline constexpr int energy_terms = [] {
+  if constexpr (requires { Source::energy_terms; }) return Source::energy_terms;
+  return 1;
+}();
+
+/// The energy of each of them.
+template <class Source, class Stencil, class Value>
+KOKKOS_FORCEINLINE_FUNCTION void energy_densities(Source const& source, Stencil const& stencil,
+                                                  Value* energies) {
+  if constexpr (requires { source.energy_densities(stencil, energies); }) {
+    source.energy_densities(stencil, energies);
+  } else {
+    check_energy_density<Source, Stencil>();
+    energies[0] = source.energy_density(stencil);
+  }
+}
+
+/// The sum of their absolute values.
+template <class Source, class Stencil>
+KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& source,
+                                                              Stencil const& stencil) {
+  using Value = ValueOf<Stencil>;
+  constexpr int terms = energy_terms<Source>;
+  if constexpr (requires { source.energy_magnitude(stencil); }) {
+    return source.energy_magnitude(stencil);
+  } else if constexpr (terms == 0) {
+    return Value(0);
+  } else {
+    Value energies[terms];
+    energy_densities(source, stencil, energies);
+    Value sum = Kokkos::abs(energies[terms - 1]);
+    unrolled<terms - 1>([&](auto i) { sum = Kokkos::abs(energies[terms - 2 - i()]) + sum; });
+    return sum;
+  }
+}
+
+}  // namespace cayspin::inline v0_1::detail
