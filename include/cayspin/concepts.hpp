@@ -107,7 +107,7 @@ concept FieldTerm = requires {
 /// | `Vec3<Value> operator()(stencil)` | A at the stencil's centre | required |
 /// | `Vec3<Value> turning_part(stencil)` | A, less a multiple of m: what turns m | A |
 /// | `Value energy_density(stencil)` | the site's share of E | it has no energy |
-/// | `bool is_conservative()` | E is kept: A = -dE/dm + c m (host) | EnergyControl refuses it |
+/// | `bool conserves_energy()` | E is kept: A = -dE/dm + c m (host) | EnergyControl refuses it |
 /// | `bool is_orthogonal()` | A has no part along m | false |
 template <class Type, class Spins = SpinField<double, Kokkos::HostSpace>>
 concept Generator =

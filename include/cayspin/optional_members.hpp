@@ -40,7 +40,8 @@ constexpr void check_energy_density() {
                 "that returns typename Stencil::value_type, with field = -d energy / d spin.");
 }
 
-/// Is H of a term, or of a generator's field, the derivative of an energy?
+/// Is H of a term, or of the field in a generator, the derivative of an energy? Whether the motion
+/// keeps that energy is another question: a generator's conserves_energy().
 template <class Source>
 inline constexpr bool is_conservative = !requires { requires !Source::is_conservative; };
 

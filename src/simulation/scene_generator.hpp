@@ -151,7 +151,7 @@ class SceneGenerator {
   RigidBodies<Spins> rigid_bodies() const { return {bodies_, orthogonal_}; }
   bool is_orthogonal() const { return orthogonal_; }
   bool is_affine() const { return llg_.field().is_affine(); }
-  bool is_conservative() const { return !is_llg_ || llg_.is_conservative(); }
+  bool conserves_energy() const { return !is_llg_ || llg_.conserves_energy(); }
 
   /// The effective field alone, as the generator of a precession about it.
   SceneGenerator precession_alone() const;

@@ -26,7 +26,7 @@ class Torques : public ::testing::Test {
     auto const m = numbers_of(spins);
     for (double const damping : {0.0, 0.3}) {
       LandauLifshitz const generator(EffectiveField{term}, damping);
-      EXPECT_FALSE(generator.is_conservative());
+      EXPECT_FALSE(generator.conserves_energy());
       auto const a = evaluated(exec, generator, spins);
       for (std::int64_t site = 0; site < lattice.sites(); ++site) {
         auto const t = torque(m, site);

@@ -92,7 +92,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
 
   /// True where the motion conserves the energy, with A = -dE/dm up to a multiple of m.
   /// Not looked for where the damping is a field.
-  bool is_conservative() const {
+  bool conserves_energy() const {
     if constexpr (uniform && detail::is_conservative<Field>)
       return damping_ == 0 && precession_;
     else
@@ -133,9 +133,6 @@ template <class Generator>
 inline constexpr bool is_landau_lifshitz = false;
 template <class Field, class Damping>
 inline constexpr bool is_landau_lifshitz<LandauLifshitz<Field, Damping>> = true;
-
-template <class Field, class Damping>
-inline constexpr bool is_conservative<LandauLifshitz<Field, Damping>> = is_conservative<Field>;
 }  // namespace detail
 
 template <class Field, class Real, class MemorySpace>

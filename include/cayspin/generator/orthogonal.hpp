@@ -60,10 +60,10 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
     return detail::turning_part(generator_, stencil);
   }
 
-  bool is_conservative() const
-    requires(requires(Generator const& generator) { generator.is_conservative(); })
+  bool conserves_energy() const
+    requires(requires(Generator const& generator) { generator.conserves_energy(); })
   {
-    return generator_.is_conservative();
+    return generator_.conserves_energy();
   }
   KOKKOS_FUNCTION static constexpr bool is_orthogonal() { return true; }
 
@@ -76,11 +76,6 @@ class Orthogonal : public Forwarding<Orthogonal<Generator>, Generator>,
  private:
   Generator generator_;
 };
-
-namespace detail {
-template <class Generator>
-inline constexpr bool is_conservative<Orthogonal<Generator>> = is_conservative<Generator>;
-}  // namespace detail
 
 template <class Generator>
 Orthogonal<Generator> orthogonal(Generator generator) {

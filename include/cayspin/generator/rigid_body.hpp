@@ -43,7 +43,7 @@ class BodyGenerator {
     using Value = typename Stencil::value_type;
     return Value(0.5) * dot(stencil.center(), inverse_inertia(stencil) * stencil.center());
   }
-  bool is_conservative() const { return true; }
+  bool conserves_energy() const { return true; }
 
  private:
   template <class Stencil>

@@ -69,7 +69,7 @@ struct EnergyControlOptions {
 /// method and at any of its steps' ends: the spins turn towards or away from the field, by one
 /// number for all of them, m <- cay(kappa m x A) m with kappa = (E - E_0) / sum |A_o|^2, a Newton
 /// step to the energy that the run began with. What a step does to the energy is undone before the
-/// next one, and so does not add up. A is that of a conservative generator which has an energy and
+/// next one, and so does not add up. A is that of a generator which conserves an energy and has
 /// no t, and kappa of the order of the method, so that its order stays.
 /// Costs one evaluation of the generator at each correction, two passes and a field of memory:
 ///   EnergyControl control(generator, spins);
@@ -79,9 +79,9 @@ struct EnergyControlOptions {
 template <class Spins, class Generator>
 class EnergyControl {
   static_assert(
-      requires(Generator const& generator) { generator.is_conservative(); },
+      requires(Generator const& generator) { generator.conserves_energy(); },
       "EnergyControl needs a generator that says whether it conserves its energy: a member "
-      "is_conservative().");
+      "conserves_energy().");
   static_assert(!detail::depends_on_time<Generator>,
                 "EnergyControl refuses fields that depend on t.");
 
@@ -97,7 +97,7 @@ class EnergyControl {
         energy_(options.energy),
         axes_("EnergyControl::axes", like.lattice()) {
     detail::check_conservative<Generator>();
-    if (!generator_.is_conservative())
+    if (!generator_.conserves_energy())
       throw std::invalid_argument(
           "cayspin::EnergyControl: the generator does not conserve its energy (damping 0 does)");
     if (options.period < 1)

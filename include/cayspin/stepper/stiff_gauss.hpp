@@ -207,8 +207,8 @@ class StiffGauss : public detail::StepperBase<Spins> {
   template <class Generator>
   double tolerance_of(Generator const& generator, History* history, double first) const {
     if (solving_.tolerance > 0) return solving_.tolerance;
-    if constexpr (requires { generator.is_conservative(); })
-      if (generator.is_conservative()) return 4 * epsilon;
+    if constexpr (requires { generator.conserves_energy(); })
+      if (generator.conserves_energy()) return 4 * epsilon;
     if (history != nullptr && history->is_complete()) return history->tolerance(first);
     // `first` is of this order in the rotation: of none known it is the whole.
     double const of_rotation = 1 + (history != nullptr ? history->known() : 0);
