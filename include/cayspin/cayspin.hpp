@@ -9,6 +9,7 @@
 #include <cayspin/evaluate.hpp>
 #include <cayspin/exchange_memory.hpp>
 #include <cayspin/field/bulk_dmi.hpp>
+#include <cayspin/field/cell_moments.hpp>
 #include <cayspin/field/cubic_anisotropy.hpp>
 #include <cayspin/field/dear.hpp>
 #include <cayspin/field/effective_field.hpp>
