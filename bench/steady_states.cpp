@@ -90,7 +90,8 @@ Cost by_relaxing(Field const& field, Spins& spins, double field_bound) {
   Exec const exec;
   LandauLifshitz const generator(field, 1.0, false), precession(field, 0.0);
   Rkmk4<Spins> stepper(spins);
-  double const dt = 0.95 * largest_stable_step<Rkmk4<Spins>>(field_bound, 1.0, false);
+  double const dt =
+      0.95 * largest_stable_step<Rkmk4<Spins>>(field_bound, 1.0, {.precession = false});
   Kokkos::Timer const clock;
   Cost cost;
   while (!cost.converged && cost.evaluations < most_evaluations) {

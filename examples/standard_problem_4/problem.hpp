@@ -39,7 +39,8 @@ class StandardProblem4 {
         cayspin::EffectiveField(cayspin::Exchange(film_, exchange), demag_), 1.0, false);
     cayspin::LieEuler stepper(spins_);
     double const bound = cayspin::exchange_bound(film_, exchange) + 1;
-    double const dt = 0.95 * cayspin::largest_stable_step<decltype(stepper)>(bound, 1.0, false);
+    double const dt =
+        0.95 * cayspin::largest_stable_step<decltype(stepper)>(bound, 1.0, {.precession = false});
     auto const until_rest = [&](auto const& exec, cayspin::Step const& step, auto const& spins) {
       return cayspin::largest_rate(exec, generator, spins, step.time) < torque
                  ? cayspin::Next::stop

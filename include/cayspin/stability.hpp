@@ -17,7 +17,6 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <type_traits>
 
 // The largest stable time step of a method for the Landau-Lifshitz equation, known before a run:
 // the method's own stages act on one transverse mode of a nearly uniform state,
@@ -229,22 +228,25 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
   return bound;
 }
 
+/// What largest_stable_step has to know of the equation besides field and damping.
+struct StabilityOptions {
+  bool precession = true;
+  double sigma = 0;  ///< of isotropy::Constant
+};
+
 /// The largest dt at which no mode of a nearly uniform state grows by more than round-off, an
 /// a-priori bound that is never above the linear limit. 0 when every dt amplifies, infinity when
 /// none does.
 /// Throws std::invalid_argument for a bound or a damping that is negative or not finite.
 /// `field_bound`: exchange_bound + |applied| + sum of |anisotropy constants| + |demag strengths|.
-template <class Stepper, class Precession = bool>
-double largest_stable_step(double field_bound, double damping, Precession precession = true,
-                           double sigma = 0) {
-  static_assert(
-      std::is_same_v<Precession, bool>,
-      "largest_stable_step takes the field bound, the damping, the precession, which is a "
-      "bool, and sigma.");
+///   largest_stable_step<Rkmk4<Spins>>(field_bound, damping, {.precession = false})
+template <class Stepper>
+double largest_stable_step(double field_bound, double damping,
+                           StabilityOptions const& options = {}) {
   detail::check_bound(field_bound, damping);
-  detail::finite(sigma, "cayspin::largest_stable_step: sigma");
+  double const sigma = detail::finite(options.sigma, "cayspin::largest_stable_step: sigma");
   double limit = std::numeric_limits<double>::infinity();
-  detail::Complex const rate(-damping, precession ? 1 : 0);
+  detail::Complex const rate(-damping, options.precession ? 1 : 0);
   if (!(field_bound > 0) || std::abs(rate) == 0) return limit;
   limit = 1e3 / (field_bound * std::abs(rate));  // of the scan; no explicit method gets there
   double const scan_end = limit;

@@ -56,21 +56,36 @@ inline Damping gilbert(double alpha) { return {alpha, 1 + alpha * alpha}; }
 /// dm/dt = -gamma m x B - alpha gamma m x (m x B)
 inline Damping landau_lifshitz(double alpha) { return {alpha, 1}; }
 
-/// The velocity of Zhang and Li's torque in m/s, as Thiaville et al. (2005) have it, from a current
-/// density in A/m^2 and its polarization: u = -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar.
-/// Electrons, and walls where P > 0, go against the current.
-inline double drift_velocity(double current_density, double polarization, double Ms,
-                             double gamma = electron_gamma) {
-  return -gamma * reduced_planck * polarization * current_density /
-         (2 * elementary_charge * detail::positive(Ms, "Ms"));
+/// A current through a magnet.
+struct PolarizedCurrent {
+  double density = 0;       ///< j, A/m^2
+  double polarization = 0;  ///< P
+  double Ms = 0;            ///< saturation magnetization, A/m
+  double gamma = electron_gamma;
+};
+/// The velocity of Zhang and Li's torque in m/s, as Thiaville et al. (2005) have it:
+/// u = -g mu_B P j / (2 e Ms) with g mu_B = gamma hbar. Electrons, and walls where P > 0, go
+/// against the current.
+///   drift_velocity({.density = 1e12, .polarization = 0.4, .Ms = 8e5})
+inline double drift_velocity(PolarizedCurrent const& current) {
+  return -current.gamma * reduced_planck * current.polarization * current.density /
+         (2 * elementary_charge * detail::positive(current.Ms, "Ms"));
 }
-/// The damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). The
-/// efficiency is a polarization or a spin Hall angle; where the product is positive, spins turn
-/// towards the polarization.
-inline double spin_torque(double current_density, double efficiency, double Ms, double thickness) {
-  return reduced_planck * efficiency * current_density /
-         (2 * elementary_charge * detail::positive(Ms, "Ms") *
-          detail::positive(thickness, "the thickness"));
+
+/// A current that brings spins into a magnetic layer.
+struct LayerCurrent {
+  double density = 0;     ///< j, A/m^2
+  double efficiency = 0;  ///< a polarization, or a spin Hall angle
+  double Ms = 0;          ///< saturation magnetization of the layer, A/m
+  double thickness = 0;   ///< of the layer, m
+};
+/// The damping-like torque of a current in T: hbar j efficiency / (2 e Ms thickness). Where
+/// j efficiency is positive, spins turn towards the polarization.
+///   spin_torque({.density = 1e12, .efficiency = 0.1, .Ms = 8e5, .thickness = 3e-9})
+inline double spin_torque(LayerCurrent const& current) {
+  return reduced_planck * current.efficiency * current.density /
+         (2 * elementary_charge * detail::positive(current.Ms, "Ms") *
+          detail::positive(current.thickness, "the thickness"));
 }
 
 /// What one reduced unit is in SI, and numbers in either.

@@ -49,8 +49,9 @@ ZhangLi read_zhang_li(Item const& item, Scene& scene) {
     auto const& [Ms, gamma] = std::tie(scene.material->moment, scene.material->gamma);
     auto const polarization = number(table.required("polarization", "a number"));
     read.velocity = three(*current, three_components, component_in_time);
-    for (auto& component : read.velocity)
-      component = times(component, units::drift_velocity(1, polarization, Ms, gamma));
+    double const of_unit_current = units::drift_velocity(
+        {.density = 1, .polarization = polarization, .Ms = Ms, .gamma = gamma});
+    for (auto& component : read.velocity) component = times(component, of_unit_current);
   } else {
     auto const velocity = table.required("velocity", three_components);
     read.velocity = three(velocity, three_components, component_in_time);
@@ -70,8 +71,11 @@ Slonczewski read_slonczewski(Item const& item, Scene& scene) {
   if (current) {
     auto const efficiency = number(table.required("efficiency", "a number"));
     auto const thickness = positive_number(table.required("thickness", "a number > 0, in m"));
-    read.damping_like = times(component_in_time(*current),
-                              units::spin_torque(1, efficiency, scene.material->moment, thickness));
+    double const of_unit_current = units::spin_torque({.density = 1,
+                                                       .efficiency = efficiency,
+                                                       .Ms = scene.material->moment,
+                                                       .thickness = thickness});
+    read.damping_like = times(component_in_time(*current), of_unit_current);
   }
   return read;
 }

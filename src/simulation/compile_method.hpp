@@ -123,8 +123,8 @@ class Compiled {
       if constexpr (!Key.of_rigid_bodies) {
         using Bounded = BoundedStepper<Family, HostSpins, Plain<HostSpins, Rotation>>;
         if constexpr (Bounded::exists)
-          return largest_stable_step<typename Bounded::type>(field_bound, damping, precession,
-                                                             options.sigma);
+          return largest_stable_step<typename Bounded::type>(
+              field_bound, damping, {.precession = precession, .sigma = options.sigma});
       }
       return std::numeric_limits<double>::infinity();
     });
@@ -140,8 +140,9 @@ class Compiled {
   template <class Real>
   static std::int64_t work_bytes_of(Lattice const& lattice, bool by_time_alone) {
     using Of = Stepper<SpinField<Real>, Cayley>;
-    if constexpr (requires { Of::work_bytes(lattice, by_time_alone, 1); })
-      return static_cast<std::int64_t>(Of::work_bytes(lattice, by_time_alone, expected_threads()));
+    if constexpr (requires { Of::work_bytes(lattice, PredictedRun{}); })
+      return static_cast<std::int64_t>(
+          Of::work_bytes(lattice, {.threads = expected_threads(), .by_time_alone = by_time_alone}));
     auto const layout = cayspin::detail::RowLayout::of<Real>(lattice);
     return static_cast<std::int64_t>(work_fields<Real>() * layout.allocation(3) * sizeof(Real));
   }

@@ -94,9 +94,10 @@ void expect_memory(std::size_t fields_of_sweep, std::size_t fields_of_pass) {
   expect_chosen_and_predicted<Stepper>(150);
   auto const lattice = Lattice::cubic(150, 150, 150);
   std::size_t const field = typename Stepper::spins_type("spins", lattice).bytes();
-  int const threads = Threaded().concurrency();
-  EXPECT_LT(Stepper::work_bytes(lattice, true, threads), fields_of_sweep * field);
-  EXPECT_EQ(Stepper::work_bytes(lattice, false, threads), fields_of_pass * field);
+  PredictedRun run{.threads = Threaded().concurrency()};
+  EXPECT_LT(Stepper::work_bytes(lattice, run), fields_of_sweep * field);
+  run.by_time_alone = false;
+  EXPECT_EQ(Stepper::work_bytes(lattice, run), fields_of_pass * field);
 }
 
 TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
@@ -108,23 +109,22 @@ TYPED_TEST(Sweep, ChosenAndPredictedBySize) {
 // Wide lattices of few rows: the buffers of twelve stages would exceed all fields of passes.
 TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
   using Field = typename TestFixture::Field;
-  auto const expect_bounded = [](auto const& work_bytes) {
+  auto const expect_bounded = [](std::size_t (*work_bytes)(Lattice const&, PredictedRun const&)) {
     for (std::array<std::int64_t, 3> const shape :
          {std::array<std::int64_t, 3>{2003, 41, 3}, {3001, 53, 2}, {4000, 64, 64}, {256, 256, 256}})
       for (int const threads : {1, 2, 8, 64}) {
         Lattice const lattice{shape, {1, 1, 1}, {}};
-        std::size_t const passes = work_bytes(lattice, false, threads);
+        std::size_t const passes =
+            work_bytes(lattice, {.threads = threads, .by_time_alone = false});
         std::size_t const field =
             detail::RowLayout::of<typename Field::value_type>(lattice).allocation(3) *
             sizeof(typename Field::value_type);
-        EXPECT_LE(work_bytes(lattice, true, threads), passes + field)
-            << name_of(lattice) << threads;
+        std::size_t const sweep = work_bytes(lattice, {.threads = threads});
+        EXPECT_LE(sweep, passes + field) << name_of(lattice) << threads;
       }
   };
-  expect_bounded([](auto... arguments) { return Rkmk4<Field>::work_bytes(arguments...); });
-  expect_bounded([](auto... arguments) {
-    return Rkmk<Field, tableau::DormandPrince8>::work_bytes(arguments...);
-  });
+  expect_bounded(&Rkmk4<Field>::work_bytes);
+  expect_bounded(&Rkmk<Field, tableau::DormandPrince8>::work_bytes);
 }
 
 // Steps that batch does not take would be read from memory that a sweep does not have.

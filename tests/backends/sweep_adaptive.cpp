@@ -94,7 +94,8 @@ TYPED_TEST(AdaptiveSweep, ChosenAndPredictedBySize) {
   using Stepper = AdaptiveRkmk<typename TestFixture::Field>;
   expect_chosen_and_predicted<Stepper>(120, options);
   auto const lattice = Lattice::cubic(120, 120, 120);
-  EXPECT_EQ(Stepper::work_bytes(lattice, false, Threaded().concurrency()),
+  PredictedRun const run{.threads = Threaded().concurrency(), .by_time_alone = false};
+  EXPECT_EQ(Stepper::work_bytes(lattice, run),
             11 * typename TestFixture::Field("spins", lattice).bytes() +
                 ScalarField<TypeParam>("square", lattice).bytes());
 }

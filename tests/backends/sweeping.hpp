@@ -71,7 +71,7 @@ void expect_chosen_and_predicted(std::int64_t n, Options const&... options) {
     auto const lattice = Lattice::cubic(extent, extent, extent);
     Stepper const stepper(typename Stepper::spins_type("spins", lattice), options...);
     EXPECT_EQ(stepper.path(), path) << extent;
-    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, true, threads)) << extent;
+    EXPECT_EQ(stepper.work_bytes(), Stepper::work_bytes(lattice, {.threads = threads})) << extent;
   }
 }
 

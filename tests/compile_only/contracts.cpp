@@ -87,6 +87,13 @@ static_assert(!Stepper<F64> && !Stepper<int>);
 static_assert(evaluations_per_step<Rkmk4<F64>>() == 4 && evaluations_per_step<LieHeun<F64>>() == 2);
 static_assert(!evaluations_per_step<ImplicitMidpoint<F64>>() && !evaluations_per_step<Adaptive>());
 
+// What stands beside a number is given by name.
+template <class Options>
+concept OptionsOfStableStep =
+    requires(Options options) { largest_stable_step<Rkmk4<F64>>(1.0, 0.1, options); };
+static_assert(OptionsOfStableStep<StabilityOptions> && !OptionsOfStableStep<bool> &&
+              !OptionsOfStableStep<double>);
+
 using Control = EnergyControl<F64, LandauLifshitz<EffectiveField<Exchange>>>;
 static_assert(Observer<Record<Zeeman>> && Observer<Normalize> && Observer<Every<Normalize>> &&
               Observer<Control>);

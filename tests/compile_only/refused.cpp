@@ -234,7 +234,10 @@ inline void refused() {
 #endif
 #if MISTAKE(34)  // minimum_under_a_torque
   // This needs a field that is the derivative of an energy, without terms that
-  minimize(exec, EffectiveField(Zeeman{{0, 0, 1}}, Slonczewski(1, 0, {0, 0, 1})), spins);
+  minimize(exec,
+           EffectiveField(Zeeman{{0, 0, 1}},
+                          Slonczewski({.damping_like = 1, .polarization = {0, 0, 1}})),
+           spins);
 #endif
 #if MISTAKE(35)  // energy_control_under_a_torque
   // This needs a field that is the derivative of an energy, without terms that
@@ -263,10 +266,6 @@ inline void refused() {
     ScalarField<double, Kokkos::HostSpace> const occupation("occupation", Lattice::chain(3));
     FieldWithVacancies const field(Dear(spins, Exchange(Lattice::chain(3), 1)), occupation);
   }
-#endif
-#if MISTAKE(39)  // sigma_in_place_of_precession
-  // largest_stable_step takes the field bound, the damping, the precession
-  largest_stable_step<Rkmk4<Spins>>(1, 0.1, 0.5);
 #endif
 #if MISTAKE(41)  // stop_after_the_noise_of_the_next_step
   // ThermalNoise's before_steps.. and between_steps.. come after every observer

@@ -102,7 +102,7 @@ TYPED_TEST(Fields, WhatTermsRefuse) {
   EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {0, nan, 0}), std::invalid_argument);
   EXPECT_THROW(CubicAnisotropy(1, {1, 0, 0}, {3e-4, 1, 0}), std::invalid_argument);
   EXPECT_NO_THROW(CubicAnisotropy(1, {2, 0, 0}, {1e-4, 2, 0}));
-  EXPECT_THROW(Slonczewski(1, 0, {0, 0, 0}), std::invalid_argument);
+  EXPECT_THROW(Slonczewski({.damping_like = 1, .polarization = {0, 0, 0}}), std::invalid_argument);
   EXPECT_THROW(SlabDemag({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(SlabDemagOnHost({0, 0, 0}), std::invalid_argument);
   EXPECT_THROW(Moments(lattice, {}), std::invalid_argument);
@@ -135,8 +135,10 @@ TYPED_TEST(Fields, NumbersThatAreNotFiniteAreRefused) {
            ZhangLi(lattice, Vec3<double>{0, bad, 0});
          }},
         {"ZhangLi: the nonadiabaticity", [&] { ZhangLi(lattice, x, bad); }},
-        {"Slonczewski: the damping-like torque", [&] { Slonczewski(bad, 0, x); }},
-        {"Slonczewski: the field-like torque", [&] { Slonczewski(0, bad, x); }},
+        {"Slonczewski: the damping-like torque",
+         [&] { Slonczewski({.damping_like = bad, .polarization = x}); }},
+        {"Slonczewski: the field-like torque",
+         [&] { Slonczewski({.field_like = bad, .polarization = x}); }},
         {"CubicAnisotropy: the constant", [&] { CubicAnisotropy(bad, x, y); }},
         {"UniaxialAnisotropy: the constant", [&] { UniaxialAnisotropy(bad, x); }},
         {"SlabDemag: the strength", [&] { SlabDemag(x, bad); }},

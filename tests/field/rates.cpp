@@ -48,7 +48,8 @@ void check(Term const& term) {
 TYPED_TEST(FieldRates, AreDerivativesOfTheField) {
   check<TypeParam>(CubicAnisotropy(1.3, {1, 0, 0}, {0, 1, 0}));
   check<TypeParam>(CubicAnisotropy(1.3, {1, 2, 2}, {2, 1, -2}));
-  check<TypeParam>(Slonczewski(0.7, -1.1, {1, -2, 2}));
+  check<TypeParam>(
+      Slonczewski({.damping_like = 0.7, .field_like = -1.1, .polarization = {1, -2, 2}}));
   check<TypeParam>(EffectiveField(CubicAnisotropy(-0.4, {0, 1, 0}, {3, 0, 4}),
                                   UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
 }

@@ -52,7 +52,8 @@ TYPED_TEST_SUITE(Torques, Backends, BackendName);
 
 TYPED_TEST(Torques, SlonczewskiIsItsFormula) {
   auto const p = unit({1, -2, 2});
-  this->check(lattices[0], Slonczewski(0.7, -1.1, {1, -2, 2}),
+  this->check(lattices[0],
+              Slonczewski({.damping_like = 0.7, .field_like = -1.1, .polarization = {1, -2, 2}}),
               [&](auto const& numbers, std::int64_t site) {
                 auto const m = at(numbers, site);
                 return 0.7 * cross(m, cross(p, m)) + 1.1 * cross(m, p);
@@ -83,9 +84,9 @@ TYPED_TEST(Torques, OneSpinUnderSlonczewski) {
   double const bound = 1e-9 + 100 * epsilon<typename TypeParam::Real>, time = 1.7;
   for (double const damping : {0.0, 0.2})
     for (auto const& [a, b] : {std::pair(0.8, 0.0), {0.0, 1.3}, {-0.6, 0.9}}) {
-      auto const m = at(this->moved(Lattice::chain(1), Slonczewski(a, b, {0, 0, 3}), damping,
-                                    {0.8, 0, 0.6}, time, 400),
-                        0);
+      Slonczewski const torque({.damping_like = a, .field_like = b, .polarization = {0, 0, 3}});
+      auto const m =
+          at(this->moved(Lattice::chain(1), torque, damping, {0.8, 0, 0.6}, time, 400), 0);
       double const along = std::tanh((a + damping * b) * time + std::atanh(0.6));
       double const across = std::sqrt(1 - along * along), angle = (b - damping * a) * time;
       expect_near(m, {across * std::cos(angle), across * std::sin(angle), along}, bound);
@@ -150,7 +151,7 @@ TYPED_TEST(Torques, EveryKindOfMethodTakesTheNewTerms) {
   Exchange const exchange(lattice, 0.6);
   BulkDmi const dmi(lattice, 0.8);
   CubicAnisotropy const cubic(1.3, {1, 2, 2}, {2, 1, -2});
-  Slonczewski const local(0.6, -0.7, {1, 2, 3});
+  Slonczewski const local({.damping_like = 0.6, .field_like = -0.7, .polarization = {1, 2, 3}});
   EffectiveField const in_parts(exchange, dmi, cubic, local);
   EffectiveField const all(exchange, dmi, cubic, local, BiquadraticBonds{0.5},
                            ZhangLi(lattice, {0.7, -0.4, 0.3}, 0.5));

@@ -26,7 +26,8 @@ auto every_term(Lattice const& lattice) {
 auto bonds_and_torques(Lattice const& lattice) {
   return EffectiveField(
       BiquadraticBonds{0.6}, BulkDmi(lattice, 0.4), ZhangLi(lattice, {0.5, -0.3, 0.2}, 0.3),
-      CubicAnisotropy(0.7, {1, 2, 2}, {2, 1, -2}), Slonczewski(0.2, 0.1, {1, 0, 1}));
+      CubicAnisotropy(0.7, {1, 2, 2}, {2, 1, -2}),
+      Slonczewski({.damping_like = 0.2, .field_like = 0.1, .polarization = {1, 0, 1}}));
 }
 
 /// A box of sites, and the sites beside it, which are vacant; all others are occupied.

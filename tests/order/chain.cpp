@@ -74,8 +74,9 @@ TEST(ChainsOfStages, TakeLongSteps) {
 
 TEST(Damped54, TakesAsLongStepsOfDecayAsRk4) {
   using Stepper = ProjectedRungeKutta<Spins, tableau::Damped54>;
-  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1, false) / 5, 0.701, 0.001);
-  EXPECT_NEAR(largest_stable_step<ProjectedRk4<Spins>>(1, 1, false) / 4, 0.696, 0.001);
+  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1, {.precession = false}) / 5, 0.701, 0.001);
+  EXPECT_NEAR(largest_stable_step<ProjectedRk4<Spins>>(1, 1, {.precession = false}) / 4, 0.696,
+              0.001);
 }
 
 TEST(Tableaux, SatisfyTheConditionsOfOrder4) {

@@ -56,7 +56,7 @@ TEST(Oscillatory86, IsStableOnTheImaginaryAxis) {
 
 TEST(Damped86, TakesLongStepsOfDecay) {
   using Stepper = Rkmk<Spins, tableau::Damped86>;
-  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1, false) / 8, 0.862, 0.001);
+  EXPECT_NEAR(largest_stable_step<Stepper>(1, 1, {.precession = false}) / 8, 0.862, 0.001);
   EXPECT_NEAR(largest_stable_step<Stepper>(1, 1) / 8, 0.439, 0.001);
 }
 

@@ -84,8 +84,8 @@ class Check {
     if (bound == 0) return scene_.share;
     double const rate = bound * std::hypot(1, scene_.slab.damping);
     if constexpr (requires { typename Stepper::tableau_type; }) {
-      double const stable =
-          largest_stable_step<Stepper>(bound, scene_.slab.damping, scene_.slab.precession);
+      double const stable = largest_stable_step<Stepper>(bound, scene_.slab.damping,
+                                                         {.precession = scene_.slab.precession});
       if (stable > 0 && std::isfinite(stable)) return scene_.share * stable;
     }
     return scene_.share / rate;

@@ -238,7 +238,9 @@ auto library_field(Numbers const& n) {
                                                  PairCouplings<Memory>(lattice, n.couplings)),
                                   moments);
   EffectiveField const torques(ZhangLi(lattice, n.velocity, n.nonadiabaticity),
-                               Slonczewski(n.damping_like, n.field_like, {0, 0.6, 0.8}));
+                               Slonczewski({.damping_like = n.damping_like,
+                                            .field_like = n.field_like,
+                                            .polarization = {0, 0.6, 0.8}}));
   return EffectiveField(of_moments, FieldWithVacancies(torques, occupation));
 }
 

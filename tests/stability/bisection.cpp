@@ -75,7 +75,7 @@ void expect_limits(char const* method) {
     for (double const damping : {0.1, 1.0}) {
       auto const natural = generator(lattice, damping);
       auto const expect = [&](char const* what, auto const& of, double sigma, double along) {
-        double const limit = largest_stable_step<Stepper>(bound, damping, true, along);
+        double const limit = largest_stable_step<Stepper>(bound, damping, {.sigma = along});
         double const found = bisected<Stepper>(of, start, limit, sigma);
         std::printf("    %-10s %-6s damping %-4g %-18s limit %.6f, predicted %.6f\n", method, name,
                     damping, what, found, limit);

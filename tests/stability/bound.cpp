@@ -58,7 +58,7 @@ TEST(ExchangeBound, IsTheLargestEigenvalue) {
 /// y of largest_stable_step = y / field_bound, at a bound that is not 1.
 template <class Stepper>
 double scaled_limit(double damping, bool precession = true) {
-  return 7 * largest_stable_step<Stepper>(7, damping, precession);
+  return 7 * largest_stable_step<Stepper>(7, damping, {.precession = precession});
 }
 
 // |R(y (-damping + i))| = 1, R the stability polynomial of order 1, 2, 4; roots found in 30 digits.
@@ -125,7 +125,7 @@ TEST(StepLimit, ConstantSigma) {
   for (double const damping : {0.05, 1.0})
     for (double const sigma : {-20.0, -3.0, -0.5, 0.5, 3.0, 6.9}) {
       double const limit = 2 * damping / ((1 + damping * damping) * s - sigma);
-      EXPECT_NEAR(largest_stable_step<Stepper>(s, damping, true, sigma), limit, 1e-6 * limit)
+      EXPECT_NEAR(largest_stable_step<Stepper>(s, damping, {.sigma = sigma}), limit, 1e-6 * limit)
           << damping << ' ' << sigma;
     }
 }
@@ -168,7 +168,7 @@ void expect_first_growth_at_the_limit(std::string const& method) {
   double const s = 7;
   for (double const damping : {0.05, 1.0})
     for (double const sigma : {-20.0, -3.0, 5.0, 20.0}) {
-      double const limit = largest_stable_step<Stepper>(s, damping, true, sigma);
+      double const limit = largest_stable_step<Stepper>(s, damping, {.sigma = sigma});
       if (limit == infinity) {
         std::printf("    %s damping %g sigma %g: no limit\n", method.c_str(), damping, sigma);
         for (double dt = 1e-3; dt < 100; dt *= 1.05)
@@ -194,9 +194,9 @@ TEST(StepLimit, ConstantSigmaOfHigherOrders) {
 TEST(StepLimit, NoneAndZero) {
   // Past (1 + lambda^2) s the generator turns a spin faster than it moves: stable at any step.
   using Stepper = LieEuler<Spins, isotropy::Constant>;
-  EXPECT_EQ(largest_stable_step<Stepper>(7, 0.05, true, 7.1), infinity);
+  EXPECT_EQ(largest_stable_step<Stepper>(7, 0.05, {.sigma = 7.1}), infinity);
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(0, 0.05), infinity);
-  EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0, false), infinity);
+  EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0, {.precession = false}), infinity);
   // Undamped precession: Euler and Heun amplify at every step.
   EXPECT_EQ(largest_stable_step<LieEuler<Spins>>(7, 0), 0);
   EXPECT_EQ(largest_stable_step<ClassicalHeun<Spins>>(7, 0), 0);
@@ -210,7 +210,7 @@ TEST(StepLimit, BoundsThatAreNone) {
         "cayspin::largest_stable_step: the field bound and the damping must be >= 0 and finite";
     for (bool const precession : {true, false}) {
       try {
-        largest_stable_step<Rkmk4<Spins>>(bound, damping, precession);
+        largest_stable_step<Rkmk4<Spins>>(bound, damping, {.precession = precession});
         ADD_FAILURE() << bound << ", " << damping;
       } catch (std::invalid_argument const& error) {
         EXPECT_EQ(error.what(), sentence);
@@ -222,7 +222,7 @@ TEST(StepLimit, BoundsThatAreNone) {
     refuses(1, wrong);
   }
   refuses(1e200, 1e200);  // the rate overflows
-  EXPECT_THROW((largest_stable_step<Rkmk4<Spins, isotropy::Constant>>(1, 0.1, true, nan)),
+  EXPECT_THROW((largest_stable_step<Rkmk4<Spins, isotropy::Constant>>(1, 0.1, {.sigma = nan})),
                std::invalid_argument);
   EXPECT_GT(largest_stable_step<Rkmk4<Spins>>(1e300, 0.05), 0);
   EXPECT_EQ(largest_stable_step<Rkmk4<Spins>>(-0.0, 0.05), infinity);

@@ -47,14 +47,20 @@ TEST(Units, AtomisticFigures) {
 
 // g mu_B P j / (2 e Ms) and hbar P j / (2 e Ms d) by hand; electrons go against the current.
 TEST(Units, CurrentsComeToVelocitiesAndFields) {
-  EXPECT_NEAR(units::drift_velocity(1e12, 0.4, 8e5), -28.9755, 5e-5);
-  EXPECT_NEAR(units::drift_velocity(-2e12, 0.4, 8e5, 2 * units::electron_gamma), 115.902, 5e-4);
-  EXPECT_NEAR(units::spin_torque(1e12, 0.4, 8e5, 3e-9), 0.0548510, 5e-8);
-  EXPECT_NEAR(units::spin_torque(1e12, -0.1, 8e5, 3e-9), -0.01371275, 5e-9);
+  units::PolarizedCurrent drift{.density = 1e12, .polarization = 0.4, .Ms = 8e5};
+  EXPECT_NEAR(units::drift_velocity(drift), -28.9755, 5e-5);
+  drift.density = -2e12, drift.gamma = 2 * units::electron_gamma;
+  EXPECT_NEAR(units::drift_velocity(drift), 115.902, 5e-4);
+  units::LayerCurrent layer{.density = 1e12, .efficiency = 0.4, .Ms = 8e5, .thickness = 3e-9};
+  EXPECT_NEAR(units::spin_torque(layer), 0.0548510, 5e-8);
+  layer.efficiency = -0.1;
+  EXPECT_NEAR(units::spin_torque(layer), -0.01371275, 5e-9);
   for (auto const& damping : {units::gilbert(0.5), units::landau_lifshitz(0.5)})
     EXPECT_NEAR(permalloy(damping).velocity(100), 100 / (5e-9 * 1.760859e11 * 1.0053096), 1e-8);
-  EXPECT_THROW(units::drift_velocity(1, 1, 0), std::invalid_argument);
-  EXPECT_THROW(units::spin_torque(1, 1, 1, 0), std::invalid_argument);
+  EXPECT_THROW(units::drift_velocity({.density = 1, .polarization = 1, .Ms = 0}),
+               std::invalid_argument);
+  EXPECT_THROW(units::spin_torque({.density = 1, .efficiency = 1, .Ms = 1, .thickness = 0}),
+               std::invalid_argument);
 }
 
 TEST(Units, CubicAnisotropyIsAnEnergyOfASite) {

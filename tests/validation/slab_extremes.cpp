@@ -16,7 +16,8 @@ void expect_rest(char const* what, Slab const& slab, std::array<char const*, 3> 
   Spins spins = slab_start();
   double const first = energy(exec, slab.field(), spins).value;
   Rkmk4<Spins> stepper(spins);
-  double const dt = 0.9 * largest_stable_step<Rkmk4<Spins>>(slab.field_bound(), 1, false);
+  double const dt =
+      0.9 * largest_stable_step<Rkmk4<Spins>>(slab.field_bound(), 1, {.precession = false});
   advance(stepper, slab.natural(), spins, dt, std::llround(600 / dt));
   EXPECT_LT(largest_rate(exec, slab.natural(), spins), 1e-9);
   EXPECT_LT(energy(exec, slab.field(), spins).value, first);

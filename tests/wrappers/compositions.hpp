@@ -114,7 +114,8 @@ void for_each_term(Setting<Real> const& on, Visit const& visit) {
   visit("Zeeman", Zeeman{vector()});
   visit("TimeDependentZeeman", TimeDependentZeeman(Growing()));
   visit("ZhangLi", ZhangLi(lattice, vector(), number()));
-  visit("Slonczewski", Slonczewski(number(), number(), vector()));
+  visit("Slonczewski",
+        Slonczewski({.damping_like = number(), .field_like = number(), .polarization = vector()}));
   visit("HostField", HostField<Field, AlongZ>(lattice, AlongZ()));
   Coupling const bilinear = Coupling::of({0, 1}, {1, 0, 0}, number(), {number(), number(), 1}),
                  within = Coupling::of({1, 1}, {0, 1, 0}, number());

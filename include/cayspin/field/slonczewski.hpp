@@ -15,14 +15,20 @@ class Slonczewski {
   static constexpr bool is_local = true;
   static constexpr bool is_conservative = false;  // H is the derivative of no energy
 
-  /// `polarization` is normalised. Throws std::invalid_argument when it is zero, or a number not
-  /// finite.
-  Slonczewski(double damping_like, double field_like, Vec3<double> const& polarization)
+  struct Torque {
+    double damping_like = 0, field_like = 0;  ///< a and b
+    Vec3<double> polarization;                ///< p, which is normalised
+  };
+
+  ///   Slonczewski({.damping_like = 0.1, .polarization = {0, 0, 1}})
+  /// Throws std::invalid_argument when the polarization is zero, or a number not finite.
+  explicit Slonczewski(Torque const& torque)
       : damping_like_(
-            detail::finite(damping_like, "cayspin::Slonczewski: the damping-like torque") *
-            normalized(polarization, "cayspin::Slonczewski: the polarization")),
-        field_like_(detail::finite(field_like, "cayspin::Slonczewski: the field-like torque") *
-                    normalized(polarization, "cayspin::Slonczewski: the polarization")) {}
+            detail::finite(torque.damping_like, "cayspin::Slonczewski: the damping-like torque") *
+            normalized(torque.polarization, "cayspin::Slonczewski: the polarization")),
+        field_like_(
+            detail::finite(torque.field_like, "cayspin::Slonczewski: the field-like torque") *
+            normalized(torque.polarization, "cayspin::Slonczewski: the polarization")) {}
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> field(Stencil const& stencil) const {

@@ -13,7 +13,15 @@
 #include <tuple>
 #include <utility>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_1 {
+
+/// A run whose work memory a stepper predicts.
+struct PredictedRun {
+  int threads = 1;
+  bool by_time_alone = true;  ///< the generator needs the time alone to be made ready (Generator)
+};
+
+namespace detail {
 
 /// A stepper of Runge-Kutta stages, equal steps or adaptive. A large field on a host is swept
 /// through once per step, unless the generator needs all spins of a stage beforehand (a nonlocal
@@ -42,13 +50,12 @@ class StagedStepper : public StepperBase<Spins> {
 
   /// Bytes of work memory.
   std::size_t work_bytes() const { return memory_.bytes(); }
-  /// Predicted bytes of work memory with so many threads. `by_time_alone`: the generator needs the
-  /// time alone to be made ready (cayspin::Generator).
-  static std::size_t work_bytes(Lattice const& lattice, bool by_time_alone, int threads) {
+  /// Predicted bytes of work memory.
+  static std::size_t work_bytes(Lattice const& lattice, PredictedRun const& run) {
     auto const layout = RowLayout::of<Real>(lattice);
-    if (!by_time_alone || !Sweeps::sweeps_by_itself(layout, threads))
+    if (!run.by_time_alone || !Sweeps::sweeps_by_itself(layout, run.threads))
       return Memory::bytes_of_passes(layout);
-    return Memory::bytes_of_sweep(layout, Sweeps::plan(layout, threads));
+    return Memory::bytes_of_sweep(layout, Sweeps::plan(layout, run.threads));
   }
 
  protected:
@@ -88,4 +95,5 @@ class StagedStepper : public StepperBase<Spins> {
   Path path_ = Path::pass;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace detail
+}  // namespace cayspin::inline v0_1
