@@ -83,7 +83,7 @@ class Runs {
     copy_from_host(random_spins(lattice_.sites()), spins);
     Generator const generator(EffectiveField(Exchange(lattice_, 1)), 0);
     Watch watch(generator, lattice_.sites());
-    EnergyControl control(generator, spins, {.period = options_.period});
+    EnergyControl control(spins, generator, {.period = options_.period});
     Stepper stepper(spins, made_with...);
     double const dt = Stepper::evaluations / options_.evaluations;
     Times const times{0, dt, options_.steps};

@@ -47,7 +47,7 @@ class RunningScene : public Simulation<Real, Space> {
       torque_.emplace(this->generator.precession_alone());
       rest_.emplace(scene, *bound);
     }
-    if (scene.integrator.energy_control) control_.emplace(this->generator, this->spins);
+    if (scene.integrator.energy_control) control_.emplace(this->spins, this->generator);
     if (is_thermal(scene)) noise_.emplace(scene, this->generator, this->spins);
   }
   RunningScene(RunningScene const&) = delete;  // the method works on this one

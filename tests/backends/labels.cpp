@@ -150,7 +150,7 @@ TEST(Labels, IterationsAndEnergies) {
   Slab undamped = slab;
   undamped.damping = 0;
   ImplicitLieEuler by_newton(spins, isotropy::Zero{}, Cayley{}, ImplicitOptions{8, 2, 30});
-  EnergyControl control(undamped.natural(), spins);
+  EnergyControl control(spins, undamped.natural());
   Events seen = events_of([&] {
     for (std::int64_t number = 1; number <= 2; ++number) {
       by_newton.step(exec, undamped.natural(), spins, 0, 0.1);

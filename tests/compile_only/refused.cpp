@@ -170,7 +170,7 @@ inline void refused() {
 #endif
 #if MISTAKE(22)  // energy_control_of_changing_field
   // EnergyControl refuses fields that depend on t
-  { EnergyControl const control{LandauLifshitz{EffectiveField{rotating}, 0}, spins}; }
+  { EnergyControl const control{spins, LandauLifshitz{EffectiveField{rotating}, 0}}; }
 #endif
 #if MISTAKE(23)  // host_field_of_other_precision
   // HostField was made for spins of another precision or memory space
@@ -190,7 +190,7 @@ inline void refused() {
   // An observer that changes spins .EnergyControl, Normalize. does not go with an
   {
     AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
-    integrate(exec, adaptive, body, spins, times, EnergyControl(body, spins));
+    integrate(exec, adaptive, body, spins, times, EnergyControl(spins, body));
   }
 #endif
 #if MISTAKE(26)  // stepper_that_counts_nothing
@@ -206,7 +206,7 @@ inline void refused() {
 #endif
 #if MISTAKE(28)  // energy_control_of_any_generator
   // EnergyControl needs a generator that says whether it conserves its energy
-  { EnergyControl const control{orthogonal(WholeGenerator()), spins}; }
+  { EnergyControl const control{spins, orthogonal(WholeGenerator())}; }
 #endif
 #if MISTAKE(29)  // field_of_a_generator
   // A field term needs a const, device-callable template field
@@ -241,7 +241,7 @@ inline void refused() {
 #endif
 #if MISTAKE(35)  // energy_control_under_a_torque
   // This needs a field that is the derivative of an energy, without terms that
-  { EnergyControl const control{orthogonal(torque), spins}; }
+  { EnergyControl const control{spins, orthogonal(torque)}; }
 #endif
 #if MISTAKE(37)  // couplings_of_moments_with_vacancies
   // PairCouplings read the spins of vacant sites
@@ -281,14 +281,14 @@ inline void refused() {
   {
     FieldOfMoments const of_moments(Exchange(Lattice::chain(3), 1),
                                     CellMoments(Lattice::chain(3), {2}));
-    EnergyControl const control{LandauLifshitz(of_moments, 0), spins};
+    EnergyControl const control{spins, LandauLifshitz(of_moments, 0)};
   }
 #endif
 #if MISTAKE(43)  // energy_control_by_reference_with_adaptive_steps
   // An observer that changes spins .EnergyControl, Normalize. does not go with an
   {
     AdaptiveRkmk<Spins, tableau::DormandPrince5> adaptive(spins);
-    EnergyControl control(body, spins);
+    EnergyControl control(spins, body);
     integrate(exec, adaptive, body, spins, times, Every(10, std::ref(control)));
   }
 #endif

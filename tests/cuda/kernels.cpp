@@ -46,8 +46,8 @@ struct Steppers {
   void step(LandauLifshitz<Field> const& generator, RigidBody const& body, S& spins) {
     step_each(generator, spins, of_spins);
     step_each(body, spins, of_bodies);
-    EnergyControl(generator, spins)(Exec(), Step{}, spins);
-    EnergyControl(body, spins)(Exec(), Step{}, spins);
+    EnergyControl(spins, generator)(Exec(), Step{}, spins);
+    EnergyControl(spins, body)(Exec(), Step{}, spins);
   }
 };
 

@@ -58,7 +58,7 @@ Drift<Generator> drift(std::int64_t period, double time = 200) {
   if (period == 0) {
     integrate(Space{}, stepper, generator, spins, times, seen);
   } else {
-    EnergyControl control(generator, spins, {.period = period});
+    EnergyControl control(spins, generator, {.period = period});
     integrate(Space{}, stepper, generator, spins, times, seen, control);
     EXPECT_EQ(control.evaluations_done(), times.steps / period + 1);
     EXPECT_EQ(*control.energy(), seen.begin);
@@ -124,7 +124,7 @@ void expect_order_kept(std::string const& method, int order) {
     dts.push_back(1. / steps);
     Spins spins = copy_of(start);
     Stepper stepper(spins);
-    EnergyControl control(generator, spins);
+    EnergyControl control(spins, generator);
     integrate(Space{}, stepper, generator, spins, Times{0, dts.back(), steps}, control);
     errors.push_back(largest_distance(spins, exact));
   }
@@ -145,7 +145,7 @@ Field turned(Source const& source, Field const& start, double higher,
              EnergyControlOptions options = {}, double dt = 10) {
   Field spins = copy_of(start);
   options.energy = energy(Space{}, source, start).value + higher;
-  EnergyControl control(source, spins, options);
+  EnergyControl control(spins, source, options);
   EXPECT_EQ(control.excess(), 0);
   control(Space{}, Step{0, 0, dt}, spins);
   EXPECT_NEAR(control.excess(), -higher, 1e-12);
@@ -221,7 +221,7 @@ TYPED_TEST(OneCall, SameBits) {
     auto const start = random_spins<Field>(lattice, 11);
     auto const after = [&](auto const& exec) {
       Field spins = copy_of(start);
-      EnergyControl control(generator, spins, {.energy = 0.5});
+      EnergyControl control(spins, generator, {.energy = 0.5});
       for (int n = 0; n < 3; ++n) control(exec, Step{n, 0, 0.3}, spins);
       exec.fence();
       return copy_to_host(spins);
@@ -237,7 +237,7 @@ TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
   auto const energy_of = [](Spins const& spins) {
     return energy(Space{}, slab.natural(), spins).value;
   };
-  EnergyControl control(slab.natural(), start, {.period = 5});
+  EnergyControl control(start, slab.natural(), {.period = 5});
   EXPECT_TRUE(control.due(Step{3}));  // a run may begin anywhere
   control(Space{}, Step{3, 0, 0.1}, start);
   EXPECT_EQ(*control.energy(), energy_of(start));
@@ -250,7 +250,7 @@ TEST(EnergyControl, HoldsTheEnergyOfTheFirstCall) {
 
   // A checkpoint from before the first call holds none.
   CheckpointInMemory checkpoint;
-  EnergyControl before(slab.natural(), start);
+  EnergyControl before(start, slab.natural());
   exchange_memory(before, checkpoint);
   checkpoint.close();
   exchange_memory(control, checkpoint);
@@ -261,7 +261,7 @@ TEST(EnergyControl, LeavesWhatIsNotFinite) {
   auto numbers = copy_to_host(random_spins(slab.lattice, 3));
   numbers[4] = std::numeric_limits<double>::quiet_NaN();
   Spins const spins = spins_of<Spins>(slab.lattice, numbers);
-  EnergyControl control(slab.natural(), spins, {.energy = 1.0});
+  EnergyControl control(spins, slab.natural(), {.energy = 1.0});
   control(Space{}, Step{0, 0, 0.1}, spins);
   auto const found = copy_to_host(spins);
   EXPECT_EQ(std::memcmp(found.data(), numbers.data(), numbers.size() * sizeof(double)), 0);
@@ -270,7 +270,7 @@ TEST(EnergyControl, LeavesWhatIsNotFinite) {
 TEST(EnergyControl, Refuses) {
   Spins const spins = random_spins(slab.lattice, 3);
   auto const refuses = [&](Generator const& generator, EnergyControlOptions const& options) {
-    EXPECT_THROW(EnergyControl(generator, spins, options), std::invalid_argument);
+    EXPECT_THROW(EnergyControl(spins, generator, options), std::invalid_argument);
   };
   Slab damped = slab, overdamped = slab;
   damped.damping = 1e-12;

@@ -167,7 +167,7 @@ TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   LandauLifshitz const conserving(EffectiveField(Zeeman{{0, 0, 1}}), 0);
   LieEuler<Spins> stepper(this->spins);
   double const before = energy(this->exec, conserving, this->spins).value;
-  EnergyControl control(conserving, this->spins), within(conserving, this->spins);
+  EnergyControl control(this->spins, conserving), within(this->spins, conserving);
   integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, Every(2, control),
             Every(1, std::ref(within)));
   ASSERT_TRUE(control.energy());
@@ -182,7 +182,7 @@ TYPED_TEST(Integrate, EveryRefersToObserversWithNames) {
   static_assert(detail::changes_spins<std::reference_wrapper<Control>>);
   static_assert(detail::changes_spins<Every<std::reference_wrapper<Control>>>);
   // A reference asks it, too, whether it wants the call.
-  EnergyControl seldom(conserving, this->spins, {.period = 3});
+  EnergyControl seldom(this->spins, conserving, {.period = 3});
   integrate(this->exec, stepper, conserving, this->spins, {0, 0.1, 4}, std::ref(seldom));
   EXPECT_EQ(seldom.evaluations_done(), 2);
 }

@@ -82,7 +82,7 @@ TEST(WrongCallsOfSums, SpinsOfOthers) {
       generator_refuses("LandauLifshitz", orthogonal(damped));
       generator_refuses("RigidBodyEnsemble", RigidBodyEnsemble(Tensors("tensors", own)));
 
-      EnergyControl control(generator_on(own), Spins("like", own));
+      EnergyControl control(Spins("like", own), generator_on(own));
       expect_made_for_another("EnergyControl", own, spins.lattice(),
                               {{"EnergyControl", [&] {
                                   control(Exec(), Step{0, 0, 0.1, false}, spins);
@@ -98,7 +98,7 @@ TEST(WrongCallsOfSums, TermsOfOthersInsideOwnOnes) {
       FieldWithVacancies const field(EffectiveField(Exchange(other, 1)),
                                      Scalars("occupation", own, 1));
       expect_made_for_another("Exchange", other, own, calls_of_term(field, spins));
-      EnergyControl control(generator_on(other), Spins("like", own));
+      EnergyControl control(Spins("like", own), generator_on(other));
       expect_made_for_another("Exchange", other, own,
                               {{"EnergyControl", [&] {
                                   control(Exec(), Step{0, 0, 0.1, false}, spins);
@@ -165,7 +165,7 @@ TEST(WrongCallsOfTerms, MadeOfNothing) {
       {"axes that moved",
        [] { SiteDependentUniaxialAnisotropy(1, moved_from<Vectors>(Lattice::chain(3))); }},
       {"HostField", [] { HostField(Spins(), NoField()); }},
-      {"EnergyControl", [] { EnergyControl(generator_on(Lattice()), Spins()); }},
+      {"EnergyControl", [] { EnergyControl(Spins(), generator_on(Lattice())); }},
   });
   for (auto const& none : {Tensors(), moved_from<Tensors>(Lattice::chain(3))}) {
     Spins spins("spins", Lattice::chain(3));

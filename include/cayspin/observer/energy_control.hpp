@@ -72,7 +72,7 @@ struct EnergyControlOptions {
 /// next one, and so does not add up. A is that of a generator which conserves an energy and has
 /// no t, and kappa of the order of the method, so that its order stays.
 /// Costs one evaluation of the generator at each correction, two passes and a field of memory:
-///   EnergyControl control(generator, spins);
+///   EnergyControl control(spins, generator);
 ///   integrate(exec, stepper, generator, spins, times, control);
 /// Other observers see the spins as they are before or after it, in the order of the arguments.
 /// Refused when compiled with an AdaptiveStepper, which goes on from a state of its own.
@@ -91,7 +91,7 @@ class EnergyControl {
 
   /// Throws std::invalid_argument when the generator does not conserve its energy, and for options
   /// that cannot be.
-  EnergyControl(Generator generator, Spins const& like, EnergyControlOptions const& options = {})
+  EnergyControl(Spins const& like, Generator generator, EnergyControlOptions const& options = {})
       : generator_(std::move(generator)),
         options_(options),
         energy_(options.energy),

@@ -29,7 +29,7 @@ void use_beside_kernels(Lattice const& lattice) {
   std::vector<Sample> samples;
   Rkmk4 stepper(spins);
   integrate(Exec(), stepper, generator, spins, {.begin = 0, .dt = 0.01, .steps = 4},
-            Every(2, Record(generator, samples)), Normalize{}, EnergyControl(generator, spins));
+            Every(2, Record(generator, samples)), Normalize{}, EnergyControl(spins, generator));
   std::ignore = copy_to_host(spins);
 }
 
