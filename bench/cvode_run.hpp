@@ -70,7 +70,7 @@ class SpinWavePreconditioner {
   };
   /// v' + m x v'' across the spins, and the right side along them.
   struct Turn {
-    cayspin::detail::SiteArray<double, 6> solution;
+    cayspin::SiteArray<double, 6> solution;
     SiteArray right, spins;
     OutputArray output;
     template <class Site>

@@ -21,8 +21,8 @@ namespace by_sundials {
 
 using Spins = cayspin::SpinField<double, Kokkos::HostSpace>;
 using Exec = Kokkos::DefaultHostExecutionSpace;
-using SiteArray = cayspin::detail::SiteArray<double, 3>;
-using OutputArray = cayspin::detail::OutputArray<double, 3>;
+using SiteArray = cayspin::SiteArray<double, 3>;
+using OutputArray = cayspin::OutputArray<double, 3>;
 
 inline void require(bool fine, char const* what) {
   if (!fine) throw std::runtime_error(std::string("SUNDIALS: ") + what + " failed");
@@ -47,7 +47,7 @@ class SpinVectors {
 
   Vector make(SUNContext context) const { return Vector(N_VNew_Serial(length_, context)); }
   cayspin::Lattice const& lattice() const { return spins_.lattice(); }
-  cayspin::detail::RowLayout const& layout() const { return spins_.layout(); }
+  cayspin::RowLayout const& layout() const { return spins_.layout(); }
 
   void write(Spins const& from, N_Vector to) const {
     if (in_place_)

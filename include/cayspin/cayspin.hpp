@@ -42,6 +42,7 @@
 #include <cayspin/observer/topological_charge.hpp>
 #include <cayspin/rotation/cayley.hpp>
 #include <cayspin/rotation/exponential.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/scalars.hpp>
 #include <cayspin/shells.hpp>
 #include <cayspin/spin_field.hpp>

@@ -3,7 +3,8 @@
 
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/ghosts.hpp>
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <array>
@@ -93,7 +94,7 @@ class SiteField {
  public:
   using value_type = Real;
   using memory_space = MemorySpace;
-  using array_type = detail::SiteArray<Real, Components>;
+  using array_type = SiteArray<Real, Components>;
   static constexpr int components = Components;
 
   SiteField() = default;
@@ -110,7 +111,7 @@ class SiteField {
   /// Allocates; every site starts as (0, .., 0, last_component).
   SiteField(std::string const& label, Lattice const& lattice, Real last_component = Real(0))
       : lattice_(detail::validated(lattice)),
-        layout_(detail::RowLayout::of<Real>(lattice)),
+        layout_(RowLayout::of<Real>(lattice)),
         data_(Kokkos::view_alloc(Kokkos::WithoutInitializing, "cayspin::" + label),
               layout_.allocation(Components)) {
     using Exec = typename MemorySpace::execution_space;
@@ -123,16 +124,14 @@ class SiteField {
   }
 
   Lattice const& lattice() const { return lattice_; }
-  detail::RowLayout const& layout() const { return layout_; }
+  RowLayout const& layout() const { return layout_; }
   std::int64_t sites() const { return layout_.own.count() * layout_.nx; }  // ghosts not counted
   std::size_t bytes() const { return data_.size() * sizeof(Real); }
   std::string label() const { return data_.label(); }
 
-  /// What kernels take.
+  /// What kernels and field terms take.
   array_type array() const { return {data_.data() + layout_.origin, layout_.component_stride}; }
-  detail::OutputArray<Real, Components> output(bool streaming) const {
-    return {array(), streaming};
-  }
+  OutputArray<Real, Components> output(bool streaming) const { return {array(), streaming}; }
   /// The allocation, for deep copies between fields of one lattice.
   Kokkos::View<Real*, MemorySpace> const& allocation() const { return data_; }
 
@@ -160,7 +159,7 @@ class SiteField {
 
  private:
   Lattice lattice_{{0, 0, 0}};  // that of no other field
-  detail::RowLayout layout_;
+  RowLayout layout_;
   Kokkos::View<Real*, MemorySpace> data_;
 };
 

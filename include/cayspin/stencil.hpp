@@ -9,7 +9,7 @@ namespace cayspin::inline v0_1 {
 /// the lattice. On the host a value is a pack: one number for each of several sites.
 /// Functions cayspin::next<0>(stencil) and cayspin::previous<0>(stencil) are the same as the
 /// members, and need no word `template` in generic code.
-template <class Site, class Real, class Spins = detail::SiteArray<Real, 3>>
+template <class Site, class Real, class Spins = SiteArray<Real, 3>>
 class Stencil {
  public:
   using value_type = typename Site::value_type;

@@ -143,7 +143,7 @@ class Compiled {
     if constexpr (requires { Of::work_bytes(lattice, PredictedRun{}); })
       return static_cast<std::int64_t>(
           Of::work_bytes(lattice, {.threads = expected_threads(), .by_time_alone = by_time_alone}));
-    auto const layout = cayspin::detail::RowLayout::of<Real>(lattice);
+    auto const layout = cayspin::RowLayout::of<Real>(lattice);
     return static_cast<std::int64_t>(work_fields<Real>() * layout.allocation(3) * sizeof(Real));
   }
   static std::int64_t work_bytes(Lattice const& lattice, bool by_time_alone, Precision precision) {

@@ -13,10 +13,10 @@ namespace cayspin::simulation {
 template <class Real>
 struct EvaluateInPass {
   PassTerms<Real> terms;
-  cayspin::detail::SiteArray<Real, 3> spins;
-  cayspin::detail::SiteArray<Real, 1> moves;  // without data: all do
-  cayspin::detail::OutputArray<Real, 3> field;
-  cayspin::detail::OutputArray<Real, 1> energies;
+  cayspin::SiteArray<Real, 3> spins;
+  cayspin::SiteArray<Real, 1> moves;  // without data: all do
+  cayspin::OutputArray<Real, 3> field;
+  cayspin::OutputArray<Real, 1> energies;
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
@@ -30,8 +30,8 @@ struct EvaluateInPass {
 /// NormDefectOfSites where there is a moment.
 template <class Real>
 struct NormDefectOfMoments {
-  cayspin::detail::SiteArray<Real, 3> spins;
-  cayspin::detail::SiteArray<Real, 1> moments;
+  cayspin::SiteArray<Real, 3> spins;
+  cayspin::SiteArray<Real, 1> moments;
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {

@@ -25,13 +25,13 @@ struct CellSite {
 /// An anisotropy whose constant differs from site to site.
 template <class Real>
 using AnisotropyOfSites =
-    cayspin::detail::UniaxialAnisotropyOfSites<cayspin::detail::SiteArray<Real, 1>, Vec3<double>>;
+    cayspin::detail::UniaxialAnisotropyOfSites<cayspin::SiteArray<Real, 1>, Vec3<double>>;
 
 /// The constants of a site's bonds to vacancies, over the spacing squared.
 template <class Real>
 struct FindMissing {
-  cayspin::detail::SiteArray<Real, 1> moments;  // 0: a vacancy
-  cayspin::detail::OutputArray<Real, 1> missing;
+  cayspin::SiteArray<Real, 1> moments;  // 0: a vacancy
+  cayspin::OutputArray<Real, 1> missing;
   double bonds[3];
 
   template <class Site>
@@ -61,7 +61,7 @@ struct FindMissing {
 /// neighbours, v = n x e / spacing of an interface, and -e / spacing of the bulk.
 template <class Real>
 struct DmiOfSites {
-  cayspin::detail::SiteArray<Real, 1> constants;
+  cayspin::SiteArray<Real, 1> constants;
   Vec3<double> vectors[3];
 
   template <class Stencil>
@@ -121,7 +121,7 @@ struct PassTerms {
   DmiOfSites<Real> dmi_of_sites;  // without data: none
   AnisotropyOfSites<Real> const* anisotropies_of_sites;
   std::int32_t anisotropies, cubics_of_cell;
-  cayspin::detail::SiteArray<Real, 1> moments;  // 0 where there is no spin
+  cayspin::SiteArray<Real, 1> moments;  // 0 where there is no spin
   Vec3<double> applied_in_field;  // zero where another adds what it makes of the applied field
   bool has_usual, has_pairs, has_zhang_li, has_slonczewski, has_vacancies;
   bool is_gradient;  // -dE/dm, without moments, gyromagnetic ratios and torques

@@ -12,8 +12,8 @@
 #include "text.hpp"
 #include "thermal.hpp"
 
-#include <cayspin/detail/row_layout.hpp>
 #include <cayspin/minimize.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/stability.hpp>
 
 #include <fmt/format.h>
@@ -46,8 +46,8 @@ Lattice make_lattice(io::Scene const& scene) {
 
 template <class Real>
 std::int64_t field_bytes(Lattice const& lattice, int components) {
-  return static_cast<std::int64_t>(
-      cayspin::detail::RowLayout::of<Real>(lattice).allocation(components) * sizeof(Real));
+  return static_cast<std::int64_t>(cayspin::RowLayout::of<Real>(lattice).allocation(components) *
+                                   sizeof(Real));
 }
 
 template <class Real>

@@ -110,7 +110,7 @@ struct SceneFieldNow {
   Zeeman zeeman;  // zero without an applied field
   cayspin::detail::StoredField<Real> stored;
   bool has_applied, has_stored;
-  cayspin::detail::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
+  cayspin::SiteArray<Real, 1> energies = {};  // of all terms, where one pass has them
   FieldAlongRows<Real> along_rows = {};
 
   // The row that begin_row was called for.
@@ -245,7 +245,7 @@ struct SceneFieldNow {
 /// Numbers of sites that change how spins turn in H.
 template <class Real>
 struct OwnOfSites {
-  cayspin::detail::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data
+  cayspin::SiteArray<Real, 1> dampings = {}, rates = {};  // or without data
   bool precession = true;
 
   KOKKOS_FORCEINLINE_FUNCTION bool any() const { return rates.data || dampings.data; }

@@ -55,7 +55,7 @@ struct RowPiece {
 /// Exchange takes vacancies for neighbours; this adds what it lacks: H = A m for each.
 template <class Real>
 struct MissingNeighbors {
-  cayspin::detail::SiteArray<Real, 1> exchange;
+  cayspin::SiteArray<Real, 1> exchange;
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> field(

@@ -34,8 +34,8 @@ TYPED_TEST(Streaming, StoresEveryLane) {
 /// Turns every spin, into an output that is streamed or not.
 template <class Real>
 struct Turn {
-  detail::SiteArray<Real, 3> from;
-  detail::OutputArray<Real, 3> to;
+  SiteArray<Real, 3> from;
+  OutputArray<Real, 3> to;
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {
     using Value = typename Site::value_type;

@@ -116,9 +116,8 @@ TYPED_TEST(Sweep, IsLeftWhereItsBuffersExceedFields) {
         Lattice const lattice{shape, {1, 1, 1}, {}};
         std::size_t const passes =
             work_bytes(lattice, {.threads = threads, .by_time_alone = false});
-        std::size_t const field =
-            detail::RowLayout::of<typename Field::value_type>(lattice).allocation(3) *
-            sizeof(typename Field::value_type);
+        std::size_t const field = RowLayout::of<typename Field::value_type>(lattice).allocation(3) *
+                                  sizeof(typename Field::value_type);
         std::size_t const sweep = work_bytes(lattice, {.threads = threads});
         EXPECT_LE(sweep, passes + field) << name_of(lattice) << threads;
       }

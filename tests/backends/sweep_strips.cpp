@@ -83,7 +83,7 @@ using Buffers4 = detail::StageBuffers<tableau::Classical4, update::Lie<Cayley>>;
 
 template <class Real>
 detail::SweepPlan plan_for(Lattice const& lattice, int threads) {
-  return detail::SweepPlan::of<Real, Buffers4>(detail::RowLayout::of<Real>(lattice), threads,
+  return detail::SweepPlan::of<Real, Buffers4>(RowLayout::of<Real>(lattice), threads,
                                                std::size_t(1) << 19);
 }
 

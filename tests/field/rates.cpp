@@ -15,7 +15,7 @@ TYPED_TEST_SUITE(FieldRates, Backends, BackendName);
 template <class Term, class Real>
 struct RateOfField {
   Term term;
-  detail::SiteArray<Real, 3> spins;
+  SiteArray<Real, 3> spins;
 
   template <class Stencil>
   KOKKOS_FUNCTION Vec3<typename Stencil::value_type> field(Stencil const& rates) const {

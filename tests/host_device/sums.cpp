@@ -14,7 +14,7 @@ using Numbers = ScalarField<double, HostDeviceMemory>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct SumAndLargest {
-  detail::SiteArray<double, 1> numbers;
+  SiteArray<double, 1> numbers;
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site, Value* values) const {
     values[0] = values[1] = site.load(numbers);

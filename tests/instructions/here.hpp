@@ -78,8 +78,8 @@ void for_each_task(instructions::Here const&, std::string const&, std::int64_t c
 void Kokkos::Tools::pushRegion(std::string const&) {}
 void Kokkos::Tools::popRegion() {}
 
-#include <cayspin/detail/row_layout.hpp>
 #include <cayspin/lattice.hpp>
+#include <cayspin/row_layout.hpp>
 
 namespace cayspin::instructions {
 
@@ -93,7 +93,7 @@ class Spins {
   Spins() = default;
   Spins(std::string const& label, Lattice const& lattice)
       : lattice_(lattice),
-        layout_(detail::RowLayout::of<Real>(lattice)),
+        layout_(RowLayout::of<Real>(lattice)),
         numbers_(label, layout_.allocation(3)) {
     for (std::int64_t site = 0; site < layout_.sites(); ++site) {
       Real* const m = array().data + layout_.offset(site);
@@ -105,19 +105,19 @@ class Spins {
   }
 
   Lattice const& lattice() const { return lattice_; }
-  detail::RowLayout const& layout() const { return layout_; }
+  RowLayout const& layout() const { return layout_; }
   std::int64_t sites() const { return layout_.sites(); }
   std::size_t bytes() const { return numbers_.size() * sizeof(Real); }
-  detail::SiteArray<Real, 3> array() const {
+  SiteArray<Real, 3> array() const {
     return {numbers_.data() + layout_.origin, layout_.component_stride};
   }
-  detail::OutputArray<Real, 3> output(bool streaming) const { return {array(), streaming}; }
+  OutputArray<Real, 3> output(bool streaming) const { return {array(), streaming}; }
 
   friend void swap(Spins& a, Spins& b) noexcept { std::swap(a.numbers_, b.numbers_); }
 
  private:
   Lattice lattice_;
-  detail::RowLayout layout_;
+  RowLayout layout_;
   Kokkos::View<Real*, Memory> numbers_;
 };
 

@@ -133,7 +133,7 @@ TYPED_TEST(Copies, RowsLieOnCacheLines) {
 TEST(Layouts, PlanesAreNoWholePagesApart) {
   for (std::int64_t const nx : {17, 32, 64, 100})
     for (std::int64_t const ny : {16, 31, 32, 64, 128}) {
-      auto const layout = detail::RowLayout::of<double>(Lattice::cubic(nx, ny, 2));
+      auto const layout = RowLayout::of<double>(Lattice::cubic(nx, ny, 2));
       auto const lines = layout.plane * 8 / detail::cache_line_bytes, least = ny * layout.pitch / 8;
       EXPECT_LE(lines, least + least / 4 + 1) << nx << " " << ny;
       if (lines < 64) continue;

@@ -46,7 +46,7 @@ std::size_t number_of(std::array<std::int32_t, 3> const& shape, std::int32_t x, 
 }
 
 /// How often each of nx * ny * nz sites is met, for rows inside.
-std::vector<int> visits(std::array<std::int32_t, 3> const& shape, detail::RowRange const& rows) {
+std::vector<int> visits(std::array<std::int32_t, 3> const& shape, RowRange const& rows) {
   std::vector<int> count(number_of(shape, 0, 0, shape[2]));
   detail::DeviceTiles const tiles(shape[0], rows);
   auto const visit = [&](std::int32_t x, std::int32_t y, std::int32_t z) {
@@ -60,17 +60,18 @@ std::vector<int> visits(std::array<std::int32_t, 3> const& shape, detail::RowRan
 
 TEST(DeviceTiles, EachSiteOfARangeOnce) {
   for (auto const& [shape, rows] :
-       std::vector<std::pair<std::array<std::int32_t, 3>, detail::RowRange>>{
-           {{1, 1, 1}, {0, 1, 0, 1}},
-           {{2, 1, 1}, {0, 1, 0, 1}},
-           {{129, 1, 1}, {0, 1, 0, 1}},
-           {{1, 200, 1}, {0, 200, 0, 1}},
-           {{1, 1, 9}, {0, 1, 0, 9}},
-           {{5, 7, 3}, {0, 7, 0, 3}},
-           {{33, 6, 4}, {2, 5, 1, 3}},
-           {{31, 9, 6}, {8, 9, 5, 6}},
-           {{257, 130, 67}, {0, 130, 0, 67}},     // walks of 4
-           {{257, 130, 150}, {3, 129, 2, 147}}})  // and of 8, which do not fill up
+       std::vector<std::pair<std::array<std::int32_t, 3>,
+                             RowRange>>{{{1, 1, 1}, {0, 1, 0, 1}},
+                                        {{2, 1, 1}, {0, 1, 0, 1}},
+                                        {{129, 1, 1}, {0, 1, 0, 1}},
+                                        {{1, 200, 1}, {0, 200, 0, 1}},
+                                        {{1, 1, 9}, {0, 1, 0, 9}},
+                                        {{5, 7, 3}, {0, 7, 0, 3}},
+                                        {{33, 6, 4}, {2, 5, 1, 3}},
+                                        {{31, 9, 6}, {8, 9, 5, 6}},
+                                        {{257, 130, 67}, {0, 130, 0, 67}},  // walks of 4
+                                        {{257, 130, 150},
+                                         {3, 129, 2, 147}}})  // and of 8, which do not fill up
   {
     auto const count = visits(shape, rows);
     for (std::int32_t z = 0; z < shape[2]; ++z)
@@ -85,8 +86,7 @@ TEST(DeviceTiles, EachSiteOfARangeOnce) {
 }
 
 /// The neighbour of a site by its definition, as an offset.
-std::int64_t beside(detail::RowLayout const& layout, std::array<std::int32_t, 3> at, int axis,
-                    int step) {
+std::int64_t beside(RowLayout const& layout, std::array<std::int32_t, 3> at, int axis, int step) {
   auto const along = static_cast<std::size_t>(axis);
   std::int32_t const extent = std::array{layout.nx, layout.ny, layout.nz}[along];
   std::int32_t& index = at[along];
@@ -98,8 +98,8 @@ std::int64_t beside(detail::RowLayout const& layout, std::array<std::int32_t, 3>
 }
 
 template <class Index, int Axis, int Direction>
-void expect_neighbor(detail::RowLayout const& layout, std::array<std::int32_t, 3> const& at,
-                     detail::SiteArray<double, 1> const& numbers) {
+void expect_neighbor(RowLayout const& layout, std::array<std::int32_t, 3> const& at,
+                     SiteArray<double, 1> const& numbers) {
   detail::DeviceLayout<Index> const known(layout);
   detail::DeviceSite<double, Index> const site(known, at[0], at[1], at[2]);
   std::int64_t const expected = beside(layout, at, Axis, 2 * Direction - 1);
@@ -117,7 +117,7 @@ void expect_neighbor(detail::RowLayout const& layout, std::array<std::int32_t, 3
 }
 
 template <class Index>
-void expect_neighbors(detail::RowLayout const& layout, detail::SiteArray<double, 1> const& numbers,
+void expect_neighbors(RowLayout const& layout, SiteArray<double, 1> const& numbers,
                       std::array<std::int32_t, 3> const& at) {
   detail::unrolled<3>([&](auto axis) {
     expect_neighbor<Index, axis(), 0>(layout, at, numbers);
@@ -132,10 +132,10 @@ TEST(DeviceSites, NeighborsAtAllEnds) {
       Lattice lattice{shape};
       for (std::size_t axis = 0; axis < 3; ++axis)
         lattice.boundary[axis] = ends >> axis & 1 ? Boundary::periodic : Boundary::open;
-      auto const layout = detail::RowLayout::of<double>(lattice);
+      auto const layout = RowLayout::of<double>(lattice);
       std::vector<double> offsets(static_cast<std::size_t>(layout.component_stride));
       std::iota(offsets.begin(), offsets.end(), 0.);
-      detail::SiteArray<double, 1> const numbers{offsets.data(), layout.component_stride};
+      SiteArray<double, 1> const numbers{offsets.data(), layout.component_stride};
       for (std::int32_t z = 0; z < layout.nz; ++z)
         for (std::int32_t y = 0; y < layout.ny; ++y)
           for (std::int32_t x = 0; x < layout.nx; ++x) {
@@ -146,8 +146,8 @@ TEST(DeviceSites, NeighborsAtAllEnds) {
 }
 
 /// A field of nz planes of 2^20 numbers that nobody has allocated.
-detail::RowLayout large_layout(std::int32_t nz) {
-  detail::RowLayout layout;
+RowLayout large_layout(std::int32_t nz) {
+  RowLayout layout;
   layout.nx = layout.ny = 1 << 10;
   layout.pitch = layout.nx;
   layout.plane = layout.ny * layout.pitch;

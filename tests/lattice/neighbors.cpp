@@ -21,7 +21,7 @@ struct Neighbor {
 /// A generator that returns what a field of numbers holds before the site, on it and after it.
 template <int Axis, class Real>
 struct Numbers {
-  detail::SiteArray<Real, 1> numbers;
+  SiteArray<Real, 1> numbers;
 
   template <class Stencil>
   KOKKOS_FORCEINLINE_FUNCTION auto operator()(Stencil const& stencil) const {
@@ -153,7 +153,7 @@ TYPED_TEST(Neighbors, LongRows) {
   for (std::int64_t const nx : {2 * task, 2 * task + 1, 3 * task - 1, 3 * task + 13})
     for (int const bits : {0, 7})
       this->expect_neighbors({{nx, 2, 1}, {1, 1, 1}, this->boundaries(bits)});
-  EXPECT_EQ(detail::tasks_per_row(detail::RowLayout::of<float>(Lattice::chain(3 * task + 13))), 3);
+  EXPECT_EQ(detail::tasks_per_row(RowLayout::of<float>(Lattice::chain(3 * task + 13))), 3);
 }
 
 // Each site is visited with its own index; writing past the caches changes nothing.

@@ -10,7 +10,7 @@ import tempfile
 # list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
 LIBRARY = [
     ("numbers", ["vec3.hpp", "units.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
-    ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
+    ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "row_layout.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
     ("loops over sites", ["detail/"]),
     ("spins", ["spin_field.hpp", "stencil.hpp"]),
     ("contracts", ["concepts.hpp", "checkpoint.hpp", "optional_members.hpp", "step.hpp", "field/parts.hpp"]),

@@ -253,7 +253,7 @@ struct Held {
   struct Now {
     decltype(detail::prepare_term(std::declval<Generator const&>(), Space(),
                                   std::declval<SpinField<double, Memory> const&>(), 0.0)) prepared;
-    detail::SiteArray<double, 1> moves;
+    SiteArray<double, 1> moves;
 
     template <class Stencil>
     KOKKOS_FORCEINLINE_FUNCTION Vec3<typename Stencil::value_type> operator()(

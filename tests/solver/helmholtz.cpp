@@ -181,7 +181,7 @@ TYPED_TEST(Helmholtz, LinesAreSolvedToRoundOff) {
     Kokkos::complex<Real> const b(Real(0.05), -1);
     auto couplings = problem.couplings;
     int const axis = *detail::only_coupled_axis(problem.lattice, couplings);
-    typename TestFixture::Lines solver("lines", detail::RowLayout::of<Real>(problem.lattice), axis,
+    typename TestFixture::Lines solver("lines", RowLayout::of<Real>(problem.lattice), axis,
                                        couplings[static_cast<std::size_t>(axis)]);
     auto const solve = [&](Numbers const& rest) {
       Field z("z", problem.lattice);
@@ -203,7 +203,7 @@ TYPED_TEST(Helmholtz, LinesOfSingleNumbersFindTheRowsOfPaddedPlanes) {
   using Field = SiteField<Real, 3, Kokkos::HostSpace>;
   using Lines = detail::SolveLines<Real, 3>;
   Problem const problem{"", Lattice::cubic(14, 16, 4), {0, 0, 0}};
-  auto const layout = detail::RowLayout::of<Real>(problem.lattice);
+  auto const layout = RowLayout::of<Real>(problem.lattice);
   std::vector<Real> const inverse(7, Real(0.5)), ratio(7, Real(0));
   detail::LineFactors<Real> factors;
   factors.inverse = inverse.data();

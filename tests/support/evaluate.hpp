@@ -15,8 +15,8 @@ namespace cayspin::test {
 template <class Source, class Real>
 struct Evaluate {
   Source source;
-  detail::SiteArray<Real, 3> spins;
-  detail::OutputArray<Real, 3> result;
+  SiteArray<Real, 3> spins;
+  OutputArray<Real, 3> result;
 
   template <class Site>
   KOKKOS_FORCEINLINE_FUNCTION void operator()(Site const& site) const {

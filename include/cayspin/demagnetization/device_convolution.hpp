@@ -6,7 +6,7 @@
 #include <cayspin/demagnetization/spectrum_of_interactions.hpp>
 #include <cayspin/demagnetization/spectrum_of_parts.hpp>
 #include <cayspin/detail/memory.hpp>
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/row_layout.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/row_layout.hpp>
 
 #include <Kokkos_Core.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cayspin/detail/execution.hpp>
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <cstddef>

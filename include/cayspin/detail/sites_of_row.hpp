@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/detail/memory.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/vec3.hpp>
 
 #include <cstddef>

@@ -3,10 +3,10 @@
 
 #include <cayspin/coupling.hpp>
 #include <cayspin/detail/pack.hpp>
-#include <cayspin/detail/row_layout.hpp>
 #include <cayspin/detail/table.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
+#include <cayspin/row_layout.hpp>
 
 #include <algorithm>
 #include <array>

@@ -16,9 +16,8 @@
 
 namespace cayspin::inline v0_1 {
 
-namespace detail {
-
-/// A number for each site of a crystal's cell.
+/// A number for each site of a crystal's cell, as kernels see it: a prepared term calls
+/// moments.at(stencil.site()).
 struct NumbersOfCell {
   double const* numbers;
   std::int32_t cell_sites;
@@ -28,8 +27,6 @@ struct NumbersOfCell {
     return as_value<ValueOf<Site>>(numbers[site.z() % cell_sites]);
   }
 };
-
-}  // namespace detail
 
 /// The moment mu and the gyromagnetic ratio g of each site of a crystal's cell. A moment of 0 is no
 /// spin.
@@ -47,15 +44,14 @@ class CellMoments {
 
   Lattice const& lattice() const { return lattice_; }
 
-  // For kernels.
-  detail::NumbersOfCell moments() const { return numbers(moments_); }
+  NumbersOfCell moments() const { return numbers(moments_); }
   /// g / mu, and 0 without a spin.
-  detail::NumbersOfCell factors() const { return numbers(factors_); }
+  NumbersOfCell factors() const { return numbers(factors_); }
 
  private:
   using Table = Kokkos::View<double*, MemorySpace>;
 
-  static detail::NumbersOfCell numbers(Table const& table) {
+  static NumbersOfCell numbers(Table const& table) {
     return {table.data(), static_cast<std::int32_t>(table.size())};
   }
 

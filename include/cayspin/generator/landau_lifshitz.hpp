@@ -112,7 +112,7 @@ class LandauLifshitz : public Forwarding<LandauLifshitz<Field, Damping>, Field>,
       throw std::invalid_argument("cayspin::LandauLifshitz: damping must be >= 0 on every site");
   }
   template <class Real>
-  static void check(detail::SiteArray<Real, 1> const&) {}  // of a field that was checked
+  static void check(SiteArray<Real, 1> const&) {}  // of a field that was checked
 
   template <class Site, class Value>
   KOKKOS_FORCEINLINE_FUNCTION Vec3<Value> generator(Site const& site, Vec3<Value> const& m,

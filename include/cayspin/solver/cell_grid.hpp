@@ -4,7 +4,7 @@
 #include <cayspin/detail/attributes.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/narrowing_store.hpp>
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/solver/cell_axis.hpp>
 #include <cayspin/spin_field.hpp>
 #include <cayspin/vec3.hpp>

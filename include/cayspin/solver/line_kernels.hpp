@@ -3,7 +3,7 @@
 
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/memory.hpp>
-#include <cayspin/detail/row_layout.hpp>
+#include <cayspin/row_layout.hpp>
 #include <cayspin/solver/coefficient_scalar.hpp>
 
 #include <cstddef>

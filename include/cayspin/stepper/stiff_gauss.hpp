@@ -274,7 +274,7 @@ class StiffGauss : public detail::StepperBase<Spins> {
     ++evaluations_done_;
   }
 
-  detail::OutputArray<Real, 3> part_of_residual(std::size_t s) const {
+  OutputArray<Real, 3> part_of_residual(std::size_t s) const {
     auto const all = residual_.array();
     return {{all.data + 3 * static_cast<std::ptrdiff_t>(s) * all.stride, all.stride}, false};
   }

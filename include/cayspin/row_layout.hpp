@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/memory.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
+
+#include <Kokkos_Core.hpp>
 
 #include <cstddef>
 #include <cstdint>
 
-namespace cayspin::inline v0_1::detail {
+namespace cayspin::inline v0_1 {
 
+namespace detail {
 inline constexpr std::int64_t cache_line_bytes = 64;
+}  // namespace detail
 
 /// Rows y_begin .. y_end - 1 of planes z_begin .. z_end - 1.
 struct RowRange {
@@ -38,7 +41,8 @@ struct RowLayout {
 
   template <class Real>
   static RowLayout of(Lattice const& lattice) {
-    constexpr std::ptrdiff_t line = cache_line_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
+    constexpr std::ptrdiff_t line =
+        detail::cache_line_bytes / static_cast<std::ptrdiff_t>(sizeof(Real));
     auto const odd_lines = [](std::ptrdiff_t count) {
       std::ptrdiff_t const lines = (count + line - 1) / line;
       return (lines % 2 == 0 ? lines + 1 : lines) * line;
@@ -73,7 +77,7 @@ struct RowLayout {
 
   /// At least so many cache lines: an odd number, a sixth of a page or more from whole pages.
   static std::ptrdiff_t lines_of_plane(std::ptrdiff_t least) {
-    constexpr std::ptrdiff_t page = 4096 / cache_line_bytes, sixth = page / 6 | 1;
+    constexpr std::ptrdiff_t page = 4096 / detail::cache_line_bytes, sixth = page / 6 | 1;
     std::ptrdiff_t const lines = least | 1, past = lines % page;
     if (lines < page || (past >= sixth && past <= page - sixth)) return lines;
     return lines + sixth - past + (past < sixth ? 0 : page);
@@ -110,8 +114,8 @@ struct RowLayout {
   }
 };
 
-/// A field as a kernel sees it: component c of the site at `offset` is data[c * stride +
-/// offset].
+/// A field as a kernel sees it, and what a field term keeps of one: stencil.site().load(array).
+/// Component c of the site at RowLayout::offset is data[c * stride + offset].
 template <class Real, int Components>
 struct SiteArray {
   using value_type = Real;
@@ -126,4 +130,4 @@ struct OutputArray : SiteArray<Real, Components> {
   bool streaming = false;
 };
 
-}  // namespace cayspin::inline v0_1::detail
+}  // namespace cayspin::inline v0_1
