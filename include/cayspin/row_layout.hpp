@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/backend.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/part.hpp>
 
@@ -10,10 +11,6 @@
 #include <cstdint>
 
 namespace cayspin::inline v0_1 {
-
-namespace detail {
-inline constexpr std::int64_t cache_line_bytes = 64;
-}  // namespace detail
 
 /// Rows y_begin .. y_end - 1 of planes z_begin .. z_end - 1.
 struct RowRange {
@@ -77,7 +74,8 @@ struct RowLayout {
 
   /// At least so many cache lines: an odd number, a sixth of a page or more from whole pages.
   static std::ptrdiff_t lines_of_plane(std::ptrdiff_t least) {
-    constexpr std::ptrdiff_t page = 4096 / detail::cache_line_bytes, sixth = page / 6 | 1;
+    constexpr std::ptrdiff_t page = detail::page_bytes / detail::cache_line_bytes,
+                             sixth = page / 6 | 1;
     std::ptrdiff_t const lines = least | 1, past = lines % page;
     if (lines < page || (past >= sixth && past <= page - sixth)) return lines;
     return lines + sixth - past + (past < sixth ? 0 : page);

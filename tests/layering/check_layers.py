@@ -9,7 +9,7 @@ import tempfile
 # Lowest room first. A header may include headers of its own room and of the rooms above it in this
 # list. The first matching pattern decides, relative to include/cayspin; "folder/" is all below it.
 LIBRARY = [
-    ("numbers", ["vec3.hpp", "units.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
+    ("numbers", ["vec3.hpp", "units.hpp", "detail/backend.hpp", "detail/pack.hpp", "detail/unrolled.hpp"]),
     ("lattice", ["lattice.hpp", "lattice/", "part.hpp", "row_layout.hpp", "crystal.hpp", "coupling.hpp", "shells.hpp"]),
     ("loops over sites", ["detail/"]),
     ("spins", ["spin_field.hpp", "stencil.hpp"]),
@@ -46,6 +46,12 @@ PROGRAMS = [
 # No header in detail/ is named after physics.
 PHYSICS = ("anisotropy damping demag energy exchange field flow generator isotropy newton observer "
            "rotation sigma spin stability stepper tableau zeeman").split()
+
+# What compilers, processors and devices define, and the headers that may ask for it.
+BACKEND_MACRO = re.compile(r"\bKOKKOS_(?:ENABLE|ARCH)_\w+|"
+                           r"\b__(?:CUDA|HIP|SYCL|NVCC|GNUC|clang|x86|FMA|AVX|SSE|ARM|aarch)\w*")
+BACKEND_HEADERS = ("/detail/backend.hpp", "/detail/execution.hpp",
+                   "/demagnetization/device_transforms.hpp")
 
 # Where "a quoted include" may lie besides its own folder, and what the build writes.
 INCLUDE_FOLDERS = ["src", "src/io", "src/simulation", "paper", "tests"]
@@ -152,11 +158,21 @@ class Tree:
                 self.problems.append(f"{name}: not all of it is in {expected}")
 
     def check_members_without_address(self):
-        """Plain ones have another size in device code: see detail/attributes.hpp."""
+        """Plain ones have another size in device code: see detail/backend.hpp."""
         for name in self.includes:
             text = (self.root / name).read_text(encoding="utf-8")
-            if "[[no_unique_address]]" in text and not name.endswith("/detail/attributes.hpp"):
+            if "[[no_unique_address]]" in text and not name.endswith("/detail/backend.hpp"):
                 self.problems.append(f"{name}: write CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS, for nvcc")
+
+
+    def check_backends(self):
+        """A port to another backend edits these few headers."""
+        for name in self.includes:
+            if not name.startswith("include/") or name.endswith(BACKEND_HEADERS):
+                continue
+            text = (self.root / name).read_text(encoding="utf-8")
+            for macro in sorted(set(BACKEND_MACRO.findall(text))):
+                self.problems.append(f"{name}: {macro} is of a backend, for detail/backend.hpp")
 
 
 def problems_of(root):
@@ -170,6 +186,7 @@ def problems_of(root):
     tree.check_names_in_detail()
     tree.check_versioned_namespace()
     tree.check_members_without_address()
+    tree.check_backends()
     return tree.problems
 
 
@@ -182,6 +199,7 @@ MISTAKES = [
     ("include/cayspin/other/a.hpp", "", "in no room"),
     ("include/cayspin/detail/damping_loop.hpp", "", "damping is physics"),
     ("include/cayspin/vec3.hpp", "namespace cayspin::detail {", "not all of it is in"),
+    ("include/cayspin/vec3.hpp", "#if defined(__CUDA_ARCH__)", "is of a backend"),
     ("src/io/a.cpp", '#include "simulation/s.hpp"', "(reader and writer) includes"),
     ("src/io/a.cpp", '#include "../program/p.hpp"', "(reader and writer) includes"),
     ("src/program/p.cpp", '#include "../../paper/table.hpp"', "(program) includes"),

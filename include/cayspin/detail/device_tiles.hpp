@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/backend.hpp>
 #include <cayspin/row_layout.hpp>
 
 #include <Kokkos_Core.hpp>
@@ -9,9 +10,9 @@
 #include <bit>
 #include <cstdint>
 
-// Which sites a thread of a device works on. Threads are numbered; 128 of them, a block of Kokkos
-// on most devices, share a tile of rows, and each walks along z. So most neighbours along y and z
-// come from the cache of the multiprocessor, and what is found once serves several sites.
+// Which sites a thread of a device works on. Threads are numbered; threads_of_tile of them share a
+// tile of rows, and each walks along z. So most neighbours along y and z come from the cache of the
+// multiprocessor, and what is found once serves several sites.
 namespace cayspin::inline v0_1::detail {
 
 /// Division of numbers below 2^31 by a positive divisor that is known at the launch: a product and
@@ -73,7 +74,7 @@ class DeviceTiles {
   }
 
  private:
-  static constexpr std::uint32_t threads = 128;  // of a tile
+  static constexpr std::uint32_t threads = threads_of_tile;
 
   static std::uint32_t tiles(std::int64_t extent, std::int64_t tile) {
     return static_cast<std::uint32_t>((extent + tile - 1) / tile);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/attributes.hpp>
+#include <cayspin/detail/backend.hpp>
 
 #include <Kokkos_Core.hpp>
 

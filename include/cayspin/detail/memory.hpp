@@ -13,8 +13,8 @@
 #include <unistd.h>
 #endif
 
-// Loads and stores of packs, and the few things that depend on processor or operating system:
-// non-temporal stores, huge pages, the size of the last cache.
+// Loads and stores of packs, and the few things that depend on the operating system: huge pages,
+// the size of the last cache.
 namespace cayspin::inline v0_1::detail {
 
 template <class Value, class Real>
@@ -64,8 +64,7 @@ KOKKOS_FORCEINLINE_FUNCTION void store(Value const& value, scalar_t<Value>* to) 
 /// computes an address where it is used, rather than keep more of them than there are registers.
 template <class Word>
 KOKKOS_FORCEINLINE_FUNCTION Word opaque(Word word) {
-#if defined(__GNUC__) && defined(__x86_64__) && !defined(__CUDA_ARCH__) && \
-    !defined(__HIP_DEVICE_COMPILE__) && !defined(__SYCL_DEVICE_ONLY__)
+#if defined(CAYSPIN_DETAIL_GNU) && defined(CAYSPIN_DETAIL_X86)
   __asm__("" : "+r"(word));
 #endif
   return word;
@@ -96,14 +95,14 @@ KOKKOS_FORCEINLINE_FUNCTION void store_streaming(Value const& value, scalar_t<Va
 
 /// Asks for a cache line that will be read about a row later; any address will do.
 KOKKOS_FORCEINLINE_FUNCTION void prefetch([[maybe_unused]] void const* address) {
-#if defined(__GNUC__) && !defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_GNU)
   __builtin_prefetch(address);
 #endif
 }
 
 /// Orders this thread's streaming stores before what it does next.
 inline void streaming_fence() {
-#if defined(__x86_64__) && !defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_X86)
   _mm_sfence();
 #endif
 }

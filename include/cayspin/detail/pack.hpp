@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/backend.hpp>
+
 #include <Kokkos_BitManipulation.hpp>
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>
@@ -10,35 +12,20 @@
 #include <cstdint>
 #include <type_traits>
 
-#if defined(__x86_64__) && !defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_X86)
 #include <immintrin.h>
 #endif
 
 // A Pack is what one iteration of a host loop works on: a register of Kokkos' SIMD types where the
-// configured architecture has one, otherwise one number. Device loops work on plain
-// numbers. Compilation passes for devices see plain numbers only, because nvcc rejects host SIMD
-// types in `__host__ __device__` functions. No kernel has a pack in its name or arguments, so all
-// passes agree on these. The operations here take packs and numbers: kernels are written once.
+// configured architecture has one (backend.hpp), otherwise one number. Device loops work on plain
+// numbers, and compilation passes for devices see those only. No kernel has a pack in its name or
+// arguments, so all passes agree on these. The operations here take packs and numbers: kernels are
+// written once.
 namespace cayspin::inline v0_1::detail {
-
-#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
-// no pack type
-#elif defined(KOKKOS_ARCH_AVX512XEON)
-#define CAYSPIN_DETAIL_AVX512
-#define CAYSPIN_DETAIL_SIMD_ABI avx512_fixed_size
-inline constexpr std::size_t register_bytes = 64;
-#elif defined(KOKKOS_ARCH_AVX2)
-#define CAYSPIN_DETAIL_AVX2
-#define CAYSPIN_DETAIL_SIMD_ABI avx2_fixed_size
-inline constexpr std::size_t register_bytes = 32;
-#elif defined(KOKKOS_ARCH_ARM_NEON)
-#define CAYSPIN_DETAIL_SIMD_ABI neon_fixed_size
-inline constexpr std::size_t register_bytes = 16;
-#endif
 
 #if defined(CAYSPIN_DETAIL_SIMD_ABI)
 template <std::floating_point Real>
-inline constexpr int host_lanes = static_cast<int>(register_bytes / sizeof(Real));
+inline constexpr int host_lanes = CAYSPIN_DETAIL_REGISTER_BYTES / static_cast<int>(sizeof(Real));
 #if KOKKOS_VERSION >= 40600
 template <std::floating_point Real, int Lanes>
 using Simd = Kokkos::Experimental::basic_simd<
@@ -84,8 +71,7 @@ inline constexpr bool one_at_a_time = lanes_of<Value> == 1;
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value multiply_add(Value const& a, Value const& b, Value const& c) {
   if constexpr (std::is_floating_point_v<Value>) {
-#if defined(__FMA__) || defined(__ARM_FEATURE_FMA) || defined(__CUDA_ARCH__) || \
-    defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
+#if defined(CAYSPIN_DETAIL_FMA)
     return Kokkos::fma(a, b, c);
 #else
     return a * b + c;  // a library call per product would cost more than the rounding is worth
@@ -157,7 +143,7 @@ KOKKOS_FORCEINLINE_FUNCTION Value nearest(Value const& a) {
 /// `a` where it is NaN.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value maximum(Value const& a, Value const& b) {
-#if defined(__AVX2__)
+#if defined(CAYSPIN_DETAIL_MAXIMUM_IS_SECOND)
   if constexpr (lanes_of<Value> > 1) return Kokkos::max(b, a);  // the second where one is NaN
 #endif
   return select<Value>(a < b, b, a);

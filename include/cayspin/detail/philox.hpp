@@ -74,11 +74,11 @@ struct Philox {
 
   /// Of lower halves.
   KOKKOS_FORCEINLINE_FUNCTION static Words product(Words const& a, std::uint64_t b) {
-#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
+#if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
     if constexpr (Lanes == 8)
       return reinterpret_cast<Words>(_mm512_maskz_mul_epu32(
           0xff, reinterpret_cast<__m512i>(a), _mm512_set1_epi64(static_cast<std::int64_t>(b))));
-#elif defined(CAYSPIN_DETAIL_AVX2) && !defined(__CUDACC__)
+#elif defined(CAYSPIN_DETAIL_AVX2_OF_INTEGERS)
     if constexpr (Lanes == 4)
       return reinterpret_cast<Words>(_mm256_mul_epu32(
           reinterpret_cast<__m256i>(a), _mm256_set1_epi64x(static_cast<std::int64_t>(b))));
@@ -88,7 +88,7 @@ struct Philox {
   /// a ^ b ^ key
   KOKKOS_FORCEINLINE_FUNCTION static Words mixed(Words const& a, Words const& b,
                                                  std::uint64_t key) {
-#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
+#if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
     if constexpr (Lanes == 8)
       return reinterpret_cast<Words>(
           _mm512_ternarylogic_epi64(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b),

@@ -16,24 +16,11 @@ KOKKOS_FORCEINLINE_FUNCTION Value refined_quotient(Value const& a, Value const& 
   return Kokkos::fma(Kokkos::fma(-b, quotient, a), inverse, quotient);
 }
 
-#if defined(__CUDA_ARCH__)
-__device__ __forceinline__ double rough_inverse(double number) {
-  double inverse;
-  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(number));  // to 20 bits
-  return inverse;
-}
-__device__ __forceinline__ float rough_inverse(float number) {
-  float inverse;
-  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(number));  // to 23 bits
-  return inverse;
-}
-#endif
-
 /// a / b for a normal b. nvcc makes a division a call of a function for numbers near the ends of
 /// their range, and tests for these.
 template <class Value>
 KOKKOS_FORCEINLINE_FUNCTION Value quotient(Value const& a, Value const& b) {
-#if defined(__CUDA_ARCH__)
+#if defined(CAYSPIN_DETAIL_ROUGH_INVERSE)
   return refined_quotient(a, b, rough_inverse(b));
 #else
   return a / b;

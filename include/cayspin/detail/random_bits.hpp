@@ -73,7 +73,7 @@ class RandomBits {
   template <class Number, int Lanes>
   KOKKOS_FORCEINLINE_FUNCTION static auto widened(std::uint32_t const* from) {
     using Numbers = typename LanesOf<Number, Lanes>::type;
-#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
+#if defined(CAYSPIN_DETAIL_AVX512_OF_INTEGERS)
     if constexpr (sizeof(Number) == 8 && Lanes == 8)  // g++ takes five instructions for it
       return reinterpret_cast<Numbers>(_mm512_maskz_cvtepu32_epi64(
           0xff, _mm256_loadu_si256(reinterpret_cast<__m256i const*>(from))));

@@ -95,9 +95,7 @@ void for_each_pack_ends_first(RowLayout const& layout, std::int64_t task, std::i
   std::int32_t const begin = cut(task % per_row), end = cut(task % per_row + 1);
   std::int32_t const last = packs - 1;
   // Both ends share one compiled body.
-#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-#pragma GCC unroll 1
-#endif
+  CAYSPIN_DETAIL_NOT_UNROLLED
   for (std::int32_t pack = 0; pack <= last; pack = Kokkos::max(last, pack + 1))
     if (begin <= pack && pack < end) functor(Site<Value>(row, pack * lanes));
   for (std::int32_t pack = Kokkos::max(begin, 1); pack < Kokkos::min(end, last); ++pack)

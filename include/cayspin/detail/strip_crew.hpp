@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/row_layout.hpp>
+#include <cayspin/detail/backend.hpp>
 
 #include <atomic>
 #include <cstdint>
 #include <thread>
 
-#if defined(__x86_64__)
+#if defined(CAYSPIN_DETAIL_X86)
 #include <immintrin.h>
 #endif
 
@@ -87,7 +87,7 @@ struct StripCrew {
   }
 
   static void pause() {
-#if defined(__x86_64__)
+#if defined(CAYSPIN_DETAIL_X86)
     _mm_pause();
 #endif
   }

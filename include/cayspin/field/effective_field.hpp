@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/attributes.hpp>
+#include <cayspin/detail/backend.hpp>
 #include <cayspin/detail/row_fields.hpp>
 #include <cayspin/field/forwarding.hpp>
 #include <cayspin/field/parts.hpp>

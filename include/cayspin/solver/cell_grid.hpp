@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
-#include <cayspin/detail/attributes.hpp>
+#include <cayspin/detail/backend.hpp>
 #include <cayspin/detail/execution.hpp>
 #include <cayspin/detail/narrowing_store.hpp>
 #include <cayspin/row_layout.hpp>

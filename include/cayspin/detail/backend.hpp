@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
+#pragma once
+
+#include <Kokkos_Core.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+// What compilers, processors and devices have of their own: other headers ask for what is named
+// here. Host spaces are in execution.hpp.
+
+// This pass of the compiler makes code for a device.
+#if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)
+#define CAYSPIN_DETAIL_DEVICE_PASS
+#endif
+
+// The registers of a host's SIMD packs. No pass for a device sees them, because nvcc rejects host
+// SIMD types in `__host__ __device__` functions.
+#if defined(CAYSPIN_DETAIL_DEVICE_PASS)
+// no pack type
+#elif defined(KOKKOS_ARCH_AVX512XEON)
+#define CAYSPIN_DETAIL_AVX512
+#define CAYSPIN_DETAIL_SIMD_ABI avx512_fixed_size
+#define CAYSPIN_DETAIL_REGISTER_BYTES 64
+#elif defined(KOKKOS_ARCH_AVX2)
+#define CAYSPIN_DETAIL_AVX2
+#define CAYSPIN_DETAIL_SIMD_ABI avx2_fixed_size
+#define CAYSPIN_DETAIL_REGISTER_BYTES 32
+#elif defined(KOKKOS_ARCH_ARM_NEON)
+#define CAYSPIN_DETAIL_SIMD_ABI neon_fixed_size
+#define CAYSPIN_DETAIL_REGISTER_BYTES 16
+#endif
+
+// Intrinsics on vectors of whole numbers, which are GNU's. nvcc does not read them.
+#if defined(CAYSPIN_DETAIL_AVX512) && !defined(__CUDACC__)
+#define CAYSPIN_DETAIL_AVX512_OF_INTEGERS
+#elif defined(CAYSPIN_DETAIL_AVX2) && !defined(__CUDACC__)
+#define CAYSPIN_DETAIL_AVX2_OF_INTEGERS
+#endif
+
+// Instructions of x86 besides packs.
+#if defined(__x86_64__) && !defined(CAYSPIN_DETAIL_DEVICE_PASS)
+#define CAYSPIN_DETAIL_X86
+#endif
+
+// Statements of g++ and clang: inline assembly, prefetches.
+#if defined(__GNUC__) && !defined(CAYSPIN_DETAIL_DEVICE_PASS)
+#define CAYSPIN_DETAIL_GNU
+#endif
+
+// a * b + c is one instruction.
+#if defined(__FMA__) || defined(__ARM_FEATURE_FMA) || defined(CAYSPIN_DETAIL_DEVICE_PASS)
+#define CAYSPIN_DETAIL_FMA
+#endif
+
+// The maximum of two packs is the second one where either is NaN.
+#if defined(__AVX2__)
+#define CAYSPIN_DETAIL_MAXIMUM_IS_SECOND
+#endif
+
+#if defined(__GNUC__)
+#define CAYSPIN_DETAIL_NOINLINE [[gnu::noinline]]
+#else
+#define CAYSPIN_DETAIL_NOINLINE
+#endif
+
+// A member without an address of its own. The device code of nvcc 13.0 takes what holds one for
+// larger than its host code does, and finds nothing in its place: there it has an address.
+#if defined(KOKKOS_ENABLE_CUDA)
+#define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS
+#else
+#define CAYSPIN_DETAIL_NO_UNIQUE_ADDRESS [[no_unique_address]]
+#endif
+
+// In front of a loop over the cells of a row, none of which is written and read.
+#if defined(CAYSPIN_DETAIL_DEVICE_PASS)
+#define CAYSPIN_DETAIL_INDEPENDENT
+#elif defined(__clang__)
+#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define CAYSPIN_DETAIL_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define CAYSPIN_DETAIL_INDEPENDENT
+#endif
+
+// In front of a loop that is not to be unrolled.
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+#define CAYSPIN_DETAIL_NOT_UNROLLED _Pragma("GCC unroll 1")
+#else
+#define CAYSPIN_DETAIL_NOT_UNROLLED
+#endif
+
+namespace cayspin::inline v0_1::detail {
+
+inline constexpr std::int64_t cache_line_bytes = 64, page_bytes = 4096;
+
+/// Threads of a device that share a tile of rows: a block of Kokkos on most devices.
+inline constexpr std::uint32_t threads_of_tile = 128;
+
+// 1 / number to at least 18 bits, where a division is slow.
+#if defined(__CUDA_ARCH__)
+#define CAYSPIN_DETAIL_ROUGH_INVERSE
+__device__ __forceinline__ double rough_inverse(double number) {
+  double inverse;
+  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(number));  // to 20 bits
+  return inverse;
+}
+__device__ __forceinline__ float rough_inverse(float number) {
+  float inverse;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(number));  // to 23 bits
+  return inverse;
+}
+#endif
+
+}  // namespace cayspin::inline v0_1::detail
