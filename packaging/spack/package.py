@@ -31,7 +31,7 @@ class Cayspin(CMakePackage):
     variant("program", default=True, description="The program, scenes, files and the C interface")
     variant("examples", default=False, description="Build the examples")
     variant("fftw", default=False, description="The demagnetising field; FFTW is under the GPL")
-    variant("shared", default=False, when="+program", description="A shared C interface")
+    variant("shared", default=False, when="+program", description="Programs share one library")
 
     depends_on("c", type="build", when="+program")
     depends_on("cxx", type="build")
