@@ -35,7 +35,7 @@ if(libraries)
   run(${program} methods)
   file(GET_RUNTIME_DEPENDENCIES RESOLVED_DEPENDENCIES_VAR found UNRESOLVED_DEPENDENCIES_VAR missing
        EXECUTABLES ${program})
-  list(FILTER found INCLUDE REGEX "^${WORK}/prefix/lib[^/]*/libcayspin_simulation")
+  list(FILTER found INCLUDE REGEX "^${WORK}/prefix/.*/libcayspin_simulation")
   if(NOT found)
     message(FATAL_ERROR "${program} does not take ${libraries}; it misses: ${missing}")
   endif()
