@@ -12,7 +12,7 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-std::string const film = R"toml([system]
+std::string const dmi_film = R"toml([system]
 kind = "llg"
 damping = 0.1
 [lattice]
@@ -41,7 +41,7 @@ std::vector<double> constants_along(Scene const& scene, Triple const& axis) {
 
 // At each open side -D^2/A along the vector of its bonds, where H = A Lap(m).
 TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
-  auto const scene = scene_of(film);
+  auto const scene = scene_of(dmi_film);
   EXPECT_EQ(scene.field.anisotropies.size(), 2U);  // along z, the normal, there is no interaction
   auto const of_x = constants_along(scene, {0, 1, 0}), of_y = constants_along(scene, {1, 0, 0});
   double const one = -0.6 * 0.6 / 2;
@@ -51,9 +51,9 @@ TEST(FreeBoundary, IsAHardAxisAtEachOpenSide) {
     EXPECT_DOUBLE_EQ(of_y[site], j == 0 || j == 2 ? one : 0) << site;
   }
   EXPECT_TRUE(needs_pass(scene));
-  auto const periodic = scene_of(film, {"lattice.boundary=['open','periodic','open']"});
+  auto const periodic = scene_of(dmi_film, {"lattice.boundary=['open','periodic','open']"});
   for (double const each : constants_along(periodic, {1, 0, 0})) EXPECT_EQ(each, 0);
-  EXPECT_TRUE(scene_of(replaced(film, "free_boundary = true", "free_boundary = false"))
+  EXPECT_TRUE(scene_of(replaced(dmi_film, "free_boundary = true", "free_boundary = false"))
                   .field.anisotropies.empty());
 }
 
@@ -75,9 +75,9 @@ TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
     auto const n = unit(draw()), m = unit(draw());
     constexpr double A = 2, D = 0.6, h = 0.5;
     auto const scene = scene_of(
-        film, {"lattice={shape=[3],spacing=0.5}",
-               fmt::format("field.dmi={{interfacial=0.6,normal=[{},{},{}],free_boundary=true}}",
-                           n[0], n[1], n[2])});
+        dmi_film, {"lattice={shape=[3],spacing=0.5}",
+                   fmt::format("field.dmi={{interfacial=0.6,normal=[{},{},{}],free_boundary=true}}",
+                               n[0], n[1], n[2])});
     ASSERT_EQ(scene.field.anisotropies.size(), 1U);
     auto const& term = scene.field.anisotropies[0];
     double const K = numbers_of_sites(scene, term.factors, "", whole(scene))[2];
@@ -92,7 +92,7 @@ TEST(FreeBoundary, IsTheTorqueOfATurnedSpin) {
 }
 
 TEST(FreeBoundary, OfTheBulkIsAlongTheBonds) {
-  auto const scene = scene_of(film, {"field.dmi={bulk=0.6,free_boundary=true}"});
+  auto const scene = scene_of(dmi_film, {"field.dmi={bulk=0.6,free_boundary=true}"});
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Triple along{};
     along[axis] = 1;
@@ -109,9 +109,10 @@ TEST(FreeBoundary, IsAlsoThatOfVacancies) {
   for (int round = 0; round < 20; ++round) {
     auto const is_there = fmt::format("random(i+4*j+12*k, {}) < 0.7", random() % 1000);
     auto const scene = scene_of(
-        film, {"lattice.occupied='" + is_there + "'", "lattice.boundary=['open','periodic','open']",
-               "field.exchange='" + is_there + " ? 1+i : 0'",
-               "field.dmi={interfacial='0.1*(1+j)',normal=[0,0,1],free_boundary=true}"});
+        dmi_film,
+        {"lattice.occupied='" + is_there + "'", "lattice.boundary=['open','periodic','open']",
+         "field.exchange='" + is_there + " ? 1+i : 0'",
+         "field.dmi={interfacial='0.1*(1+j)',normal=[0,0,1],free_boundary=true}"});
     auto const there = occupied(scene, whole(scene));
     auto const has = [&](int i, int j, int k) {
       return i >= 0 && i < 4 && there[static_cast<std::size_t>((k * 3 + (j + 3) % 3) * 4 + i)];
@@ -171,7 +172,7 @@ steps = 1
 
 TEST(FreeBoundary, IsRefusedWithoutWhatItNeeds) {
   auto const said = [&](std::vector<std::string> const& overrides) {
-    return refusal([&] { scene_of(film, overrides); });
+    return refusal([&] { scene_of(dmi_film, overrides); });
   };
   expect_holds(said({"field.exchange=0"}), "field.dmi.free_boundary: needs exchange above 0");
   expect_holds(said({"field.exchange=-1"}), "needs exchange above 0");

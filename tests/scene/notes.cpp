@@ -16,7 +16,7 @@ namespace {
 
 constexpr int all = infinitely_many_images;
 
-std::string const film = R"toml([system]
+std::string const film_with_notes = R"toml([system]
 kind = "llg"
 damping = 0.1
 [lattice]
@@ -31,11 +31,11 @@ steps = 1
 )toml";
 
 std::vector<std::string> notes_with(std::vector<std::string> const& overrides) {
-  return notes(scene_of(film, overrides));
+  return notes(scene_of(film_with_notes, overrides));
 }
 
 std::string refusal_with(std::vector<std::string> const& overrides) {
-  return refusal([&] { scene_of(film, overrides); });
+  return refusal([&] { scene_of(film_with_notes, overrides); });
 }
 
 struct Case {
@@ -107,13 +107,13 @@ TEST(Notes, SayWhereImagesAndBoundariesDiffer) {
 TEST(Demagnetization, GoesOnForEverAlongPeriodicAxes) {
   auto const images = [](std::vector<std::string> overrides) {
     overrides.emplace_back("field.demag=true");
-    return scene_of(film, overrides).field.demag->periodic_images;
+    return scene_of(film_with_notes, overrides).field.demag->periodic_images;
   };
   EXPECT_EQ(images({}), (std::array{0, 0, 0}));
   EXPECT_EQ(images({"lattice.boundary='periodic'"}), (std::array{all, all, 0}));
   EXPECT_EQ(images({"lattice.boundary=['open','periodic']"}), (std::array{0, all, 0}));
   EXPECT_EQ(images({"lattice={shape=[1,1,4],boundary='periodic'}"}), (std::array{0, 0, all}));
-  EXPECT_EQ(scene_of(film, {"lattice.boundary='periodic'", "field.demag={strength=2}"})
+  EXPECT_EQ(scene_of(film_with_notes, {"lattice.boundary='periodic'", "field.demag={strength=2}"})
                 .field.demag->periodic_images,
             (std::array{all, all, 0}));
   for (auto const* const demag : {"field.demag=true", "field.demag={strength=1}"}) {

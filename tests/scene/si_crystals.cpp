@@ -2,6 +2,7 @@
 // units = "SI": crystals, sublattices, currents and constants of sites.
 #include "hdf5_file.hpp"
 #include "io/expression.hpp"
+#include "si_constants.hpp"
 #include "wrong_scenes.hpp"
 
 #include <cmath>
@@ -9,10 +10,6 @@
 
 namespace cayspin::inline v0_1::io::test {
 namespace {
-
-// The tests do not take these from the library.
-constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11, mu_B = 9.2740100657e-24,
-                 meV = 1.602176634e-22, e = 1.602176634e-19, hbar = 1.054571817e-34;
 
 constexpr std::string_view iron = R"toml(units = "SI"
 [material]
@@ -58,12 +55,12 @@ Scene permalloy_with(std::vector<std::string> const& overrides) {
   return scene_of(permalloy, overrides);
 }
 
-void expect_close(double value, double expected) {
+void expect_near(double value, double expected) {
   EXPECT_NEAR(value, expected, 8e-16 * std::abs(expected));
 }
-void expect_close(std::vector<double> const& values, std::vector<double> const& expected) {
+void expect_near(std::vector<double> const& values, std::vector<double> const& expected) {
   ASSERT_EQ(values.size(), expected.size());
-  for (std::size_t i = 0; i < values.size(); ++i) expect_close(values[i], expected[i]);
+  for (std::size_t i = 0; i < values.size(); ++i) expect_near(values[i], expected[i]);
 }
 
 TEST(SiCrystals, IronHasItsUnits) {
@@ -73,22 +70,22 @@ TEST(SiCrystals, IronHasItsUnits) {
   EXPECT_NEAR(scene.units.field, 342.427, 1e-3);
   EXPECT_NEAR(scene.units.time, 1.65846e-14, 1e-19);
   EXPECT_NEAR(scene.thermal->temperature, 0.587510, 1e-6);
-  expect_close(scene.units.energy, 7.05e-21);
-  expect_close(scene.units.length, 2.866e-10);
+  expect_near(scene.units.energy, 7.05e-21);
+  expect_near(scene.units.length, 2.866e-10);
   EXPECT_TRUE(scene.lattice.moments.empty());
   EXPECT_EQ(scene.lattice.spacing, (Triple{1, 1, 1}));
 }
 
 TEST(SiCrystals, VampiresFileIsInJoules) {
   auto const scene = iron_with({"field.couplings={file='" CAYSPIN_TEST_DATA "/bcc_iron.ucf'}"});
-  expect_close(scene.units.energy, 2.22 * mu_B);  // 1 T on a moment
+  expect_near(scene.units.energy, 2.22 * mu_B);  // 1 T on a moment
   auto const bonds = couplings(scene);
   ASSERT_EQ(bonds.size(), 8U);
-  for (auto const& bond : bonds) expect_close(bond.tensor[4], 7.05e-21 / (2.22 * mu_B));
+  for (auto const& bond : bonds) expect_near(bond.tensor[4], 7.05e-21 / (2.22 * mu_B));
   auto const scaled =
       iron_with({"field.couplings={file='" CAYSPIN_TEST_DATA "/bcc_iron.ucf',scale=-2}",
                  "material.K=1e-24", "material.axis=[0,0,1]"});
-  for (auto const& bond : couplings(scaled)) expect_close(bond.tensor[8], -2 * 7050);
+  for (auto const& bond : couplings(scaled)) expect_near(bond.tensor[8], -2 * 7050);
 }
 
 TEST(SiCrystals, MomentsAreRelativeToTheFirst) {
@@ -96,12 +93,12 @@ TEST(SiCrystals, MomentsAreRelativeToTheFirst) {
        {"[{bohr_magnetons=2}, {bohr_magnetons=0.5}]", "{bohr_magnetons=[2,0.5]}",
         "[18.5480201314e-24,4.63700503285e-24]"}) {
     auto const scene = iron_with({"material.mu_s=" + typed});
-    expect_close(scene.lattice.moments, {1, 0.25});
-    expect_close(scene.material->moments, {2 * mu_B, 0.5 * mu_B});
-    expect_close(scene.units.field, 7.05e-21 / (2 * mu_B));
+    expect_near(scene.lattice.moments, {1, 0.25});
+    expect_near(scene.material->moments, {2 * mu_B, 0.5 * mu_B});
+    expect_near(scene.units.field, 7.05e-21 / (2 * mu_B));
   }
   EXPECT_TRUE(iron_with({"material.mu_s=[1e-23,1e-23]"}).lattice.moments.empty());
-  expect_close(iron_with({"lattice.gyromagnetic=[1,1.1]"}).lattice.gyromagnetic, {1, 1.1});
+  expect_near(iron_with({"lattice.gyromagnetic=[1,1.1]"}).lattice.gyromagnetic, {1, 1.1});
 }
 
 TEST(SiCrystals, CouplingsAreEnergiesOfABond) {
@@ -111,23 +108,23 @@ TEST(SiCrystals, CouplingsAreEnergiesOfABond) {
                  "{between=[1,1],offset=[1,0,0],biquadratic={eV=0.001}},"
                  "{between=[1,1],offset=[0,1,0],D={mRy=[0,0,1]},biquadratic=-1e-22}]"});
   double const unit = 20 * meV;
-  expect_close(scene.units.energy, unit);
+  expect_near(scene.units.energy, unit);
   auto const bonds = couplings(scene);
   ASSERT_EQ(bonds.size(), 4U);
-  expect_close(bonds[0].tensor[0], 0.5);
-  expect_close(bonds[0].tensor[2], -1e-22 / unit);
-  expect_close(bonds[0].tensor[6], 1e-22 / unit);
+  expect_near(bonds[0].tensor[0], 0.5);
+  expect_near(bonds[0].tensor[2], -1e-22 / unit);
+  expect_near(bonds[0].tensor[6], 1e-22 / unit);
   for (std::size_t i = 0; i < 8; ++i)
-    expect_close(bonds[1].tensor[i], static_cast<double>(i + 1) / 20);
-  expect_close(bonds[1].tensor[8], -1);
-  expect_close(bonds[2].biquadratic, 0.05);
-  expect_close(bonds[3].tensor[1], 2.1798723611030e-21 / unit);
-  expect_close(bonds[3].biquadratic, -1e-22 / unit);
+    expect_near(bonds[1].tensor[i], static_cast<double>(i + 1) / 20);
+  expect_near(bonds[1].tensor[8], -1);
+  expect_near(bonds[2].biquadratic, 0.05);
+  expect_near(bonds[3].tensor[1], 2.1798723611030e-21 / unit);
+  expect_near(bonds[3].biquadratic, -1e-22 / unit);
   auto const shells = iron_with({"field.couplings={shells={meV=[10,-4]}}"});
-  expect_close(shells.units.energy, 10 * meV);
+  expect_near(shells.units.energy, 10 * meV);
   double least = 0;
   for (auto const& bond : couplings(shells)) least = std::min(least, bond.tensor[0]);
-  expect_close(least, -0.4);
+  expect_near(least, -0.4);
 }
 
 TEST(SiCrystals, AnisotropiesAreEnergies) {
@@ -138,21 +135,21 @@ TEST(SiCrystals, AnisotropiesAreEnergies) {
   auto const& [uniaxial, cubic] =
       std::tie(scene.field.anisotropies, scene.field.cubic_anisotropies);
   ASSERT_EQ(uniaxial.size(), 3U);
-  expect_close(uniaxial[0].constant, 4e-23 / 7.05e-21);
+  expect_near(uniaxial[0].constant, 4e-23 / 7.05e-21);
   EXPECT_EQ(uniaxial[0].axis, (Triple{0, 1, 0}));
   EXPECT_EQ(uniaxial[0].site, -1);
-  expect_close(uniaxial[1].constant, 2e-23 / 7.05e-21);
+  expect_near(uniaxial[1].constant, 2e-23 / 7.05e-21);
   EXPECT_EQ(uniaxial[1].site, 1);
-  expect_close(uniaxial[2].constant, 2 * meV / 7.05e-21);
+  expect_near(uniaxial[2].constant, 2 * meV / 7.05e-21);
   ASSERT_EQ(cubic.size(), 1U);
-  expect_close(cubic[0].constant, 0.1 * meV / 7.05e-21);
+  expect_near(cubic[0].constant, 0.1 * meV / 7.05e-21);
   EXPECT_EQ(cubic[0].site, 0);
   auto const film =
       permalloy_with({"field.anisotropy=[{cubic=4.8e4,axes=[[1,0,0],[0,1,0]]},"
                       "{constant=500,axis=[0,1,0]}]"});
   double const pressure = mu0 * 8e5 * 8e5;
-  expect_close(film.field.cubic_anisotropies.at(0).constant, 4.8e4 / pressure);
-  expect_close(film.field.anisotropies.at(0).constant, 1000 / pressure);
+  expect_near(film.field.cubic_anisotropies.at(0).constant, 4.8e4 / pressure);
+  expect_near(film.field.anisotropies.at(0).constant, 1000 / pressure);
 }
 
 TEST(SiCrystals, ASlabHasTheMagnetizationOfTheCrystal) {
@@ -162,8 +159,8 @@ TEST(SiCrystals, ASlabHasTheMagnetizationOfTheCrystal) {
   };
   double const moment = 2.22 * mu_B,
                cube = 0.5 * mu0 * moment * moment / std::pow(2.866e-10, 3) / 7.05e-21;
-  expect_close(strength("lattice.crystal='bcc'"), 2 * cube);
-  expect_close(strength("lattice.crystal='fcc'"), 4 * cube);
+  expect_near(strength("lattice.crystal='bcc'"), 2 * cube);
+  expect_near(strength("lattice.crystal='fcc'"), 4 * cube);
   EXPECT_NEAR(strength("lattice.crystal='honeycomb'"), 2 * cube / std::sqrt(0.75), 1e-15);
 }
 
@@ -171,11 +168,11 @@ TEST(SiScenes, BulkDmiIsThatOfAnInterfaceWithoutItsNormal) {
   auto const film = permalloy_with({"material.D_bulk=3e-3"});
   ASSERT_TRUE(film.field.bulk_dmi);
   EXPECT_FALSE(film.field.dmi);
-  expect_close(film.field.bulk_dmi->constant, 3e-3 / (mu0 * 8e5 * 8e5 * 4e-9));
+  expect_near(film.field.bulk_dmi->constant, 3e-3 / (mu0 * 8e5 * 8e5 * 4e-9));
   auto const atoms = iron_with({"material.D_bulk={meV=1}", "lattice.crystal='bcc'",
                                 "lattice={shape=[4],spacing=3e-10}", "field={}"});
   EXPECT_EQ(atoms.field.bulk_dmi->constant, 1);
-  expect_close(atoms.units.energy, meV);
+  expect_near(atoms.units.energy, meV);
 }
 
 TEST(SiScenes, ConstantsOfSitesAreInSi) {
@@ -200,17 +197,17 @@ TEST(SiScenes, ConstantsOfSitesAreInSi) {
   for (std::size_t site = 0; site < 24; ++site) {
     auto const i = static_cast<double>(site % 4), j = static_cast<double>(site / 4 % 3),
                k = static_cast<double>(site / 12);
-    expect_close(A[site], 2 * 1.3e-11 * (1 + i) / (pressure * 16e-18));
-    expect_close(K[site], 2 * (500 + static_cast<double>(site)) / pressure);
-    expect_close(D[site], 1e-3 * j / (pressure * 4e-9));
-    expect_close(alpha[site], 0.1 * (1 + k));
+    expect_near(A[site], 2 * 1.3e-11 * (1 + i) / (pressure * 16e-18));
+    expect_near(K[site], 2 * (500 + static_cast<double>(site)) / pressure);
+    expect_near(D[site], 1e-3 * j / (pressure * 4e-9));
+    expect_near(alpha[site], 0.1 * (1 + k));
   }
   EXPECT_EQ(field.exchange->constant, 1);
   EXPECT_EQ(field.dmi->interfacial, 1);
   EXPECT_EQ(field.anisotropies[0].constant, 1);
   EXPECT_EQ(scene.system.damping, 0);
   EXPECT_TRUE(scene.system.gilbert_of_sites);
-  expect_close(scene.units.time, 1 / (gamma * mu0 * 8e5));  // sites take 1 + alpha^2
+  expect_near(scene.units.time, 1 / (gamma * mu0 * 8e5));  // sites take 1 + alpha^2
   auto const landau_lifshitz =
       read_text(folder, replaced(text, "\"gilbert\"", "'landau_lifshitz'"));
   EXPECT_FALSE(landau_lifshitz.system.gilbert_of_sites);
@@ -222,10 +219,10 @@ TEST(SiTorques, VelocitiesAreInMetresPerSecond) {
   auto const& of = scene.field.torque.zhang_li.value();
   // In cells over the turn of a spin by mu0 Ms, whatever the damping's form.
   double const unit = 4e-9 * gamma * mu0 * 8e5;
-  expect_close(std::get<double>(of.velocity[0]), 100 / unit);
+  expect_near(std::get<double>(of.velocity[0]), 100 / unit);
   double const t = 1e-9 / scene.units.time;
-  expect_close(Expression(std::get<std::string>(of.velocity[1]), {"t"})(&t),
-               50 * std::sin(1.0) / unit);
+  expect_near(Expression(std::get<std::string>(of.velocity[1]), {"t"})(&t),
+              50 * std::sin(1.0) / unit);
   EXPECT_EQ(of.nonadiabaticity, 0.04);
   EXPECT_EQ(std::get<double>(scene.torque_in_si.zhang_li->velocity[0]), 100);
   auto const current =
@@ -241,19 +238,19 @@ TEST(SiTorques, StrengthsAreFields) {
   auto const scene = permalloy_with(
       {"torque={slonczewski={damping_like='0.1*t',field_like=0.02,polarization=[0,2,0]}}"});
   auto const& of = scene.field.torque.slonczewski.value();
-  expect_close(std::get<double>(of.field_like), 0.02 / (mu0 * 8e5));
+  expect_near(std::get<double>(of.field_like), 0.02 / (mu0 * 8e5));
   double const t = 3 / scene.units.time;
-  expect_close(Expression(std::get<std::string>(of.damping_like), {"t"})(&t), 0.3 / (mu0 * 8e5));
+  expect_near(Expression(std::get<std::string>(of.damping_like), {"t"})(&t), 0.3 / (mu0 * 8e5));
   EXPECT_EQ(of.polarization, (Triple{0, 1, 0}));
   auto const current = permalloy_with(
       {"torque={slonczewski={current_density=1e12,efficiency=0.4,thickness=3e-9,field_like=0.01,"
        "polarization=[0,1,0]}}"});
-  expect_close(std::get<double>(current.field.torque.slonczewski->damping_like),
-               hbar * 0.4 * 1e12 / (2 * e * 8e5 * 3e-9) / (mu0 * 8e5));
-  expect_close(std::get<double>(current.field.torque.slonczewski->field_like), 0.01 / (mu0 * 8e5));
+  expect_near(std::get<double>(current.field.torque.slonczewski->damping_like),
+              hbar * 0.4 * 1e12 / (2 * e * 8e5 * 3e-9) / (mu0 * 8e5));
+  expect_near(std::get<double>(current.field.torque.slonczewski->field_like), 0.01 / (mu0 * 8e5));
   auto const atoms = iron_with({"torque={slonczewski={damping_like=2,polarization=[0,1,0]}}"});
-  expect_close(std::get<double>(atoms.field.torque.slonczewski->damping_like),
-               2 * 2.22 * mu_B / 7.05e-21);
+  expect_near(std::get<double>(atoms.field.torque.slonczewski->damping_like),
+              2 * 2.22 * mu_B / 7.05e-21);
 }
 
 TEST(SiScenes, ShapesAreOfEitherMaterial) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // units = "SI": what a material comes to in reduced units, and what is refused.
 #include "io/expression.hpp"
+#include "si_constants.hpp"
 #include "wrong_scenes.hpp"
 
 #include <cmath>
@@ -8,10 +9,7 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-// mu0 and gamma stand here again: the tests do not take them from the library.
-constexpr double mu0 = 1.25663706127e-6, gamma = 1.760859e11;
-
-constexpr std::string_view film = R"toml(units = "SI"
+constexpr std::string_view si_film = R"toml(units = "SI"
 
 [material]
 Ms = 8e5
@@ -47,7 +45,7 @@ until_torque = 1e-6
 isotropy = { constant = 1e9 }
 )toml";
 
-constexpr std::string_view chain = R"toml(units = "SI"
+constexpr std::string_view si_chain = R"toml(units = "SI"
 
 [material]
 mu_s = { bohr_magnetons = 2.0 }
@@ -84,7 +82,7 @@ void expect_close(double value, double expected) {
 }
 
 TEST(SiScene, MicromagneticsComesToReducedUnits) {
-  auto const scene = scene_of(film);
+  auto const scene = scene_of(si_film);
   double const pressure = mu0 * 8e5 * 8e5, second = gamma * mu0 * 8e5 / 1.25;
   EXPECT_TRUE(scene.units.si);
   expect_close(scene.units.time, 1 / second);
@@ -117,14 +115,14 @@ TEST(SiScene, MicromagneticsComesToReducedUnits) {
 }
 
 TEST(SiScene, LandauLifshitzDampingLeavesTheUnitOfTime) {
-  auto const text = replaced(film, "\"gilbert\"", "\"landau_lifshitz\"");
+  auto const text = replaced(si_film, "\"gilbert\"", "\"landau_lifshitz\"");
   expect_close(scene_of(text).units.time, 1 / (gamma * mu0 * 8e5));
   auto const slower = replaced(text, "Ms = 8e5", "Ms = 8e5\ngamma = 2e11");
   expect_close(scene_of(slower).units.time, 1 / (2e11 * mu0 * 8e5));
 }
 
 TEST(SiScene, AnExpressionTakesSeconds) {
-  auto const scene = scene_of(film);
+  auto const scene = scene_of(si_film);
   EXPECT_TRUE(depends_on_time(scene.field));
   Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
   for (double const seconds : {0.0, 1e-10, 3.3e-10}) {
@@ -136,7 +134,7 @@ TEST(SiScene, AnExpressionTakesSeconds) {
 
 TEST(SiScene, OnlyTheVariableOfAnExpressionIsScaled) {
   constexpr std::string_view typed = "tan(1e-3*t)+0.5e9*t*0+(t>1.e-10?1:2e+0)+.5*exp(-t/1E-9)";
-  auto const text = replaced(film, "0.025*sin(2*pi*1e9*t)", typed);
+  auto const text = replaced(si_film, "0.025*sin(2*pi*1e9*t)", typed);
   auto const scene = scene_of(text);
   Expression const reduced(std::get<std::string>((*scene.field.applied)[0]), {"t"});
   Expression const in_seconds(std::string(typed), {"t"});
@@ -147,7 +145,7 @@ TEST(SiScene, OnlyTheVariableOfAnExpressionIsScaled) {
 }
 
 TEST(SiScene, AtomisticSpinsComeToReducedUnits) {
-  auto const scene = scene_of(chain);
+  auto const scene = scene_of(si_chain);
   constexpr double moment = 2 * 9.2740100657e-24, bond = 10e-3 * 1.602176634e-19;
   expect_close(scene.units.energy, bond);
   expect_close(scene.units.field, bond / moment);
@@ -164,9 +162,9 @@ TEST(SiScene, AtomisticSpinsComeToReducedUnits) {
 }
 
 TEST(SiScene, TheUnitOfEnergyIsThatOfWhatThereIs) {
-  auto const without_bonds = replaced(chain, "J = { meV = 10 }", "J = 0");
+  auto const without_bonds = replaced(si_chain, "J = { meV = 10 }", "J = 0");
   expect_close(scene_of(without_bonds).units.energy, 1e-22);
-  auto const antiferromagnet = scene_of(replaced(chain, "meV = 10", "mRy = -1"));
+  auto const antiferromagnet = scene_of(replaced(si_chain, "meV = 10", "mRy = -1"));
   expect_close(antiferromagnet.units.energy, 2.1798723611030e-21);
   EXPECT_EQ(antiferromagnet.field.exchange.value().constant, -1);
   auto const free = replaced(replaced(without_bonds, "K = 1e-22\naxis = [0, 0, 1]", ""),
@@ -184,7 +182,7 @@ TEST(SiScene, ReducedIsAWordAsWell) {
 }
 
 TEST(SiScene, OverridesAreInSi) {
-  auto const scene = scene_of(film, {"material.alpha=0.0", "integrator.dt=5e-13"});
+  auto const scene = scene_of(si_film, {"material.alpha=0.0", "integrator.dt=5e-13"});
   expect_close(scene.integrator.dt, 5e-13 * gamma * mu0 * 8e5);
   auto const again = with_overrides(scene, {"integrator.dt=2.5e-13"});
   expect_close(again.integrator.dt, 2.5e-13 * gamma * mu0 * 8e5);
@@ -192,7 +190,7 @@ TEST(SiScene, OverridesAreInSi) {
 }
 
 TEST(WrongSiScene, OfUnits) {
-  expect_refused(film, R"(
+  expect_refused(si_film, R"(
 units = 'si' | : "si" is not known | "reduced", "SI"
 units = 1 | : 1 is an integer | "reduced", "SI"
 units = 'reduced' | material: belongs to units = "SI" | no such table
@@ -208,7 +206,7 @@ integrator.end =; integrator.steps = 1; integrator.dt = 1e-320 | : comes to | a 
 }
 
 TEST(WrongSiScene, OfMaterial) {
-  expect_refused(film, R"(
+  expect_refused(si_film, R"(
 material.Ms = | : is missing | mu_s (J/T)
 material.mu_s = 1e-23 | : stands beside material.Ms | exactly one
 material.Ms = -8e5 | : -800000 is not positive | > 0
@@ -228,7 +226,7 @@ material.alpha =; material.alfa = 0.5 | : unknown key | did you mean "alpha"?
 }
 
 TEST(WrongSiScene, OfAtoms) {
-  expect_refused(chain, R"(
+  expect_refused(si_chain, R"(
 material.J =; material.A = { meV = 10 } | : does not go with material.mu_s | material.J
 material.J = { meW = 10 } | .meW: unknown key | did you mean "meV"?
 material.J = { meV = 10, eV = 1 } | : is not one number with its unit | { eV = number }
@@ -252,7 +250,7 @@ TEST(SiScene, NeedsAMaterial) {
 
 TEST(SiScene, UndampedMotionNeedsNoFormOfDamping) {
   auto const text =
-      replaced(replaced(film, "alpha = 0.5", "alpha = 0"), "damping_form = \"gilbert\"", "");
+      replaced(replaced(si_film, "alpha = 0.5", "alpha = 0"), "damping_form = \"gilbert\"", "");
   expect_close(scene_of(text).units.time, 1 / (gamma * mu0 * 8e5));
 }
 

@@ -9,7 +9,7 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-std::string const film = std::string(plain_scene) + "[field]\nexchange = 1\n";
+std::string const plain_film = std::string(plain_scene) + "[field]\nexchange = 1\n";
 
 // What reading a scene, its files or its numbers says.
 std::string refusal_in(Folder const& folder, std::string const& text) {
@@ -32,13 +32,13 @@ TEST(SiteNumbers, ComeFromExpressionsAndFiles) {
     return both;
   }());
   auto const expression =
-      read_text(folder, replaced(film, "exchange = 1", "exchange = '1+i+10*k'"));
+      read_text(folder, replaced(plain_film, "exchange = 1", "exchange = '1+i+10*k'"));
   auto const by_expression = numbers_of_sites(expression, expression.field.exchange_factors,
                                               "field.exchange", whole(expression));
   for (std::size_t site = 0; site < 24; ++site)
     EXPECT_EQ(by_expression[site], 1. + static_cast<double>(site % 4 + 10 * (site / 12)));
   auto const file =
-      read_text(folder, replaced(film, "exchange = 1", "exchange = { file = 'film.h5' }"));
+      read_text(folder, replaced(plain_film, "exchange = 1", "exchange = { file = 'film.h5' }"));
   check_files(file);
   EXPECT_TRUE(needs_pass(file));
   EXPECT_EQ(file.field.exchange->constant, 1);
@@ -46,9 +46,10 @@ TEST(SiteNumbers, ComeFromExpressionsAndFiles) {
             stored);
   // Plane k * 2 + s of a crystal has the sites s of the cells k.
   auto const crystal = read_text(
-      folder, replaced(replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\ncrystal = 'bcc'"),
-                       "exchange = 1",
-                       "anisotropy = { constant = { file = 'crystal.h5' }, axis = [0, 0, 1] }"));
+      folder,
+      replaced(replaced(plain_film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\ncrystal = 'bcc'"),
+               "exchange = 1",
+               "anisotropy = { constant = { file = 'crystal.h5' }, axis = [0, 0, 1] }"));
   check_files(crystal);
   auto const& numbers = crystal.field.anisotropies.at(0).factors;
   auto const all = numbers_of_sites(crystal, numbers, "field.anisotropy", whole(crystal));
@@ -68,8 +69,8 @@ TEST(SiteNumbers, SayWhereSpinsAre) {
   for (int n = 0; n < 24; ++n) mask.push_back(n % 5 == 0 ? 0 : n % 3 - 0.5);
   write_dataset(folder / "mask.h5", "/values", {2, 3, 4}, mask);
   auto const with = [&](std::string_view keys) {
-    return read_text(
-        folder, replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\n" + std::string(keys)));
+    return read_text(folder, replaced(plain_film, "shape = [4, 3, 2]",
+                                      "shape = [4, 3, 2]\n" + std::string(keys)));
   };
   auto const file = with("occupied = { file = 'mask.h5' }\nfrozen = { file = 'mask.h5' }");
   check_files(file);
@@ -81,7 +82,7 @@ TEST(SiteNumbers, SayWhereSpinsAre) {
   Given given;
   given.numbers["lattice.occupied"] = std::make_shared<std::vector<double> const>(mask);
   auto const text =
-      replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\noccupied = { given = true }");
+      replaced(plain_film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\noccupied = { given = true }");
   auto const by_program = parse_scene(text, "scene.toml", {}, given);
   SiteBox const part{{1, 0, 1}, {3, 2, 1}};
   EXPECT_EQ(occupied(by_program, whole(by_program)), there);
@@ -121,7 +122,7 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
         {"dmi = { interfacial = 'x' }", ": field.dmi.normal: is missing"},
         {"anisotropy = { constant = 'y*', axis = [0, 0, 1] }", ": field.anisotropy.constant: "}}) {
     SCOPED_TRACE(typed);
-    expect_holds(refusal_in(folder, replaced(film, "exchange = 1", typed)), what);
+    expect_holds(refusal_in(folder, replaced(plain_film, "exchange = 1", typed)), what);
   }
   for (auto const& [typed, what] :
        {std::pair{"{ file = 'short.h5' }", "its extents are (3, 4); accepted: (2, 3, 4)"},
@@ -129,11 +130,11 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
          ":6: lattice.occupied: 1 is an integer; accepted: an expression in x, y, z, i, j, k, "
          "or { file = \"NAME.h5\" }"}}) {
     expect_holds(
-        refusal_in(folder, replaced(film, "shape = [4, 3, 2]",
+        refusal_in(folder, replaced(plain_film, "shape = [4, 3, 2]",
                                     "shape = [4, 3, 2]\noccupied = " + std::string(typed))),
         what);
   }
-  expect_holds(refusal_in(folder, replaced(film, "damping = 0.1", "damping = 'x/'")),
+  expect_holds(refusal_in(folder, replaced(plain_film, "damping = 0.1", "damping = 'x/'")),
                ": system.damping: ");
 }
 
@@ -141,8 +142,9 @@ TEST(SiteNumbers, ThatAreWrongAreRefusedInOneLine) {
 TEST(SiteNumbers, ATemperatureIsHeldAgainstTheLeastMoment) {
   Folder const folder;
   auto const hot = [&](std::string const& moments) {
-    return refusal_in(folder, replaced(film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\n" + moments) +
-                                  "[thermal]\ntemperature = 1\n");
+    return refusal_in(folder,
+                      replaced(plain_film, "shape = [4, 3, 2]", "shape = [4, 3, 2]\n" + moments) +
+                          "[thermal]\ntemperature = 1\n");
   };
   EXPECT_EQ(hot("moments = 0.01").find(": integrator.dt:"), std::string::npos);
   EXPECT_NE(hot("moments = 0.0001").find("over the least moment is 10"), std::string::npos);

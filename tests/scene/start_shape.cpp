@@ -10,7 +10,7 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-std::string const film = R"toml([system]
+std::string const film_from_file = R"toml([system]
 kind = "llg"
 damping = 0.1
 [lattice]
@@ -49,7 +49,7 @@ void write(Folder const& folder, std::string const& name, std::vector<double> co
 
 Scene read(Folder const& folder, std::string const& file,
            std::vector<std::string> const& overrides = {}) {
-  return with_shape_of_start(read_text(folder, replaced(film, "FILE", file), overrides));
+  return with_shape_of_start(read_text(folder, replaced(film_from_file, "FILE", file), overrides));
 }
 
 TEST(StartShape, IsWhereTheFileHasSpins) {
@@ -89,7 +89,7 @@ TEST(StartShape, IsWholeWithoutZeros) {
   auto const scene = read(folder, "full.ovf");
   EXPECT_FALSE(scene.lattice.occupied.there());
   EXPECT_FALSE(needs_pass(scene));
-  EXPECT_EQ(scene.text, replaced(film, "FILE", "full.ovf"));
+  EXPECT_EQ(scene.text, replaced(film_from_file, "FILE", "full.ovf"));
 }
 
 TEST(StartShape, HasToBeThatOfTheScene) {
@@ -119,8 +119,9 @@ TEST(StartShape, MayBeThatOfAnotherFileOfSpins) {
   there[3] = there[20] = 0;
   for (std::string const name : {"disc.ovf", "disc.h5"}) {
     write(folder, name, disc(there));
-    auto const scene = read_text(folder, replaced(film, "file = \"FILE\"", "uniform = [0, 0, 1]"),
-                                 {"lattice.occupied={file='" + name + "'}"});
+    auto const scene =
+        read_text(folder, replaced(film_from_file, "file = \"FILE\"", "uniform = [0, 0, 1]"),
+                  {"lattice.occupied={file='" + name + "'}"});
     check_files(scene);
     EXPECT_EQ(occupied(scene, whole(scene)), there);
   }

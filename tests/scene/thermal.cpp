@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 // The table [thermal]: what arrives, in reduced units and in SI, and what is refused.
+#include "si_constants.hpp"
 #include "wrong_scenes.hpp"
 
 namespace cayspin::inline v0_1::io::test {
 namespace {
-
-constexpr double mu0 = 1.25663706127e-6, boltzmann = 1.380649e-23;
 
 std::string thermal_scene(std::string const& thermal) {
   return std::string(llg_scene) + "[thermal]\n" + thermal;

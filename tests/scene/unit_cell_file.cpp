@@ -75,7 +75,7 @@ TEST(UnitCellFile, TensorsKeepTheirSense) {
   EXPECT_EQ(chiral, 6);
 }
 
-constexpr std::string_view chain =
+constexpr std::string_view chain_cell =
     "# a chain\n"
     "1 1 1\n"
     "1 0 0\n0 1 0\n0 0 1\n"
@@ -87,7 +87,7 @@ constexpr std::string_view chain =
 
 TEST(UnitCellFile, MayBeWrittenInOtherWays) {
   Folder const folder;
-  auto const expected = couplings(read_with(folder, std::string(chain)));
+  auto const expected = couplings(read_with(folder, std::string(chain_cell)));
   ASSERT_EQ(expected, (std::vector<Coupling>{Coupling::of({0, 0}, {-1, 0, 0}, 2.5)}));
   for (auto const& [from, to] : std::vector<std::pair<std::string, std::string>>{
            {"# a chain\n", ""},
@@ -104,13 +104,13 @@ TEST(UnitCellFile, MayBeWrittenInOtherWays) {
             "2 vectorial\n0 0 0 1 0 0 2.5 2.5 2.5\n1 0 0 -1 0 0 2.5 2.5 2.5"},
            {"2 isotropic\n0 0 0 1 0 0 2.5\n1 0 0 -1 0 0 2.5",
             "2 2\n0 0 0 1 0 0 2.5 0 0 0 2.5 0 0 0 2.5\n1 0 0 -1 0 0 2.5 0 0 0 2.5 0 0 0 2.5"}})
-    EXPECT_EQ(couplings(read_with(folder, replaced(chain, from, to))), expected) << to;
+    EXPECT_EQ(couplings(read_with(folder, replaced(chain_cell, from, to))), expected) << to;
 }
 
 TEST(UnitCellFile, MayHaveBiquadraticBonds) {
   Folder const folder;
   auto const scene = read_with(folder,
-                               std::string(chain) +
+                               std::string(chain_cell) +
                                    "# biquadratic\n4 isotropic\n0 0 0 1 0 0 0.5\n"
                                    "1 0 0 -1 0 0 0.5\n2 0 0 0 1 0 0.25\n"
                                    "3 0 0 0 -1 0 0.25\n",
@@ -123,8 +123,8 @@ TEST(UnitCellFile, MayHaveBiquadraticBonds) {
 }
 
 /// What check_files or the reader says after the scene's place and the file's name.
-std::string refusal_in(Folder const& folder, std::string const& unit_cell,
-                       std::string const& lattice = {}) {
+std::string refusal_of_cell(Folder const& folder, std::string const& unit_cell,
+                            std::string const& lattice = {}) {
   auto const message = refusal([&] { check_files(read_with(folder, unit_cell, lattice)); });
   if (message == "accepted") return message;
   auto const begin = (folder / "scene.toml").string() +
@@ -195,22 +195,22 @@ TEST(UnitCellFile, WrongLinesAreNamed) {
            {"-1 0 0 2.5", "-1 0 0 2.5\n2 tensorial", "11: biquadratic interactions that are not "},
            {"-1 0 0 2.5", "-1 0 0 2.5\n0 isotropic\nmore", "12: is more than the 0 interactions"},
            {"# a chain", std::string(5000, 'x'), "1: is longer than 4096 characters"}}) {
-    auto const refused = refusal_in(folder, replaced(chain, from, to));
+    auto const refused = refusal_of_cell(folder, replaced(chain_cell, from, to));
     EXPECT_TRUE(refused.starts_with(message)) << to << '\n' << refused << '\n' << message;
   }
-  EXPECT_TRUE(refusal_in(folder, "").starts_with(" ends before the three lengths"));
+  EXPECT_TRUE(refusal_of_cell(folder, "").starts_with(" ends before the three lengths"));
 }
 
 TEST(UnitCellFile, SitesAreThoseOfTheScene) {
   Folder const folder;
   auto const iron = text_of("bcc_iron.ucf");
-  EXPECT_EQ(refusal_in(folder, iron, "crystal = \"fcc\""),
+  EXPECT_EQ(refusal_of_cell(folder, iron, "crystal = \"fcc\""),
             "10: has 2 atoms in a cell; accepted: 4, as lattice.basis");
-  EXPECT_EQ(refusal_in(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.5002]]"),
+  EXPECT_EQ(refusal_of_cell(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.5002]]"),
             "10: atom 1 is at (0.5, 0.5, 0.5); accepted: (0.5, 0.5, 0.5002), as in lattice.basis");
-  EXPECT_EQ(refusal_in(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.50009]]"), "accepted");
+  EXPECT_EQ(refusal_of_cell(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, 0.50009]]"), "accepted");
   // Another cell of the same crystal has other offsets.
-  EXPECT_NE(refusal_in(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, -0.5]]"), "accepted");
+  EXPECT_NE(refusal_of_cell(folder, iron, "basis = [[0, 0, 0], [0.5, 0.5, -0.5]]"), "accepted");
 }
 
 TEST(UnitCellFile, ThatIsNotThereIsNamed) {
@@ -234,7 +234,7 @@ TEST(UnitCellFile, DamagedFilesAreReadOrRefused) {
   auto const below = [&](std::size_t end) { return random() % end; };
   int refused = 0;
   for (auto const& original :
-       {text_of("bcc_iron.ucf"), text_of("honeycomb_with_dmi.ucf"), std::string(chain)})
+       {text_of("bcc_iron.ucf"), text_of("honeycomb_with_dmi.ucf"), std::string(chain_cell)})
     for (int trial = 0; trial < 100; ++trial) {
       auto text = original;
       for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
@@ -256,7 +256,7 @@ TEST(UnitCellFile, DamagedFilesAreReadOrRefused) {
             text[at] = "0123456789.-+e \n#"[below(17)];
         }
       }
-      refused += refusal_in(folder, text) != "accepted";
+      refused += refusal_of_cell(folder, text) != "accepted";
     }
   EXPECT_GT(refused, 150);
 }

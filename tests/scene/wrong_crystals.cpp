@@ -5,12 +5,12 @@
 namespace cayspin::inline v0_1::io::test {
 namespace {
 
-std::string const crystal_scene =
+std::string const two_site_scene =
     replaced(plain_scene, "[4, 3, 2]", "[4, 3, 2]\nbasis = [[0, 0, 0], [0.5, 0.5, 0.5]]") +
     "[field]\ncouplings = [{ between = [0, 1], J = 1 }]\n";
 
 TEST(WrongCrystal, OfLattice) {
-  expect_refused(crystal_scene, R"(
+  expect_refused(two_site_scene, R"(
 lattice.basis =; lattice.cell = [[1, 0, 0], [0, 1, 0]] | : has 2 entries
   | three vectors of three numbers
 lattice.basis =; lattice.cell = 2 | : 2 is an integer | that span a volume
@@ -55,7 +55,7 @@ lattice.basis =; lattice.bases = [[0, 0, 0], [0.5, 0.5, 0.5]] | : unknown key
 }
 
 TEST(WrongCrystal, OfCouplings) {
-  expect_refused(crystal_scene, R"(
+  expect_refused(two_site_scene, R"(
 field.couplings = 1 | : 1 is an integer
   | an array of tables { between, offset, J, D, tensor, biquadratic }
 field.couplings = [] | : has 0 entries | an array
@@ -108,7 +108,7 @@ field.couplings = { file = 'a.ucf', scale = inf } | .scale: inf is not finite
 }
 
 TEST(WrongCrystal, OfTerms) {
-  expect_refused(crystal_scene, R"(
+  expect_refused(two_site_scene, R"(
 field.anisotropy = { constant = 1, axis = [0, 0, 1], site = 2 } | .site: the cell has no site 2
   | a site of the cell, 0 to 1
 field.anisotropy = [{ constant = 1, axis = [0, 0, 1], site = -1 }] | [0].site: -1 is too small
@@ -144,7 +144,7 @@ lattice.basis =; lattice.cell = [[1, 0, 0], [0.5, 1, 0], [0, 0, 1]]; field = { e
 }
 
 TEST(WrongCrystal, OfTorque) {
-  expect_refused(crystal_scene, R"(
+  expect_refused(two_site_scene, R"(
 torque = {} | : is empty | zhang_li, slonczewski
 torque.zhangli = {} | : unknown key | did you mean "zhang_li"?
 torque.zhang_li = 1 | : 1 is an integer | a table
@@ -170,7 +170,7 @@ torque.slonczewski = { damping_like = 1, polarization = [1, 0, 0] }; integrator.
 }
 
 TEST(WrongCrystal, OfABondTypedTwiceIsNamedByItsLine) {
-  EXPECT_TRUE(refusal_of(replaced(crystal_scene, "[{ between = [0, 1], J = 1 }]",
+  EXPECT_TRUE(refusal_of(replaced(two_site_scene, "[{ between = [0, 1], J = 1 }]",
                                   "[{ between = [0, 1], J = 1 },\n"
                                   "{ between = [1, 1], offset = [1, 0, 0], J = 1 },\n"
                                   "{ between = [0, 1], offset = [0, 0, 0], D = [1, 0, 0] }]"))
@@ -182,8 +182,8 @@ TEST(WrongCrystal, OfABondTypedTwiceIsNamedByItsLine) {
 TEST(WrongCrystal, ToRelaxIsRefused) {
   Folder const folder;
   auto const without =
-      replaced(crystal_scene, "[integrator]\nmethod = \"rkmk4\"\ndt = 0.01\nsteps = 10\n", "");
-  for (auto const& text : {crystal_scene, without}) {
+      replaced(two_site_scene, "[integrator]\nmethod = \"rkmk4\"\ndt = 0.01\nsteps = 10\n", "");
+  for (auto const& text : {two_site_scene, without}) {
     auto const refused = [&](std::vector<std::string> const& overrides) {
       return refusal([&] { read_scene_to_relax(folder.write(text), overrides); });
     };
