@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 # cayspin_add_test(<name> SOURCES <file>... [LIBRARIES <target>...] [LABELS <label>...]
-#                  [THREADS <count>...] [TIMEOUT <seconds>] [FAST] [ON_HOST_DEVICE])
+#                  [THREADS <count>...] [TIMEOUT <seconds>] [BATCH <files>] [FAST]
+#                  [ON_HOST_DEVICE])
 # One GoogleTest program test_<name>, linked to cayspin and started by tests/main.cpp, which runs it
 # inside Kokkos. THREADS registers one entry per count where a threaded host backend is compiled in;
-# otherwise there is one entry with two threads. FAST: compiled to run fast. ON_HOST_DEVICE: a second
-# program, test_<name>_on_host_device.
+# otherwise there is one entry with two threads. BATCH: so many files are compiled as one, for what
+# they share. FAST: compiled to run fast. ON_HOST_DEVICE: a second program,
+# test_<name>_on_host_device.
 function(cayspin_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "TIMEOUT"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "FAST;ON_HOST_DEVICE" "BATCH;TIMEOUT"
                         "SOURCES;LIBRARIES;LABELS;THREADS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
     message(FATAL_ERROR "cayspin_add_test(${name}): wrong arguments: ${arg_UNPARSED_ARGUMENTS}")
@@ -25,6 +27,10 @@ function(cayspin_add_test name)
   target_link_libraries(test_${name} PRIVATE ${main} ${arg_LIBRARIES})
   target_compile_options(test_${name} PRIVATE ${options})
   target_precompile_headers(test_${name} REUSE_FROM ${main})
+  if(arg_BATCH)
+    set_target_properties(test_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE
+                                                                 ${arg_BATCH})
+  endif()
 
   if(arg_THREADS AND (Kokkos_ENABLE_OPENMP OR Kokkos_ENABLE_THREADS))
     foreach(count IN LISTS arg_THREADS)

@@ -26,7 +26,7 @@ struct RateOfField {
 
 /// H of a local term is a polynomial of degree 3 in the spin.
 template <class Backend, class Term>
-void check(Term const& term) {
+void expect_rates(Term const& term) {
   using Real = typename Backend::Real;
   using Spins = typename Backend::Spins;
   typename Backend::Exec const exec;
@@ -46,12 +46,12 @@ void check(Term const& term) {
 }
 
 TYPED_TEST(FieldRates, AreDerivativesOfTheField) {
-  check<TypeParam>(CubicAnisotropy(1.3, {1, 0, 0}, {0, 1, 0}));
-  check<TypeParam>(CubicAnisotropy(1.3, {1, 2, 2}, {2, 1, -2}));
-  check<TypeParam>(
+  expect_rates<TypeParam>(CubicAnisotropy(1.3, {1, 0, 0}, {0, 1, 0}));
+  expect_rates<TypeParam>(CubicAnisotropy(1.3, {1, 2, 2}, {2, 1, -2}));
+  expect_rates<TypeParam>(
       Slonczewski({.damping_like = 0.7, .field_like = -1.1, .polarization = {1, -2, 2}}));
-  check<TypeParam>(EffectiveField(CubicAnisotropy(-0.4, {0, 1, 0}, {3, 0, 4}),
-                                  UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
+  expect_rates<TypeParam>(EffectiveField(CubicAnisotropy(-0.4, {0, 1, 0}, {3, 0, 4}),
+                                         UniaxialAnisotropy(0.7, {1, 1, 1}), Zeeman{{1, 2, 3}}));
 }
 
 // A step of no time asks for the rate of an applied field, too.

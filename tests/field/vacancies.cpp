@@ -15,11 +15,11 @@
 namespace cayspin::test {
 namespace {
 
-Vec3<double> turning(double t) { return {0.7 * std::cos(t), 0.7 * std::sin(t), 0.9}; }
+Vec3<double> turning_field(double t) { return {0.7 * std::cos(t), 0.7 * std::sin(t), 0.9}; }
 
 auto every_term(Lattice const& lattice) {
   return EffectiveField(Exchange(lattice, 0.8), UniaxialAnisotropy(0.7, {1, 2, -2}),
-                        TimeDependentZeeman(turning));
+                        TimeDependentZeeman(turning_field));
 }
 
 /// Those without a derivative among them.

@@ -23,7 +23,7 @@ void expect_equal(Vec3<Value> const& found, Vec3<double> const& expected) {
 }
 
 template <class Value>
-void check() {
+void expect_arithmetic() {
   using Real = detail::scalar_t<Value>;
   auto const v = as_value<Value>(Vec3<double>{1, -2, 0.5});
   expect_equal(-v, {-1, 2, -0.5});
@@ -46,8 +46,8 @@ void check() {
   expect_equal(select<Value>(Value(Real(0)) < v.y, v, zero<Value>()), {0, 0, 0});
 }
 
-TYPED_TEST(Vectors, OfNumbers) { check<TypeParam>(); }
-TYPED_TEST(Vectors, OfPacks) { check<detail::Pack<TypeParam>>(); }
+TYPED_TEST(Vectors, OfNumbers) { expect_arithmetic<TypeParam>(); }
+TYPED_TEST(Vectors, OfPacks) { expect_arithmetic<detail::Pack<TypeParam>>(); }
 
 }  // namespace
 }  // namespace cayspin::test
