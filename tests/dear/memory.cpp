@@ -19,12 +19,13 @@ using namespace cayspin::test;
 
 namespace {
 
-Lattice const block{{5, 4, 3}, {1, 1.1, 0.9}, {Boundary::periodic, Boundary::open, Boundary::open}};
+Lattice const small_block{
+    {5, 4, 3}, {1, 1.1, 0.9}, {Boundary::periodic, Boundary::open, Boundary::open}};
 
 TEST(Dear, CountsEvaluations) {
-  Spins spins = random_spins(block, 3);
+  Spins spins = random_spins(small_block, 3);
   auto const dear = dear_long_range(spins, 0.4);
-  auto const generator = with_dear(block, 0.5, dear, 0.1);
+  auto const generator = with_dear(small_block, 0.5, dear, 0.1);
   auto stepper = multirate(spins, dear, 3);
   static_assert(Stepper<decltype(stepper)>);
   for (int run = 1; run <= 2; ++run) {
@@ -38,9 +39,9 @@ TEST(Dear, CountsEvaluations) {
 }
 
 TEST(Dear, StartsAnew) {
-  Spins const start = random_spins(block, 5);
+  Spins const start = random_spins(small_block, 5);
   auto const dear = dear_long_range(start, 0.4);
-  auto const generator = with_dear(block, 0.5, dear, 0.1);
+  auto const generator = with_dear(small_block, 0.5, dear, 0.1);
   auto stepper = multirate(start, dear, 2);
   auto const again = [&] {
     Spins spins = copy_of(start);
@@ -69,9 +70,9 @@ TEST(Dear, StartsAnew) {
 
 template <class Field>
 void expect_same_bits_after_a_break(int steps_before) {
-  Field const start = random_spins<Field>(block, 5);
+  Field const start = random_spins<Field>(small_block, 5);
   auto const dear = dear_long_range(start, 0.4);
-  auto const generator = with_dear(block, 0.5, dear, 0.1, 0.6);
+  auto const generator = with_dear(small_block, 0.5, dear, 0.1, 0.6);
   auto const whole = [&] {
     Field spins = copy_of(start);
     auto stepper = multirate<4>(spins, dear, 2);
@@ -89,8 +90,8 @@ void expect_same_bits_after_a_break(int steps_before) {
   auto const other_dear = dear_long_range(others, 0.4);
   auto second = multirate<4>(others, other_dear, 2);
   exchange_memory(second, kept);
-  advance(second, with_dear(block, 0.5, other_dear, 0.1, 0.6), others, 0.05, 12 - steps_before,
-          steps_before);
+  advance(second, with_dear(small_block, 0.5, other_dear, 0.1, 0.6), others, 0.05,
+          12 - steps_before, steps_before);
   EXPECT_EQ(copy_to_host(others), whole) << steps_before;
   EXPECT_EQ(second.dear_evaluations_done(), 2 + 2 * 4 + 11);
 }
@@ -107,11 +108,11 @@ TEST(Dear, SinglePrecision) {
   auto const end_of = [&]<class Field>(Field spins) {
     auto const dear = dear_long_range(spins, 0.4);
     auto stepper = multirate(spins, dear, 2);
-    advance(stepper, with_dear(block, 0.5, dear, 0.1, 0.6), spins, 0.02, 50);
+    advance(stepper, with_dear(small_block, 0.5, dear, 0.1, 0.6), spins, 0.02, 50);
     return spins;
   };
-  double const distance =
-      largest_distance(end_of(random_spins(block, 5)), end_of(random_spins<Floats>(block, 5)));
+  double const distance = largest_distance(end_of(random_spins(small_block, 5)),
+                                           end_of(random_spins<Floats>(small_block, 5)));
   expect_below("float beside double, 50 steps", distance, 50 * 2 * 1.2e-7);
   EXPECT_GT(distance, 1e-8);
 }
@@ -144,11 +145,11 @@ TEST(Dear, SameBitsOnHostSpaces) {
 
 /// A term of the library's that is not computed on the host: its own field for kernels.
 TEST(Dear, TakesAnyTermOfKnownDegree) {
-  Spins spins = random_spins(block, 5);
+  Spins spins = random_spins(small_block, 5);
   SlabDemag const slab{Vector{1, 2, 0}, 0.7};
   Dear const dear(spins, slab);
-  EffectiveField const field(Exchange{block, 0.5}, dear);
-  EffectiveField const cheap(Exchange{block, 0.5}, slab);
+  EffectiveField const field(Exchange{small_block, 0.5}, dear);
+  EffectiveField const cheap(Exchange{small_block, 0.5}, slab);
   double const energy = sample(Space{}, LandauLifshitz{cheap, 0.1}, Step{}, spins).energy.value;
   EXPECT_NEAR(sample(Space{}, LandauLifshitz{field, 0.1}, Step{}, spins).energy.value, energy,
               1e-14 * 60);
@@ -173,11 +174,11 @@ struct Failing : LongRange {
 
 // In the first step, at its end, and at the end of the third.
 TEST(Dear, LeavesTheSpinsOfAStepThatFails) {
-  Spins const start = random_spins(block, 5);
+  Spins const start = random_spins(small_block, 5);
   for (double const from : {0.07, 0.1, 0.25}) {
     Spins spins = copy_of(start);
     Dear const dear(spins, HostField<Spins, Failing>(spins, Failing{{0.4}, from}));
-    auto const generator = with_dear(block, 0.5, dear, 0.1);
+    auto const generator = with_dear(small_block, 0.5, dear, 0.1);
     Multirate stepper(spins, Rkmk4<Spins>(spins), dear, {.substeps = 2});
     std::vector<double> before;
     int whole = 0;
@@ -201,11 +202,11 @@ template <class Field>
 void expect_unit_spins_at_any_step() {
   double const eps = std::numeric_limits<typename Field::value_type>::epsilon();
   for (double const dt : {5e-324, 1e-300, 1e-12, 1., 10.}) {
-    Field const start = random_spins<Field>(block, 5);
+    Field const start = random_spins<Field>(small_block, 5);
     Field spins = copy_of(start);
     auto const dear = dear_long_range(spins, 0.4);
     auto stepper = multirate(spins, dear, 3);
-    auto const generator = with_dear(block, 0.5, dear, 0.1);
+    auto const generator = with_dear(small_block, 0.5, dear, 0.1);
     for (double const t : {0., 1., 1e20}) stepper.step(Space{}, generator, spins, t, dt);
     auto const seen = sample(Space{}, generator, Step{}, spins);
     EXPECT_LT(seen.norm_defect, 100 * eps) << dt;
@@ -222,20 +223,20 @@ TEST(Dear, KeepsUnitSpinsAtAnyStep) {
 }
 
 TEST(Dear, RestsWhereNothingTurns) {
-  Spins spins("spins", block);  // all along z
+  Spins spins("spins", small_block);  // all along z
   auto const start = copy_to_host(spins);
   auto const dear = dear_long_range(spins, 0);
-  LandauLifshitz const generator(EffectiveField(Exchange{block, 0.5}, dear), 0.1);
+  LandauLifshitz const generator(EffectiveField(Exchange{small_block, 0.5}, dear), 0.1);
   auto stepper = multirate(spins, dear, 3);
   advance(stepper, generator, spins, 0.1, 10);
   EXPECT_EQ(copy_to_host(spins), start);
 }
 
 TEST(Dear, RefusesWrongCalls) {
-  Spins spins = random_spins(block, 3);
+  Spins spins = random_spins(small_block, 3);
   Spins elsewhere("other", Lattice::chain(5));
   auto const dear = dear_long_range(spins, 0.4), other = dear_long_range(spins, 0.4);
-  auto const generator = with_dear(block, 0.5, other, 0.1);
+  auto const generator = with_dear(small_block, 0.5, other, 0.1);
   auto stepper = multirate(spins, dear, 2);
   advance(stepper, generator, spins, 0.05, 1);
   expect_refused({{"no substeps", [&] { multirate(spins, dear, 0); }},

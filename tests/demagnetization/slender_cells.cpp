@@ -17,7 +17,7 @@ namespace {
 using Lengths = std::array<double, 3>;
 using Entries = std::array<double, 6>;  // xx, yy, zz, xy, xz, yz
 
-struct TensorEntry {
+struct SlenderEntry {
   Lengths position, cell;
   Entries tensor;
 
@@ -27,9 +27,9 @@ struct TensorEntry {
 };
 
 /// Written by tensor_table.py.
-std::vector<TensorEntry> const slender_table = [] {
+std::vector<SlenderEntry> const slender_table = [] {
   std::ifstream file(CAYSPIN_TEST_DATA "/slender_demagnetizing_tensors.json");
-  std::vector<TensorEntry> table;
+  std::vector<SlenderEntry> table;
   for (auto const& row : nlohmann::json::parse(file))
     table.push_back({row.at("position"), row.at("cell"), row.at("tensor")});
   return table;

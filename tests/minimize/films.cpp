@@ -5,7 +5,7 @@
 namespace cayspin::test {
 namespace {
 
-constexpr std::int64_t n = 32;
+constexpr std::int64_t width = 32;
 
 template <class Backend>
 class Films : public MinimizerTest<Backend> {
@@ -14,7 +14,7 @@ class Films : public MinimizerTest<Backend> {
 
   Minimum relax(double exchange, std::vector<double> const& start,
                 MinimizeOptions const& options = {}) {
-    auto const lattice = Lattice::square(n, n);
+    auto const lattice = Lattice::square(width, width);
     spins = spins_of<Spins>(lattice, start);
     return minimize(this->exec, film(lattice, exchange), spins, options);
   }
@@ -23,12 +23,13 @@ class Films : public MinimizerTest<Backend> {
 TYPED_TEST_SUITE(Films, Backends, BackendName);
 
 TYPED_TEST(Films, TakeSeventyEvaluations) {
-  double const easy = -0.05 * n * n;  // along the easy axis
+  double const easy = -0.05 * width * width;  // along the easy axis
   // Round-off leaves saddles slowly in single precision.
   int const most = TestFixture::is_double ? 70 : 105;
   for (double const exchange : {2.0, 50.0, 1000.0}) {
-    std::vector<std::vector<double>> starts{vortex(n)};
-    for (unsigned const seed : {1U, 2U, 3U}) starts.push_back(random_directions(n * n, seed));
+    std::vector<std::vector<double>> starts{vortex(width)};
+    for (unsigned const seed : {1U, 2U, 3U})
+      starts.push_back(random_directions(width * width, seed));
     for (std::size_t i = 0; i < starts.size(); ++i) {
       auto const found = this->relax(exchange, starts[i]);
       EXPECT_EQ(found.end, MinimizeEnd::converged) << exchange << " " << i;
@@ -40,7 +41,7 @@ TYPED_TEST(Films, TakeSeventyEvaluations) {
       EXPECT_LT(largest_rate(this->exec, generator, this->spins), 1.1e-6);
       // Weak exchange keeps a wall.
       if (exchange > 2 || i > 0)
-        EXPECT_NEAR(found.energy.value, easy, 1e-9 * n * n) << exchange << " " << i;
+        EXPECT_NEAR(found.energy.value, easy, 1e-9 * width * width) << exchange << " " << i;
       else
         EXPECT_LT(found.energy.value, -10);
     }
@@ -60,16 +61,16 @@ TYPED_TEST(Films, TakeFewEvaluationsFarWiderThanAWall) {
 
 // What the preconditioner is for: without it they grow as the root of the exchange.
 TYPED_TEST(Films, TakeManyMoreWithoutThePreconditioner) {
-  auto const start = random_directions(n * n, 1);
+  auto const start = random_directions(width * width, 1);
   auto const with = this->relax(1000, start, {.torque = 1e-2});
   auto const without = this->relax(1000, start, {.torque = 1e-2, .preconditioned = false});
   EXPECT_EQ(without.end, MinimizeEnd::converged);
   EXPECT_GT(without.evaluations, 8 * with.evaluations);
-  EXPECT_NEAR(with.energy.value, without.energy.value, 1e-3 * n * n);
+  EXPECT_NEAR(with.energy.value, without.energy.value, 1e-3 * width * width);
 }
 
 TYPED_TEST(Films, EndEarly) {
-  auto const start = random_directions(n * n, 1);
+  auto const start = random_directions(width * width, 1);
   auto const limited = this->relax(50, start, {.evaluations = 12});
   EXPECT_EQ(limited.end, MinimizeEnd::evaluation_limit);
   EXPECT_GE(limited.evaluations, 12);
@@ -86,7 +87,7 @@ TYPED_TEST(Films, EndEarly) {
 
 // Where round-off keeps the torque above the bound, that is said.
 TYPED_TEST(Films, StagnateAboveRoundOff) {
-  auto const found = this->relax(2, vortex(n), {.torque = 1e-30});
+  auto const found = this->relax(2, vortex(width), {.torque = 1e-30});
   EXPECT_EQ(found.end, MinimizeEnd::stagnated);
   double const field = 2 * 8;
   EXPECT_LT(found.torque, 16 * epsilon<typename TypeParam::Real> * field);

@@ -7,13 +7,13 @@
 namespace cayspin::test {
 namespace {
 
-constexpr std::int64_t n = 16;
+constexpr std::int64_t columns = 16;
 using Host = SpinField<double, Kokkos::HostSpace>;
 
 Host skyrmion(Lattice const& lattice, double x, double y) {
   std::vector<double> m;
-  for (std::int64_t j = 0; j < n; ++j)
-    for (std::int64_t i = 0; i < n; ++i) {
+  for (std::int64_t j = 0; j < columns; ++j)
+    for (std::int64_t i = 0; i < columns; ++i) {
       double const r = std::hypot(i - x, j - y), turn = std::max(0.0, 1 - r / 6.5);
       double const sine = std::sin(std::numbers::pi * turn) / std::max(r, 1e-9);
       for (double const c : {-sine * (j - y), sine * (i - x), std::cos(std::numbers::pi * turn)})
@@ -45,13 +45,13 @@ void expect_minimum(Lattice const& lattice, Field const& field, double parallel)
 
 TEST(SlidingSkyrmion, LeavesTheSaddlesOfItsPosition) {
   Lattice const lattice{
-      {n, n, 1}, {1, 1, 1}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
+      {columns, columns, 1}, {1, 1, 1}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
   Zeeman const applied{{0, 0, 2.894190905}};
   expect_minimum(lattice, EffectiveField(Exchange(lattice, 10), BulkDmi(lattice, 6), applied), 0);
   std::vector<Coupling> const bonds{Coupling::of({0, 0}, {1, 0, 0}, 10, {6, 0, 0}),
                                     Coupling::of({0, 0}, {0, 1, 0}, 10, {0, 6, 0})};
   expect_minimum(lattice, EffectiveField(PairCouplings<Kokkos::HostSpace>(lattice, bonds), applied),
-                 -10.0 * 2 * n * n);
+                 -10.0 * 2 * columns * columns);
 }
 
 }  // namespace

@@ -249,11 +249,11 @@ void expect_counted(std::vector<double> const& stage_times) {
 }
 
 template <class Real>
-class Evaluations : public ::testing::Test {};
-TYPED_TEST_SUITE(Evaluations, Precisions, PrecisionName);
+class CountedEvaluations : public ::testing::Test {};
+TYPED_TEST_SUITE(CountedEvaluations, Precisions, PrecisionName);
 
 // One row of one site is one call: counted by the generator, at the stages' own times.
-TYPED_TEST(Evaluations, AreWhatTheGeneratorSees) {
+TYPED_TEST(CountedEvaluations, AreWhatTheGeneratorSees) {
   using Spins = SpinField<TypeParam, Kokkos::HostSpace>;
   expect_counted<LieEuler<Spins>, Spins>({0});
   expect_counted<Rkmk4<Spins>, Spins>({0, 0.5, 0.5, 1});

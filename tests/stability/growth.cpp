@@ -18,8 +18,7 @@ struct Measured {
   double damping, euler, heun, rkmk4;
 };
 
-Boundary const open = Boundary::open;
-std::array<Boundary, 3> const all_open{open, open, open};
+std::array<Boundary, 3> const all_open{Boundary::open, Boundary::open, Boundary::open};
 Measured const rows[] = {
     {"fine_chain", Lattice::chain(100, 0.01), .05, 2.49398e-6, 1.99672e-5, 7.26586e-5},
     {"fine_chain_damped", Lattice::chain(100, 0.01), 1, 2.50022e-5, 3.85955e-5, 4.78108e-5},

@@ -16,7 +16,7 @@ namespace {
 
 using isotropy::FiniteDifferenceBackward;
 
-Slab const slab = coupled_chain(0.2);
+Slab const damped_chain = coupled_chain(0.2);
 
 template <class Of>
 Of made_like(typename Of::spins_type const& spins) {
@@ -58,12 +58,12 @@ TYPED_TEST(Checkpoints, GoOnAsTheRunWouldHave) {
   using Spins = typename TypeParam::spins_type;
   constexpr std::int64_t steps = 20;
   auto const start = [] {
-    Spins spins("spins", slab.lattice);
-    copy_from_host(copy_to_host(random_spins(slab.lattice, 5)), spins);
+    Spins spins("spins", damped_chain.lattice);
+    copy_from_host(copy_to_host(random_spins(damped_chain.lattice, 5)), spins);
     return spins;
   };
   auto const go = [](TypeParam& stepper, Spins& spins, std::int64_t from, std::int64_t to) {
-    integrate(Space{}, stepper, slab.natural(), spins, Times{0, 0.05, to, from, from > 0});
+    integrate(Space{}, stepper, damped_chain.natural(), spins, Times{0, 0.05, to, from, from > 0});
   };
   Spins in_one_piece = start();
   TypeParam uncut = made_like<TypeParam>(in_one_piece);
@@ -113,7 +113,7 @@ class Altered final : public Checkpoint {
 template <class Make, class Generator>
 void expect_counts_are_checked(Make const& make, Generator const& generator,
                                std::vector<std::string> const& names) {
-  Field<double> spins = random_spins(slab.lattice, 5);
+  Field<double> spins = random_spins(damped_chain.lattice, 5);
   auto stepper = make(spins), other = make(spins);
   for (int n = 0; n < 5; ++n) stepper.step(Space{}, generator, spins, 0.05 * n, 0.05);
   CheckpointInMemory checkpoint;
@@ -129,13 +129,13 @@ void expect_counts_are_checked(Make const& make, Generator const& generator,
 
 TEST(Checkpoint, CountsThatNoStepperHasAreRefused) {
   using Spins = Field<double>;
-  auto const natural = slab.natural();
+  auto const natural = damped_chain.natural();
   expect_counts_are_checked([](Spins const& like) { return StiffGauss2(like); }, natural,
                             {"known", "exchange_known"});
   expect_counts_are_checked([](Spins const& like) { return StiffGauss4(like); }, natural,
                             {"known"});
-  Dear const dear(Spins("like", slab.lattice), SlabDemag({1, 0, 0}, 0.4));
-  LandauLifshitz const generator(EffectiveField(Exchange(slab.lattice, 1), dear), 0.2);
+  Dear const dear(Spins("like", damped_chain.lattice), SlabDemag({1, 0, 0}, 0.4));
+  LandauLifshitz const generator(EffectiveField(Exchange(damped_chain.lattice, 1), dear), 0.2);
   expect_counts_are_checked(
       [&](Spins const& like) { return Multirate(like, Rkmk4<Spins>(like), dear); }, generator,
       {"known"});
@@ -146,7 +146,7 @@ TEST(Checkpoint, HoldsNothingOfAnotherLattice) {
   Field<double> const small("spins", Lattice::chain(4));
   Field<double> spins("spins", Lattice::chain(8));
   Stepper stepper(spins), other(small);
-  stepper.step(Space{}, slab.natural(), spins, 0, 0.1);
+  stepper.step(Space{}, damped_chain.natural(), spins, 0, 0.1);
   CheckpointInMemory checkpoint;
   exchange_memory(stepper, checkpoint);
   checkpoint.close();

@@ -80,23 +80,23 @@ TYPED_TEST(Compensation, ManyShortStepsAddNothing) {
   expect_no_growth<ProjectedRk4<Field>>("projected");
 }
 
-Slab const slab{.lattice = {{9, 7, 1}},
-                .exchange = 1,
-                .anisotropy = 0.8,
-                .axis = {1, 2, 3},
-                .demag = 1,
-                .applied = {0.5, -0.7, 0.9},
-                .damping = 0.1};
+Slab const rounded_slab{.lattice = {{9, 7, 1}},
+                        .exchange = 1,
+                        .anisotropy = 0.8,
+                        .axis = {1, 2, 3},
+                        .demag = 1,
+                        .applied = {0.5, -0.7, 0.9},
+                        .damping = 0.1};
 
 /// Distance, in epsilon of float, of a run in float from the same steps in double.
 template <template <class> class Method, template <class> class Sums>
 double round_off(std::int64_t steps) {
-  auto const start = random_spins<SpinsOf<float>>(slab.lattice, 3);
-  Spins same("same", slab.lattice);
+  auto const start = random_spins<SpinsOf<float>>(rounded_slab.lattice, 3);
+  Spins same("same", rounded_slab.lattice);
   copy_from_host(copy_to_host(start), same);
   double const dt = 2. / static_cast<double>(steps);
-  auto const end = run<Sums<Method<SpinsOf<float>>>>(slab.natural(), start, dt, steps);
-  auto const exact = run<Method<Spins>>(slab.natural(), same, dt, steps);
+  auto const end = run<Sums<Method<SpinsOf<float>>>>(rounded_slab.natural(), start, dt, steps);
+  auto const exact = run<Method<Spins>>(rounded_slab.natural(), same, dt, steps);
   return largest_distance(end, exact) / epsilon<float>;
 }
 
@@ -128,16 +128,16 @@ TEST(CompensatedFloat, CoupledSpinsKeepTheirDigits) {
 
 TYPED_TEST(Compensation, BatchesAndStepsHaveTheSameBits) {
   using Field = typename TestFixture::Field;
-  auto const start = random_spins<Field>(slab.lattice, 5);
-  auto const one_by_one = run<Compensated<Rkmk4<Field>>>(slab.natural(), start, 0.01, 50);
+  auto const start = random_spins<Field>(rounded_slab.lattice, 5);
+  auto const one_by_one = run<Compensated<Rkmk4<Field>>>(rounded_slab.natural(), start, 0.01, 50);
   Field together = copy_of(start);
   Compensated<Rkmk4<Field>> stepper(together);
   ASSERT_TRUE(!detail::is_host_execution<Space> ||
-              stepper.takes_batches(Space(), slab.natural(), together));
-  integrate(Space(), stepper, slab.natural(), together, Times{0, 0.01, 50});
+              stepper.takes_batches(Space(), rounded_slab.natural(), together));
+  integrate(Space(), stepper, rounded_slab.natural(), together, Times{0, 0.01, 50});
   EXPECT_EQ(copy_to_host(together), copy_to_host(one_by_one));
   EXPECT_NE(copy_to_host(together),
-            copy_to_host(run<Rkmk4<Field>>(slab.natural(), start, 0.01, 50)));
+            copy_to_host(run<Rkmk4<Field>>(rounded_slab.natural(), start, 0.01, 50)));
 }
 
 }  // namespace

@@ -12,12 +12,12 @@ namespace {
 using isotropy::FiniteDifference;
 using isotropy::FiniteDifferenceBackward;
 
-Slab const slab{.lattice = Lattice::chain(8),
-                .exchange = 1,
-                .anisotropy = 0.8,
-                .axis = {1, 2, 3},
-                .applied = {0.5, -0.7, 0.9},
-                .damping = 0.2};
+Slab const chain{.lattice = Lattice::chain(8),
+                 .exchange = 1,
+                 .anisotropy = 0.8,
+                 .axis = {1, 2, 3},
+                 .applied = {0.5, -0.7, 0.9},
+                 .damping = 0.2};
 
 template <class Stepper>
 class Remembering : public ::testing::Test {};
@@ -33,12 +33,12 @@ using AllThatRemember =
 TYPED_TEST_SUITE(Forgetting, AllThatRemember);
 
 TYPED_TEST(Forgetting, StartsAnewAfterReset) {
-  Spins const start = random_spins(slab.lattice, 5);
-  auto const fresh = copy_to_host(run<TypeParam>(slab.natural(), start, 0.05, 2));
+  Spins const start = random_spins(chain.lattice, 5);
+  auto const fresh = copy_to_host(run<TypeParam>(chain.natural(), start, 0.05, 2));
   TypeParam stepper(start);
   auto const again = [&] {
     Spins spins = copy_of(start);
-    advance(stepper, slab.natural(), spins, 0.05, 2);
+    advance(stepper, chain.natural(), spins, 0.05, 2);
     return copy_to_host(spins);
   };
   EXPECT_EQ(again(), fresh);
@@ -47,19 +47,19 @@ TYPED_TEST(Forgetting, StartsAnewAfterReset) {
   EXPECT_EQ(again(), fresh);
 
   Spins spins = copy_of(start);
-  integrate(Space{}, stepper, slab.natural(), spins, Times{0, 0.05, 2});
+  integrate(Space{}, stepper, chain.natural(), spins, Times{0, 0.05, 2});
   EXPECT_EQ(copy_to_host(spins), fresh);
 }
 
 // A first step from a state that is told is the second step from it.
 TYPED_TEST(Remembering, StateBefore) {
-  Spins const start = random_spins(slab.lattice, 5);
-  Spins const after_one = run<TypeParam>(slab.natural(), start, 0.05, 1);
+  Spins const start = random_spins(chain.lattice, 5);
+  Spins const after_one = run<TypeParam>(chain.natural(), start, 0.05, 1);
   Spins spins = copy_of(after_one);
   TypeParam stepper(spins);
-  stepper.remember(Space{}, slab.natural(), start, 0, 0.05);
-  advance(stepper, slab.natural(), spins, 0.05, 1, 1);
-  EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(slab.natural(), start, 0.05, 2)));
+  stepper.remember(Space{}, chain.natural(), start, 0, 0.05);
+  advance(stepper, chain.natural(), spins, 0.05, 1, 1);
+  EXPECT_EQ(copy_to_host(spins), copy_to_host(run<TypeParam>(chain.natural(), start, 0.05, 2)));
 }
 
 /// Cannot be had after a time.
@@ -74,7 +74,7 @@ struct FieldUntil {
 };
 
 TYPED_TEST(Remembering, AFirstStepThatFailedIsTakenAgain) {
-  Spins const start = random_spins(slab.lattice, 5);
+  Spins const start = random_spins(chain.lattice, 5);
   auto const generator = [](double end) {
     return LandauLifshitz(EffectiveField(FieldUntil{end}), 0.2);
   };
@@ -100,13 +100,14 @@ Spins unequal_steps(Slab const& of, int pairs, double end_time) {
 }
 
 TEST(UnequalSteps, KeepTheOrder) {
-  Spins const exact = run<Rkmk4<Spins>>(slab.natural(), random_spins(slab.lattice, 5), 1e-3, 1000);
-  Slab undamped = slab;
+  Spins const exact =
+      run<Rkmk4<Spins>>(chain.natural(), random_spins(chain.lattice, 5), 1e-3, 1000);
+  Slab undamped = chain;
   undamped.damping = 0;
-  double const before = energy(Space{}, undamped.natural(), random_spins(slab.lattice, 5)).value;
+  double const before = energy(Space{}, undamped.natural(), random_spins(chain.lattice, 5)).value;
   std::array const ladder{40, 80, 160, 320};  // pairs
   expect_convergence("ab2", 1, ladder, 2, 0.15, [&](int pairs, double) {
-    return largest_distance(unequal_steps<LieAdamsBashforth2<Spins>>(slab, pairs, 1), exact);
+    return largest_distance(unequal_steps<LieAdamsBashforth2<Spins>>(chain, pairs, 1), exact);
   });
   expect_convergence("backward difference, energy", 1, ladder, 2, 0.15, [&](int pairs, double) {
     auto const end = unequal_steps<LieEuler<Spins, FiniteDifferenceBackward>>(undamped, pairs, 1);
@@ -118,16 +119,16 @@ TEST(UnequalSteps, KeepTheOrder) {
 TEST(FiniteDifference, CapOfTheTurn) {
   constexpr double dt = 0.1;
   Space const exec;
-  auto const generator = orthogonal(slab.natural());
-  Spins const start = random_spins(slab.lattice, 5);
+  auto const generator = orthogonal(chain.natural());
+  Spins const start = random_spins(chain.lattice, 5);
   auto const w = evaluated(exec, generator, start);
   auto const predicted = evaluated(exec, generator, run<LieEuler<Spins>>(generator, start, dt, 1));
   double largest = 0;
   for (double const cap : {0.0, 0.01, 0.1, std::numeric_limits<double>::infinity()}) {
-    auto const end =
-        run<LieEuler<Spins, FiniteDifference>>(slab.natural(), start, dt, 1, FiniteDifference{cap});
+    auto const end = run<LieEuler<Spins, FiniteDifference>>(chain.natural(), start, dt, 1,
+                                                            FiniteDifference{cap});
     auto const uncapped = run<LieEuler<Spins, FiniteDifferenceBackward>>(
-        slab.natural(), start, dt, 1, FiniteDifferenceBackward{cap});
+        chain.natural(), start, dt, 1, FiniteDifferenceBackward{cap});
     EXPECT_EQ(copy_to_host(end), copy_to_host(uncapped)) << "the first step is a forward one";
     for (std::int64_t site = 0; site < 8; ++site) {
       Vector const m = spin(start, site), a = at(w, site);
