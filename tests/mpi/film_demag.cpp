@@ -9,7 +9,7 @@
 namespace cayspin::test {
 namespace {
 
-using HostSpins = SpinField<double, Kokkos::HostSpace>;
+using FilmSpins = SpinField<double, Kokkos::HostSpace>;
 
 TEST(FilmDemagnetisingField, IsThatOfOneRank) {
   int ranks = 0;
@@ -24,8 +24,8 @@ TEST(FilmDemagnetisingField, IsThatOfOneRank) {
     auto const own = static_cast<std::size_t>(3 * local.sites());
     std::vector<double> const part(m.begin() + static_cast<std::ptrdiff_t>(first),
                                    m.begin() + static_cast<std::ptrdiff_t>(first + own));
-    HostSpins const whole_spins = spins_of<HostSpins>(film, m), whole_field("field", film);
-    HostSpins const spins = spins_of<HostSpins>(local, part), field("field", local);
+    FilmSpins const whole_spins = spins_of<FilmSpins>(film, m), whole_field("field", film);
+    FilmSpins const spins = spins_of<FilmSpins>(local, part), field("field", local);
     DemagnetizingField<double> const of_one_rank(film);
     of_one_rank(whole_spins, whole_field, 0);
     FilmDemagnetisingField const of_all(domain, demagnetizing_tensor);

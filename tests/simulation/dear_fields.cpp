@@ -11,8 +11,8 @@
 namespace cayspin::simulation::test {
 namespace {
 
-io::Scene film(std::string const& integrator,
-               std::vector<std::string> const& overrides = {"field.slab_demag.dear=true"}) {
+io::Scene film_on_host(std::string const& integrator,
+                       std::vector<std::string> const& overrides = {"field.slab_demag.dear=true"}) {
   return scene_of(R"toml(
 [system]
 kind = "llg"
@@ -33,15 +33,15 @@ random = { seed = 5 }
 }
 
 TEST(DearFields, OfScenesHaveOrderThreeOrFour) {
-  auto const exact = end_of(film("method='rkmk8'\ndt=0.002\nsteps=500", {}));
+  auto const exact = end_of(film_on_host("method='rkmk8'\ndt=0.002\nsteps=500", {}));
   for (auto const& [method, order] : {std::pair{"heun", 2}, {"rkmk4", 3}, {"rkmk8", 4}}) {
     double errors[2];
     for (int i = 0; i < 2; ++i) {
       int const steps = 40 << i;
-      errors[i] =
-          largest_distance(end_of(film(fmt::format("method='{}'\nsubsteps=2\ndt={}\nsteps={}",
-                                                   method, 1. / steps, steps))),
-                           exact);
+      errors[i] = largest_distance(
+          end_of(film_on_host(
+              fmt::format("method='{}'\nsubsteps=2\ndt={}\nsteps={}", method, 1. / steps, steps))),
+          exact);
     }
     std::printf("    %-14s error %.1e, order %.2f\n", method, errors[1],
                 std::log2(errors[0] / errors[1]));
@@ -56,10 +56,10 @@ TEST(DearFields, BesideCurrentsAndSitesOfTheirOwn) {
       "lattice.occupied='i != 3 || j > 1'", "lattice.frozen='i == 0'"};
   auto dear = others;
   dear.push_back("field.slab_demag.dear=true");
-  auto const exact = end_of(film("method='rkmk8'\ndt=0.005\nsteps=200", others));
+  auto const exact = end_of(film_on_host("method='rkmk8'\ndt=0.005\nsteps=200", others));
   for (auto const& [method, limit] : {std::pair{"rkmk4", 4e-6}, {"rkmk5", 5e-7}}) {
     auto const scene =
-        film("method='" + std::string(method) + "'\nsubsteps=2\ndt=0.025\nsteps=40", dear);
+        film_on_host("method='" + std::string(method) + "'\nsubsteps=2\ndt=0.025\nsteps=40", dear);
     double const error = largest_distance(end_of(scene), exact);
     std::printf("    %-14s error %.1e\n", method, error);
     EXPECT_LT(error, limit) << method;
@@ -68,7 +68,7 @@ TEST(DearFields, BesideCurrentsAndSitesOfTheirOwn) {
 
 /// A field of the program that counts how often it is asked for.
 io::Scene with_own_field(std::string const& integrator, std::shared_ptr<int> const& calls) {
-  auto scene = film(integrator, {"field={exchange=0.5}"});
+  auto scene = film_on_host(integrator, {"field={exchange=0.5}"});
   scene.field.own.nonlocal = [calls](io::HostVectors const& spins, io::HostVectors const& field,
                                      double) {
     ++*calls;
@@ -116,7 +116,8 @@ TEST(DearFields, GoOnWithTheSameBits) {
     for (auto const& [method, cut] :
          {std::pair{"rkmk4", 1}, {"rkmk4", 2}, {"rkmk4", 3}, {"rkmk4", 11}, {"rkmk5", 4}}) {
       SCOPED_TRACE(fmt::format("{}, cut after {}", method, cut));
-      auto const scene = film(fmt::format("method='{}'\nsubsteps=3\ndt=0.05\nsteps=20", method));
+      auto const scene =
+          film_on_host(fmt::format("method='{}'\nsubsteps=3\ndt=0.05\nsteps=20", method));
       auto const one_by_one = SceneRun::open(scene, {.precision = precision});
       for (int step = 0; step < 20; ++step) one_by_one->advance(1);
       EXPECT_TRUE(one_by_one->remembers());
@@ -156,7 +157,7 @@ TEST(DearFields, AreRefusedInOneLine) {
     wrong.push_back({"method='" + std::string(method) + "'\ndt=0.1\nsteps=9", {dear}, takes_none});
   for (auto const& [integrator, overrides, message] : wrong) {
     SCOPED_TRACE(integrator);
-    expect_refused([&] { return film(integrator, overrides); }, message);
+    expect_refused([&] { return film_on_host(integrator, overrides); }, message);
   }
   // Two dear fields.
   auto scene = with_own_field(rkmk4 + "substeps=2", std::make_shared<int>(0));
@@ -166,15 +167,16 @@ TEST(DearFields, AreRefusedInOneLine) {
 
 TEST(DearFields, AreInThePlan) {
   auto const cheap =
-      make_plan(film("method='rkmk4'\ndt=0.1\nsteps=9", {}), Precision::double_precision);
-  auto const dear =
-      make_plan(film("method='rkmk4'\nsubsteps=4\ndt=0.1\nsteps=9"), Precision::double_precision);
+      make_plan(film_on_host("method='rkmk4'\ndt=0.1\nsteps=9", {}), Precision::double_precision);
+  auto const dear = make_plan(film_on_host("method='rkmk4'\nsubsteps=4\ndt=0.1\nsteps=9"),
+                              Precision::double_precision);
   EXPECT_DOUBLE_EQ(dear.stable_dt, 4 * cheap.stable_dt);
   EXPECT_DOUBLE_EQ(4 * dear.turn, cheap.turn);
   EXPECT_EQ(dear.memory.work, cheap.memory.work + 4 * cheap.memory.spins);
   EXPECT_EQ(dear.memory.field, cheap.memory.field + cheap.memory.spins);
   auto const of = [](char const* set) {
-    return make_plan(film("method='rkmk5'\ndt=0.1\nsteps=9", {set}), Precision::double_precision)
+    return make_plan(film_on_host("method='rkmk5'\ndt=0.1\nsteps=9", {set}),
+                     Precision::double_precision)
         .memory;
   };
   EXPECT_EQ(of("field.slab_demag.dear=true").work,

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Runs a scene without and with a break after `cut` steps. False when it has no meaning.
-bool holds(std::string const& text, Precision precision, std::int64_t cut) {
+bool gives_the_bits_of_one_run(std::string const& text, Precision precision, std::int64_t cut) {
   std::optional<io::Scene> scene;
   try {
     scene = scene_of(text);
@@ -46,7 +46,7 @@ TEST(Restarting, GivesTheBitsOfARunWithoutABreakByEveryMethod) {
       auto const text = random.scene(variant);
       auto const precision =
           random.one_in(2) ? Precision::single_precision : Precision::double_precision;
-      done += holds(text, precision, 1 + random.below(RandomRun::steps - 1));
+      done += gives_the_bits_of_one_run(text, precision, 1 + random.below(RandomRun::steps - 1));
     }
     EXPECT_EQ(done, scenes_each) << variant.method->word;
     scenes += done;

@@ -41,8 +41,8 @@ std::int64_t least_planes(Precision precision, std::int64_t sites_of_plane) {
 }
 
 /// False when the scene has no meaning, or its numbers fail.
-bool holds(Variant const& variant, KindOfField const& field, Precision precision,
-           RandomRun& random) {
+bool gives_the_bits_of_passes(Variant const& variant, KindOfField const& field, Precision precision,
+                              RandomRun& random) {
   static constexpr std::int64_t planes[][2] = {{40, 36}, {67, 21}, {128, 16}};
   auto const [nx, ny] = planes[random.below(3)];
   MethodChoice choice{.method = variant.method};
@@ -88,7 +88,7 @@ TEST(RestartingSweeps, GivesTheBitsOfARunWithoutABreak) {
       // Half of them by what keeps a residual.
       if (draw % 2 == 0 && !variant.compensated) continue;
       auto const& field = fields[random.below(std::ssize(fields))];
-      done += holds(variant, field, precisions[random.below(2)], random);
+      done += gives_the_bits_of_passes(variant, field, precisions[random.below(2)], random);
     }
   } else {
     for (auto const* const variant : suitable)
@@ -96,7 +96,7 @@ TEST(RestartingSweeps, GivesTheBitsOfARunWithoutABreak) {
         for (auto const precision : precisions) {
           if (HasFailure()) return;
           RandomRun random(random_seed(), done);
-          done += holds(*variant, field, precision, random);
+          done += gives_the_bits_of_passes(*variant, field, precision, random);
         }
   }
   std::printf("    %lld scenes\n", static_cast<long long>(done));

@@ -13,7 +13,7 @@
 namespace cayspin::simulation::test {
 namespace {
 
-constexpr std::int64_t steps = 10;
+constexpr std::int64_t steps_of_runs = 10;
 
 bool divides_by_length(Variant const& variant) {
   auto const& method = *variant.method;
@@ -34,7 +34,7 @@ io::Scene scene_with(Variant const& variant, std::string const& lattice, std::st
       "[system]\nkind = 'llg'\ndamping = {}\n[lattice]\n{}\n[field]\n{}\n[initial]\n"
       "expression = ['cos(0.7*i + 1.1*j)', 'sin(0.9*j - 0.4*i)', '0.4 + 0.3*k']\n"
       "[integrator]\n{}\ndt = 0.03\nsteps = {}\n{}",
-      variant.method->stiff ? "0.0" : "0.1", lattice, field, keys, steps,
+      variant.method->stiff ? "0.0" : "0.1", lattice, field, keys, steps_of_runs,
       variant.method->adaptive
           ? (precision == Precision::double_precision ? "tolerance = 1e-6" : "tolerance = 1e-4")
           : ""));
@@ -76,7 +76,7 @@ TEST(Vacancies, LeaveTheMotionOfTheShapeAlone) {
         bool const by_tolerance = variant.method->adaptive;
         double const wanted = precision == Precision::double_precision ? 1e-6 : 1e-4;
         EXPECT_LT(largest_distance(within, alone),
-                  by_tolerance ? wanted : 64 * steps * epsilon(precision));
+                  by_tolerance ? wanted : 64 * steps_of_runs * epsilon(precision));
         ++compared;
       }
   }
@@ -89,7 +89,7 @@ io::Scene film_of_moments(std::string const& lattice, std::string const& couplin
                           int hundredths) {
   constexpr double damping = 0.5, dt = 0.02;
   return llg_scene(
-      fmt::to_string(damping), "heun", steps,
+      fmt::to_string(damping), "heun", steps_of_runs,
       fmt::format("[lattice]\nshape = [9, 6]\n{}\n[field]\ncouplings = [{}]\n"
                   "applied = [0.3, -0.2, 0.5]\nanisotropy = {{ constant = 3, axis = [1, 2, 3] }}\n"
                   "[thermal]\ntemperature = {}\nseed = 5\n"
@@ -122,7 +122,7 @@ TEST(Vacancies, AMomentOfZeroIsNoSite) {
       auto const found = end_of(with_site(hundredths), precision);
       auto const spins = static_cast<std::ptrdiff_t>(expected.size());
       EXPECT_LT(largest_distance({found.begin(), found.begin() + spins}, expected),
-                64 * steps * epsilon(precision));
+                64 * steps_of_runs * epsilon(precision));
       for (auto number = found.begin() + spins; number != found.end(); ++number)
         EXPECT_EQ(*number, 0);
     }
