@@ -103,9 +103,14 @@ INSTANTIATE_TEST_SUITE_P(
 using MissingSibling = ProgramTest;
 
 TEST_F(MissingSibling, IsOneLineAndStatusTwo) {
-  fs::copy_file(CAYSPIN_PROGRAM, in_folder("cayspin"));
-  expect_refused({"reproduce"}, in_folder("cayspin-reproduce").string(),
-                 {.program = in_folder("cayspin")});
+  auto const folder = in_folder("bin");
+  fs::create_directory(folder);
+  fs::copy_file(CAYSPIN_PROGRAM, folder / "cayspin");
+  // Its shared library, where it has one.
+  fs::create_directory_symlink(fs::path(CAYSPIN_PROGRAM).parent_path().parent_path() / "lib",
+                               in_folder("lib"));
+  expect_refused({"reproduce"}, (folder / "cayspin-reproduce").string(),
+                 {.program = folder / "cayspin"});
 }
 
 using ExistingOutput = ProgramTest;
