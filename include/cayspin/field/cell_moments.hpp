@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0 WITH LLVM-exception
 #pragma once
 
+#include <cayspin/detail/ghosts.hpp>
 #include <cayspin/detail/table.hpp>
 #include <cayspin/lattice.hpp>
 #include <cayspin/vec3.hpp>

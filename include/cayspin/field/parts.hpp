@@ -6,6 +6,7 @@
 #include <cayspin/vec3.hpp>
 
 #include <concepts>
+#include <cstddef>
 #include <utility>
 
 // A field that is made of other terms, as kernels see it. It has
@@ -213,7 +214,7 @@ KOKKOS_FORCEINLINE_FUNCTION ValueOf<Stencil> energy_magnitude(Source const& sour
   } else if constexpr (terms == 0) {
     return Value(0);
   } else {
-    Value energies[terms];
+    Value energies[std::size_t{terms}];
     energy_densities(source, stencil, energies);
     Value sum = Kokkos::abs(energies[terms - 1]);
     unrolled<terms - 1>([&](auto i) { sum = Kokkos::abs(energies[terms - 2 - i()]) + sum; });
