@@ -121,7 +121,9 @@ TYPED_TEST(Copies, RowsLieOnCacheLines) {
     EXPECT_EQ(layout.component_stride / line % 2, 1);
     EXPECT_EQ(layout.plane % line, 0);
     EXPECT_GE(layout.plane, layout.ny * layout.pitch);
-    if (layout.nx > line && layout.nz > 1) EXPECT_EQ(layout.plane / line % 2, 1);
+    if (layout.nx > line && layout.nz > 1) {
+      EXPECT_EQ(layout.plane / line % 2, 1);
+    }
     EXPECT_GE(layout.component_stride, layout.nz * layout.plane);
     EXPECT_GE(layout.origin, 1);
     EXPECT_GE(static_cast<std::ptrdiff_t>(spins.allocation().size()),

@@ -61,8 +61,9 @@ TYPED_TEST(Saddles, WhereTheSearchOnlyJustFindsTheWay) {
     auto const found = minimize(this->exec, field, spins,
                                 {.torque = torque, .preconditioned = false, .observer = stop});
     double const round_off = 65 * epsilon<typename TypeParam::Real> * (4 + applied);
-    if (found.end == MinimizeEnd::converged)
+    if (found.end == MinimizeEnd::converged) {
       EXPECT_GE(found.curvature, -std::max(torque, round_off)) << applied;
+    }
   }
 }
 

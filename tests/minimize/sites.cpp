@@ -26,8 +26,11 @@ TYPED_TEST(Sites, VacantOnesStay) {
   EXPECT_EQ(found.end, MinimizeEnd::converged);
   auto const after = numbers_of(spins);
   for (std::int64_t site = 0; site < lattice.sites(); ++site)
-    for (int c = 0; c < 3; ++c)
-      if (vacant(site)) EXPECT_EQ(after[3 * site + c], before[3 * site + c]) << site;
+    for (int c = 0; c < 3; ++c) {
+      if (vacant(site)) {
+        EXPECT_EQ(after[3 * site + c], before[3 * site + c]) << site;
+      }
+    }
   LandauLifshitz const generator(field, 0);
   EXPECT_LT(largest_rate(this->exec, generator, spins), 1.2 * torque);
 }
@@ -77,7 +80,6 @@ TYPED_TEST(Sites, WithExchangeAndAnisotropyOfTheirOwn) {
 }
 
 TYPED_TEST(Sites, WrongCalls) {
-  using Spins = typename TestFixture::Spins;
   auto const lattice = Lattice::square(8, 4);
   auto spins = this->random_spins(lattice, 1);
   auto other = this->random_spins(Lattice::square(4, 8), 1);
