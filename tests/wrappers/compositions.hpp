@@ -137,8 +137,9 @@ inline constexpr bool sees_vacant_spins =
 template <class Real, class Term, class Visit>
 void for_each_wrapper(Setting<Real> const& on, std::string const& name, Term const& term,
                       std::vector<double> const& factors, Visit const& visit) {
-  visit("EffectiveField(" + name + ", Zeeman)", EffectiveField(term, Zeeman{{0.25, -0.5, 0.75}}),
-        factors, false);
+  visit("EffectiveField(" + name + ", Zeeman, Exchange)",
+        EffectiveField(term, Zeeman{{0.25, -0.5, 0.75}}, Exchange(on.lattice, 0.375)), factors,
+        false);
   visit("Named(" + name + ")", Named(term), factors, true);
   if constexpr (!sees_vacant_spins<Term>)
     visit("FieldWithVacancies(" + name + ")", FieldWithVacancies(term, on.occupation), factors,
