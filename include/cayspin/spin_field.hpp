@@ -129,7 +129,7 @@ class SiteField {
   std::size_t bytes() const { return data_.size() * sizeof(Real); }
   std::string label() const { return data_.label(); }
 
-  /// What kernels and field terms take.
+  /// The array that kernels and field terms take.
   array_type array() const { return {data_.data() + layout_.origin, layout_.component_stride}; }
   OutputArray<Real, Components> output(bool streaming) const { return {array(), streaming}; }
   /// The allocation, for deep copies between fields of one lattice.

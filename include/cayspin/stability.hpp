@@ -228,7 +228,7 @@ inline double exchange_bound(Lattice const& of_spins, double constant) {
   return bound;
 }
 
-/// What largest_stable_step has to know of the equation besides field and damping.
+/// The equation, as far as largest_stable_step has to know it besides field and damping.
 struct StabilityOptions {
   bool precession = true;
   double sigma = 0;  ///< of isotropy::Constant

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// What compilers, processors and devices have of their own: other headers ask for what is named
-// here. Host spaces are in execution.hpp.
+// Everything that differs between compilers, processors and devices has its name here, and other
+// headers ask for these names. Host spaces are in execution.hpp.
 
 // This pass of the compiler makes code for a device.
 #if defined(__CUDA_ARCH__) || defined(__HIP_DEVICE_COMPILE__) || defined(__SYCL_DEVICE_ONLY__)

@@ -42,7 +42,7 @@ class FieldTimesNumbers : public ForwardingEnergy<FieldTimesNumbers<Field>, Fiel
     return gather(WholeField(), stencil);
   }
   template <class Take, class Stencil>
-    requires(!std::is_same_v<Take, TurningField>)
+    requires(!std::is_same_v<Take, TurningField>)  // H itself turns spins, to the bits of `field`
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
                                                        Stencil const& stencil) const {
     return factors_.at(stencil.site()) * take(field_, stencil);

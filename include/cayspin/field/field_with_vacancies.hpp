@@ -93,7 +93,7 @@ class FieldAmongVacancies {
     return gather(WholeField(), stencil);
   }
   template <class Take, class Stencil>
-    requires(!std::is_same_v<Take, TurningField>)
+    requires(!std::is_same_v<Take, TurningField>)  // H itself turns spins, to the bits of `field`
   KOKKOS_FORCEINLINE_FUNCTION VectorOf<Stencil> gather(Take const& take,
                                                        Stencil const& stencil) const {
     return unless_vacant(stencil, take(field_, Inner<Stencil>(stencil, occupation_)));

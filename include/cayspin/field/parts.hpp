@@ -52,7 +52,7 @@ constexpr bool has_local_part() {
   return is_local<Term> || any_has_local_part(PartsOfTerm<Term>());
 }
 
-// What is wanted of parts. `add` is the sum of `h` and that of one part.
+// These structs say what a caller wants of each part. `add` returns `h` plus that of one part.
 
 struct WholeField {
   template <class Term>
@@ -184,7 +184,7 @@ KOKKOS_FORCEINLINE_FUNCTION bool local_field_varies(Term const& term) {
     return is_local<Term>;
 }
 
-/// Of how many terms the energy of a term or generator is a sum.
+/// The number of terms of which the energy of a term or generator is the sum.
 template <class Source>
 inline constexpr int energy_terms = [] {
   if constexpr (requires { Source::energy_terms; }) return Source::energy_terms;

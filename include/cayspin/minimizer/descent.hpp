@@ -38,7 +38,7 @@ class Descent {
   Minimum so_far;
 
   static constexpr double epsilon = std::numeric_limits<Real>::epsilon();
-  /// Of the spin that turns most, on the way out of a saddle.
+  /// The least turn, on the way out of a saddle, of the spin that turns most.
   static constexpr double least_turn = 1e-5;
 
   double strongest_field() const { return strongest_field_; }
@@ -116,7 +116,7 @@ class Descent {
     newton_until_ = so_far.evaluations + 250;
   }
 
-  /// Of spins whose components are rounded independently, and of sums in double.
+  /// For spins whose components are rounded independently, and sums in double.
   double round_off(Energy const& energy) const {
     auto const sites = static_cast<double>(is_mobile.lattice().sites());
     double const of_spins = epsilon / std::sqrt(sites);

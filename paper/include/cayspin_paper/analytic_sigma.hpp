@@ -35,7 +35,7 @@ namespace isotropy {
 /// the norm corrected. Zero if X is zero.
 struct Analytic {};
 
-/// The same number as the geodesic curvature of the orbit times its speed,
+/// The number that Analytic gives, as the geodesic curvature of the orbit times its speed,
 /// sigma = k_g |X| = <m'', m x m'> / |m'|^2, m' = X: sigma as a partial connection form.
 /// Lewis and Nigam 2002, Sec. 3.2.
 struct Connection {};

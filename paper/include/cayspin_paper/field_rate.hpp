@@ -89,7 +89,7 @@ auto prepared_rate(PairCouplings<MemorySpace> const& term, Exec const& exec, Spi
                    double t, double) {
   if (term.has_biquadratic())
     throw std::invalid_argument(
-        "cayspin::PairCouplings: the derivative of biquadratic couplings is not implemented");
+        "cayspin::PairCouplings: biquadratic couplings have no derivative along rates only");
   return term.prepare(exec, rates, t);
 }
 /// Throws std::logic_error between evaluations.
